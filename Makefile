@@ -1,0 +1,69 @@
+# Every target does its own set-up. Extra flags: make reproduce ARGS="--cores 1". Another interpreter: make test PYTHON=/opt/python/bin/python3.12
+
+ARGS   =
+PYTHON = python3.13 python3.12 python3.11 python3
+# Programs run as `python -m`, for the scripts in .venv/bin hold absolute paths and would run the original's files in a copy of the tree.
+RUN       = .venv/bin/python
+SNAKEMAKE = $(RUN) -m snakemake
+PIP       = $(RUN) -m pip install --quiet --disable-pip-version-check --require-hashes --only-binary :all:
+LOCK      = $(RUN) -m uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest --generate-hashes
+
+# A killed run leaves its lock behind. A clone has one user, so these targets may break it; plain `snakemake` keeps it.
+UNLOCK = if [ -n "$$(ls .snakemake/locks 2>/dev/null)" ]; then $(SNAKEMAKE) --unlock >/dev/null 2>&1 || true; fi
+
+.PHONY: help reproduce smoke extended test lint benchmark lock clean distclean anew
+
+help: ## list these targets
+	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1|\2/p' Makefile | awk -F '|' '{ printf "%-15s %s\n", $$1, $$2 }'
+
+reproduce: .venv/ready ## every table and figure at the papers' own numbers of repeats, into results/full
+	@$(UNLOCK)
+	$(SNAKEMAKE) $(ARGS)
+
+smoke: .venv/ready ## a small subset in about a minute, into results/smoke
+	@$(UNLOCK)
+	$(SNAKEMAKE) smoke $(ARGS)
+
+extended: .venv/ready ## everything with hundreds to thousands of repeats, into results/extended
+	@$(UNLOCK)
+	$(SNAKEMAKE) extended $(ARGS)
+
+test: lint ## lint, the smoke subset, and all tests (ARGS go to pytest)
+	@$(UNLOCK)
+	$(SNAKEMAKE) smoke
+	$(RUN) -m pytest $(ARGS)
+
+lint: .venv/ready ## style of Python and Snakemake files, and who may import whom
+	$(RUN) -m ruff check
+	$(RUN) -m ruff format --check
+	$(RUN) -m snakefmt --check Snakefile workflow
+	$(SNAKEMAKE) --lint
+	$(RUN) .venv/bin/lint-imports --no-logo --cache-dir .cache/import-linter
+
+benchmark: .venv/ready ## speed of the inner loops, beside the bare minimum
+	$(RUN) tests/benchmark/run.py $(ARGS)
+
+lock: .venv/ready ## renew environment.txt from pyproject.toml (newest versions: ARGS=--upgrade)
+	$(LOCK) $(ARGS) --group build -o environment-build.txt
+	$(LOCK) $(ARGS) --group dev pyproject.toml -o environment.txt
+
+clean: ## remove results and caches
+	rm -rf results/smoke results/full results/extended .snakemake .cache
+
+distclean: clean ## remove the environment (.venv) as well
+	rm -rf .venv
+
+# Set-up. The file .venv/ready is written last, so that what an interrupted set-up left is made anew; so is an environment whose Python has gone.
+fits  = import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info[:2] < (3, 14))
+found = $(firstword $(foreach p,$(PYTHON),$(shell $(p) -c '$(fits)' >/dev/null 2>&1 && echo $(p))))
+
+.venv/ready: environment-build.txt environment.txt $(shell .venv/bin/python -c '' 2>/dev/null || echo anew)
+	$(if $(found),,$(error bezierplan needs Python 3.11 to 3.13 with venv. On Debian or Ubuntu: sudo apt install python3 python3-venv; \
+	  elsewhere, or for another Python: make PYTHON=/path/to/python3))
+	@echo "Setting up .venv with $(found): about 1 GB, one to a few minutes"
+	@rm -rf .venv
+	@$(found) -m venv .venv
+	@$(PIP) -r environment-build.txt
+	@$(PIP) --no-binary connection-pool --no-build-isolation -r environment.txt
+	@$(RUN) -c 'import sysconfig; open(sysconfig.get_path("purelib") + "/bezierplan.pth", "w").write("../../../../src\n")'
+	@touch $@

@@ -1,0 +1,54 @@
+"""The command line: `python -m bezierplan list` and `python -m bezierplan digest FOLDER`."""
+
+import argparse
+import sys
+from pathlib import Path
+
+
+def main(words: list[str]) -> None:
+    """Do what the words of a command line say; a fault ends the process with one line."""
+    parser = argparse.ArgumentParser(prog="python -m bezierplan", description=__doc__)
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    lister = commands.add_parser("list", help="studies, their artefacts, methods, workspaces and numbers of repeats")
+    lister.add_argument("--studies", nargs="+", metavar="STUDY", help="studies instead of those of config/config.yaml")
+    lister.set_defaults(do=lambda given: list_studies(given.studies))
+    digester = commands.add_parser("digest", help="one hash a run table, over sorted rows without times: what `same content` means")
+    digester.add_argument("folder", type=Path, help="a folder of results, such as results/full")
+    digester.set_defaults(do=lambda given: print_digests(given.folder))
+    given = parser.parse_args(words)
+    try:
+        given.do(given)
+    except (ValueError, FileNotFoundError) as fault:
+        sys.exit(str(fault))
+
+
+def list_studies(names: list[str] | None) -> None:
+    """Print what the studies of the configuration, or those named, hold."""
+    from bezierplan import study as studies
+
+    for key, study in studies.load(studies.read_config({"studies": names} if names else {})).items():
+        print(f"{key}: {study.title}")
+        for kind, artefacts in (("table", study.tables), ("figure", study.figures)):
+            for name, content in artefacts.items():
+                print(f"  {kind:12}{key}_{name:12} {content['title']}")
+        for name, method in study.methods.items():
+            variant = f", a variant of {method['variant_of']}" if "variant_of" in method else ""
+            print(f"  {'method':12}{name:20} {study.planner(name)}{variant}")
+        for name, workspace in study.workspaces.items():
+            print(f"  {'workspace':12}{name:20} {workspace['kind']}")
+        for name, experiment in study.experiments.items():
+            size = f"{len(experiment['problems'])} problems, {len(experiment['methods'])} methods"
+            repeats = ", ".join(f"{number} ({scale})" for scale, number in experiment["repeats"].items())
+            print(f"  {'experiment':12}{name:20} {size}, repeats {repeats}")
+
+
+def print_digests(folder: Path) -> None:
+    """Print a hash of the runs of each method of each experiment below a folder."""
+    from bezierplan.run_digest import run_tables, table_digest
+
+    for name, files in run_tables(folder).items():
+        print(f"{table_digest(files)}  {name}")
+
+
+if __name__ == "__main__":
+    main(sys.argv[1:])

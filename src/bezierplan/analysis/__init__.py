@@ -1,0 +1,1 @@
+"""From runs to tables: statistics, pivot tables, the comparison with published numbers."""

@@ -1,0 +1,105 @@
+"""Every published number of a table beside ours.
+
+One row for each group of runs, metric and statistic; an empty cell means that there is no such number.
+
+| column | meaning |
+| --- | --- |
+| key columns | columns of the runs table that tell the rows apart: those left of `metric` in the published file, then the table's others |
+| metric | what is measured, a name of `metrics.METRICS` |
+| statistic | the statistic that the paper prints; `unstated` where it does not say, ours is then the median |
+| unit | unit of the metric; `-` for a number without one |
+| n_published | runs behind the published number, where the paper says |
+| value_published | the published number; a variant of a published method stands beside the number of that method |
+| n_ours | our runs that count: feasible ones for metrics of feasible paths, all for the others |
+| value_ours | the statistic of these runs |
+| best, mean, median, quartile1, quartile3 | of the same runs; best is the lowest |
+| low95_ours, high95_ours | 95 % bootstrap interval of value_ours; empty below two runs, and for min, max and range, which depend on the number of runs |
+| quantile_published | the published number's place among 10,000 experiments of the paper's size, drawn from our runs; among our runs if n is unknown |
+| reproduced | whether that place is within the central 95 %; ours are rounded like the printed number, ties count for it; empty below six runs |
+| share_claimed | share of all runs whose path passed the planner's own test |
+| share_feasible | share of all runs whose path the certified checker accepts |
+| bound | exact shortest length of the problem; of several problems, the median over the runs |
+| gap | median over the feasible runs of length / bound - 1 |
+"""
+
+from typing import Any
+
+import pandas as pd
+
+from bezierplan import metrics
+from bezierplan.analysis import statistics, tables
+from bezierplan.analysis.results import Results
+
+_COLUMNS = [
+    *("metric", "statistic", "unit", "n_published", "value_published", "n_ours", "value_ours"),
+    *("best", "mean", "median", "quartile1", "quartile3", "low95_ours", "high95_ours"),
+    *("quantile_published", "reproduced", "share_claimed", "share_feasible", "bound", "gap"),
+]
+
+
+def compare(results: Results, spec: dict, published: pd.DataFrame, variant_of: dict[str, str], name: str) -> pd.DataFrame:
+    """The published numbers of a table beside ours, in the order of the table; the columns are described above.
+
+    spec: as for `tables.pivot`. published: key columns, metric, statistic, n, unit, value. variant_of: method -> the method whose published
+    numbers it is compared with; variants of the table's methods get rows, whether or not the table shows them. name: `study/table`, from
+    which each row's random draws follow.
+    """
+    given = published.columns[: published.columns.get_loc("metric")].to_list()
+    keys = given + [key for key in tables.keys(spec) if key not in given]
+    spec = _with_variants(spec, variant_of) if "method" in keys else spec
+    ours = tables.cells(results, spec, keys)
+    theirs = published.rename(columns={"n": "n_published", "value": "value_published", "statistic": "printed"}).drop(columns="unit")
+    theirs = theirs.astype({key: ours[key].dtype for key in given}).assign(statistic=theirs["printed"].replace("unstated", "median"))
+    printed = dict(zip(zip(theirs["metric"], theirs["statistic"]), theirs["printed"]))
+    ours["statistic"] = ours["statistic"].replace("unstated", "median")
+    if "method" in given:
+        ours = ours.assign(own_method=ours["method"], method=ours["method"].replace(variant_of))
+
+    both = ours.merge(theirs.drop(columns="printed"), how="outer", on=[*given, "metric", "statistic"])
+    if "method" in given:
+        both["method"] = both["own_method"].fillna(both["method"])
+    both["statistic"] = [printed.get(quantity, quantity[1]) for quantity in zip(both["metric"], both["statistic"])]
+    order = tables.in_order(both, spec, list(results.problems)).sort_values([*keys, "value", "metric", "statistic"]).index
+    both = both.loc[order]
+    workspace_unit = next(iter(results.problems.values())).workspace.unit
+    both["unit"] = [metrics.unit(metric, workspace_unit) for metric in both["metric"]]
+    described = pd.DataFrame([_described(row, keys, name) for _, row in both.iterrows()], index=both.index)
+    table = both.join(described).reindex(columns=keys + _COLUMNS).reset_index(drop=True)
+    return table.astype({"n_published": "Int64", "n_ours": "Int64", "reproduced": "boolean"})
+
+
+def _with_variants(spec: dict, variant_of: dict[str, str]) -> dict:
+    """The table's description with the variants of its methods selected as well, behind them."""
+    where = spec.get("where", {})
+    if "method" not in where:
+        return spec
+    methods = where["method"] if isinstance(where["method"], list) else [where["method"]]
+    variants = [variant for variant, method in variant_of.items() if method in methods and variant not in methods]
+    return spec | {"where": where | {"method": methods + variants}}
+
+
+def _described(row: pd.Series, keys: list[str], name: str) -> dict[str, Any]:
+    """Our side of one row, and where the published number lies in it; empty for a published number that we have no runs for."""
+    if pd.isna(row["runs"]):
+        return {"n_ours": 0, "reproduced": None}
+    numbers = row["numbers"]
+    statistic = row["statistic"]
+    row_name = "/".join([name, *(f"{key}={row[key]}" for key in keys), row["metric"], statistic])
+    low, high = statistics.interval(statistic, numbers, statistics.generator(f"{row_name}/interval"))
+    size = None
+    if not pd.isna(row["n_published"]):
+        # Of the paper's runs, as large a share counted as of ours.
+        size = max(1, round(row["n_published"] * len(numbers) / row["runs"]))
+    quantile, reproduced = statistics.yardstick(
+        statistic, numbers, row["value_published"], size, row["decimals"], statistics.generator(f"{row_name}/yardstick")
+    )
+    return {
+        "n_ours": len(numbers),
+        "value_ours": statistics.statistic(statistic, numbers),
+        "best": statistics.statistic("min", numbers),
+        **{each: statistics.statistic(each, numbers) for each in ("mean", "median", "quartile1", "quartile3")},
+        "low95_ours": low,
+        "high95_ours": high,
+        "quantile_published": quantile,
+        "reproduced": reproduced,
+    }

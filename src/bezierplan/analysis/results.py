@@ -1,0 +1,72 @@
+"""The results of one experiment, read back for tables and figures."""
+
+from pathlib import PurePath
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+import pyarrow.parquet as parquet
+
+from bezierplan import problems as problem_files
+from bezierplan.problem import Path, Problem
+
+
+class Results(NamedTuple):
+    """Runs, problems and bounds of an experiment.
+
+    runs: one row a run, columns as in `running.run_chunk`, with `straight_line` and `bound` of its problem. problems: by name.
+    bounds: one row a problem, its name as index, columns as in `problems.write_bounds`.
+    """
+
+    runs: pd.DataFrame
+    problems: dict[str, Problem]
+    bounds: pd.DataFrame
+
+
+def read(runs: list[str], repeats: int, problems: str, bounds: str) -> Results:
+    """The results in chunk files of runs, cut at a number of repeats, with the problems and bounds of their experiment.
+
+    Chunks run whole, so a file may hold more repeats than are asked for.
+    """
+    table = pd.concat([parquet.read_table(file).to_pandas() for file in runs], ignore_index=True)
+    limits = parquet.read_table(bounds).to_pandas().set_index("problem")
+    table = table[table["repeat"] < repeats].join(limits[["straight_line", "bound"]], on="problem")
+    return Results(table.reset_index(drop=True), problem_files.read(problems), limits)
+
+
+def read_all(runs: list[str], repeats: dict[str, int], problems: list[str], bounds: list[str]) -> dict[str, Results]:
+    """Results by experiment, from files of several experiments: problems and bounds in the order of `repeats`, runs in any."""
+    found = {}
+    for (experiment, number), problem_file, bound_file in zip(repeats.items(), problems, bounds, strict=True):
+        own = [file for file in runs if PurePath(file).parts[-3] == experiment]
+        found[experiment] = read(own, number, problem_file, bound_file)
+    return found
+
+
+def path_of(run: pd.Series) -> Path | None:
+    """The path of a run, or None if it has none."""
+    if not run["path_curve"]:
+        return None
+    return Path(run["path_curve"], np.reshape(run["path_points"], (-1, 2)))
+
+
+def select(runs: pd.DataFrame, where: dict) -> pd.DataFrame:
+    """The runs whose columns equal the given values, or are among them where a list is given."""
+    for column, wanted in where.items():
+        runs = runs[runs[column].isin(wanted if isinstance(wanted, list) else [wanted])]
+    return runs
+
+
+def pick(runs: pd.DataFrame, which: dict) -> pd.Series | None:
+    """One run of those given: `{lowest: column}` or `{median: column}` of the feasible ones, or `{repeat: n}`; None if there is none.
+
+    The median of an even number of runs is the lower of the two in the middle; of equal runs the first repeat is taken.
+    """
+    (word, value), *_ = which.items()
+    if word == "repeat":
+        chosen = runs[runs["repeat"] == value]
+        return None if chosen.empty else chosen.iloc[0]
+    ordered = runs[runs["feasible"]].sort_values([value, "repeat"], kind="stable")
+    if ordered.empty:
+        return None
+    return ordered.iloc[0 if word == "lowest" else (len(ordered) - 1) // 2]

@@ -1,0 +1,123 @@
+"""Named statistics, bootstrap intervals, and the yardstick for a published number.
+
+Resampling is plain numpy: `scipy.stats.bootstrap` does the same draws, and its import alone takes longer than the tables of a paper.
+"""
+
+import hashlib
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+DRAWS = 10_000
+# Share of a distribution that lies beyond either end of its central 95 %.
+TAIL = 0.025
+# With fewer runs the central 95 % says nothing, and no published number is judged.
+LEAST_RUNS = 6
+# Most numbers drawn at once: blocks of this size stay in the processor's cache.
+BLOCK = 1 << 15
+
+# What follows takes values (..., n) without gaps, n at least 1, to statistics (...).
+
+
+def _std(values: np.ndarray) -> np.ndarray:
+    """Standard deviation of a sample (divisor n - 1), not a number for a single value."""
+    if values.shape[-1] == 1:
+        return np.full(values.shape[:-1], np.nan)
+    return np.std(values, axis=-1, ddof=1)
+
+
+def _mean(values: np.ndarray) -> np.ndarray:
+    return np.mean(values, axis=-1)
+
+
+def _quantiles(values: np.ndarray, *shares: float) -> list[np.ndarray]:
+    """Quantiles by linear interpolation. A full sort, because numpy sorts rows faster than it partitions them at two places."""
+    ordered = np.sort(values, axis=-1)
+    last = values.shape[-1] - 1
+    quantiles = []
+    for share in shares:
+        low, weight = divmod(share * last, 1)
+        low = int(low)
+        quantiles.append((1 - weight) * ordered[..., low] + weight * ordered[..., low + 1] if weight else ordered[..., low])
+    return quantiles
+
+
+def _median(values: np.ndarray) -> np.ndarray:
+    return _quantiles(values, 0.5)[0]
+
+
+def _iqr(values: np.ndarray) -> np.ndarray:
+    """Interquartile range."""
+    low, high = _quantiles(values, 0.25, 0.75)
+    return high - low
+
+
+STATISTICS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
+    "mean": _mean,
+    "median": _median,
+    "std": _std,
+    "iqr": _iqr,
+    "range": lambda values: np.ptp(values, axis=-1),
+    "min": lambda values: np.min(values, axis=-1),
+    "max": lambda values: np.max(values, axis=-1),
+    "quartile1": lambda values: _quantiles(values, 0.25)[0],
+    "quartile3": lambda values: _quantiles(values, 0.75)[0],
+    "count": lambda values: np.sum(values, axis=-1),  # of a metric that is true (1) or false (0): how many runs have it
+    "share": _mean,  # likewise: which share of the runs has it
+    "unstated": _median,  # the paper does not say; the median of ours is printed
+}
+# These grow with the number of runs, so resampling as many says nothing about how far they are from the truth.
+WITHOUT_INTERVAL = ("min", "max", "range")
+
+
+def statistic(name: str, values: np.ndarray) -> float:
+    """A named statistic of values (n,) without gaps; not a number without values. Raises KeyError for an unknown name."""
+    return float(STATISTICS[name](values)) if len(values) else math.nan
+
+
+def generator(name: str) -> np.random.Generator:
+    """The random generator that belongs to a name: the same in every process and order."""
+    return np.random.default_rng(int.from_bytes(hashlib.sha256(name.encode()).digest()))
+
+
+def resampled(name: str, values: np.ndarray, size: int, rng: np.random.Generator) -> np.ndarray:
+    """A named statistic of `size` values drawn with replacement from values (n,), n at least 1: (DRAWS,)."""
+    rows = max(1, BLOCK // size)
+    drawn = np.empty(DRAWS)
+    for first in range(0, DRAWS, rows):
+        block = drawn[first : first + rows]
+        block[:] = STATISTICS[name](values[rng.integers(len(values), size=(len(block), size), dtype=np.int32)])
+    return drawn
+
+
+def interval(name: str, values: np.ndarray, rng: np.random.Generator) -> tuple[float, float]:
+    """95 % percentile bootstrap interval of a named statistic of values (n,).
+
+    Not a number for fewer than two values, and for statistics that depend on how many there are (`WITHOUT_INTERVAL`).
+    """
+    if len(values) < 2 or name in WITHOUT_INTERVAL:
+        return math.nan, math.nan
+    low, high = np.quantile(resampled(name, values, len(values), rng), [TAIL, 1 - TAIL])
+    return float(low), float(high)
+
+
+def yardstick(
+    name: str, values: np.ndarray, published: float, size: int | None, decimals: int | None, rng: np.random.Generator
+) -> tuple[float, bool | None]:
+    """Where a published number lies among what experiments of the paper's size would have printed, drawn from our values (n,).
+
+    size: how many values the published statistic is of; None if the paper does not say, then the number is placed among our single values.
+    decimals: those of the printed number, to which ours are rounded before they are compared; None to compare as they are.
+
+    Returns the number's quantile, ties counted half, and whether it is within the central 95 %, ties counted for it (None below
+    `LEAST_RUNS` values). Not a number and None without values or without a published number.
+    """
+    if not len(values) or math.isnan(published):
+        return math.nan, None
+    ours = values if size is None else resampled(name, values, size, rng)
+    if decimals is not None:
+        ours, published = np.round(ours, decimals), round(published, decimals)
+    below, above = np.mean(ours < published), np.mean(ours > published)
+    reproduced = bool(below <= 1 - TAIL and above <= 1 - TAIL) if len(values) >= LEAST_RUNS else None
+    return float((below + 1 - above) / 2), reproduced

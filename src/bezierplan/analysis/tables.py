@@ -1,0 +1,130 @@
+"""Result tables laid out as in the papers, from pivot words of the configuration.
+
+A table's description (`spec`) has the keys
+
+    index, columns   columns of the runs table, and the words `value` (which entry of `values`) and `statistic`; a word that is needed to tell
+                     numbers apart and is not named becomes a level of the columns. `columns` may be missing
+    values           a list of {metric, statistic: a name or a list of names, where, label, decimals}; where, label and decimals may be missing
+    where            which runs: column -> value or list of values; a list also gives the order. May be missing
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from bezierplan import metrics
+from bezierplan.analysis import statistics
+from bezierplan.analysis.results import Results, select
+
+_WORDS = ("value", "statistic")
+
+
+def keys(spec: dict) -> list[str]:
+    """The columns of the runs table that tell the rows and columns of a table apart."""
+    return [word for word in [*spec["index"], *spec.get("columns", [])] if word not in _WORDS]
+
+
+def in_order(table: pd.DataFrame, spec: dict, problems: Sequence[str]) -> pd.DataFrame:
+    """The table with its key columns as ordered categories, so that sorting follows the configuration.
+
+    Values stand as listed in `where`, problems as in their experiment, all others sorted behind; a missing value is last.
+    """
+    orders = {"problem": list(problems), **{key: wanted for key, wanted in spec.get("where", {}).items() if isinstance(wanted, list)}}
+    ordered = {}
+    for key in table.columns.intersection([*keys(spec), *orders]):
+        first = orders.get(key, [])
+        present = table[key].dropna().unique().tolist()
+        present = [value for value in first if value in present] + sorted(set(present) - set(first))
+        ordered[key] = pd.Categorical(table[key], categories=present, ordered=True)
+    return table.assign(**ordered)
+
+
+def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
+    """The numbers behind a table: one row for each group of runs with equal keys, entry of `values`, and statistic.
+
+    Columns: the keys; value (the entry's number), metric, statistic, decimals; numbers, sorted (n,): the metric of the runs that count, which
+    satisfy the entry's `where` and have one; and of all runs of the group: runs (how many), share_claimed, share_feasible, bound (median),
+    gap (median of the feasible ones).
+    """
+    # Sorted by name, so that no sum depends on the order in which chunks were read.
+    runs = select(results.runs, spec.get("where", {})).sort_values("id")
+    entries = spec["values"]
+    wanted = {entry["metric"] for entry in entries} | {"gap"}
+    measured = {name: metrics.values(runs, name, results.problems) for name in sorted(wanted)}
+    counted = [measured[entry["metric"]].reindex(select(runs, entry.get("where", {})).index).dropna() for entry in entries]
+    rows = []
+    for key, group in runs.groupby(keys, dropna=False):
+        described = {
+            **dict(zip(keys, key)),
+            "runs": len(group),
+            "share_claimed": group["claimed_feasible"].mean(),
+            "share_feasible": group["feasible"].mean(),
+            "bound": group["bound"].median(),
+            "gap": measured["gap"].loc[group.index].median(),
+        }
+        for value, entry in enumerate(entries):
+            numbers = np.sort(counted[value].loc[counted[value].index.intersection(group.index)].to_numpy())
+            for statistic in _statistics(entry):
+                cell = {"value": value, "metric": entry["metric"], "statistic": statistic, "decimals": entry.get("decimals")}
+                rows.append(described | cell | {"numbers": numbers})
+    columns = [*keys, "runs", "share_claimed", "share_feasible", "bound", "gap", "value", "metric", "statistic", "decimals", "numbers"]
+    return pd.DataFrame(rows, columns=columns).astype({"decimals": object})
+
+
+def pivot(results: Results, spec: dict, labels: dict[str, str]) -> pd.DataFrame:
+    """A table as printed: text, rounded to the decimals of its entries, empty where no run counts.
+
+    labels: how names are printed. Levels of the columns are joined to one name, such as `objective value: smooth`; levels of the index stay
+    columns of the csv file.
+    """
+    index, columns = _levels(spec)
+    table = in_order(cells(results, spec, keys(spec)), spec, list(results.problems))
+    statistic_order = list(dict.fromkeys(statistic for entry in spec["values"] for statistic in _statistics(entry)))
+    table["statistic"] = pd.Categorical(table["statistic"], categories=statistic_order, ordered=True)
+    table["text"] = [
+        _printed(statistics.statistic(statistic, numbers), decimals)
+        for statistic, numbers, decimals in zip(table["statistic"], table["numbers"], table["decimals"])
+    ]
+    rows, heads = (table[levels].drop_duplicates().sort_values(levels) for levels in (index, columns))
+    wide = table.set_index(index + columns)["text"].unstack(columns)
+    wide = wide.reindex(index=_index(rows), columns=_index(heads)).fillna("")
+    titles = [entry.get("label", entry["metric"]) for entry in spec["values"]]
+    rows, heads = (levels.apply(_labelled, labels=labels, titles=titles) for levels in (rows, heads))
+    wide.index = _index(rows.rename(columns=labels))
+    wide.columns = [": ".join(levels) for levels in heads.itertuples(index=False)]
+    return wide
+
+
+def _statistics(entry: dict) -> list[str]:
+    """The statistics of an entry of `values`, which may name one or a list."""
+    return [entry["statistic"]] if isinstance(entry["statistic"], str) else entry["statistic"]
+
+
+def _levels(spec: dict) -> tuple[list[str], list[str]]:
+    """Levels of the index and of the columns, with the words that were left out but are needed."""
+    index, columns = list(spec["index"]), list(spec.get("columns", []))
+    if "statistic" not in index + columns and any(len(_statistics(entry)) > 1 for entry in spec["values"]):
+        columns.append("statistic")
+    if "value" not in index + columns and (len(spec["values"]) > 1 or not columns):
+        columns.insert(0, "value")
+    return index, columns
+
+
+def _index(levels: pd.DataFrame) -> pd.Index:
+    """The rows of a table as an index of one or several levels."""
+    return pd.Index(levels.iloc[:, 0]) if levels.shape[1] == 1 else pd.MultiIndex.from_frame(levels)
+
+
+def _labelled(level: pd.Series, labels: dict[str, str], titles: list[str]) -> pd.Series:
+    """A level of rows or columns as it is printed."""
+    names = [titles[value] for value in level] if level.name == "value" else [labels.get(str(value), str(value)) for value in level]
+    return pd.Series(names, index=level.index, dtype=object)
+
+
+def _printed(number: Any, decimals: int | None) -> str:
+    """A number with the given decimals, or with six significant digits where none are given; empty for one that does not exist."""
+    if np.isnan(number):
+        return ""
+    return f"{number:.6g}" if decimals is None else f"{number:.{decimals}f}"

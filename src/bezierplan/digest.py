@@ -1,0 +1,90 @@
+"""Digests of source code.
+
+A digest names what a result depends on, so that an edit re-runs exactly the jobs that it can change; it also names the folder
+in which numba keeps compiled kernels, because numba itself does not notice an edit in a module that a kernel calls.
+"""
+
+import ast
+import hashlib
+import os
+import sys
+from functools import cache
+from pathlib import Path
+
+PACKAGE = Path(__file__).parent
+ROOT = PACKAGE.name
+
+
+def _module_file(module: str) -> Path | None:
+    """The source file of a module of this package, or None."""
+    place = PACKAGE.parent.joinpath(*module.split("."))
+    for file in (place.with_suffix(".py"), place / "__init__.py"):
+        if file.is_file():
+            return file
+    return None
+
+
+@cache
+def _parsed(file: Path) -> ast.Module:
+    return ast.parse(file.read_text(encoding="utf-8"))
+
+
+def _imports(module: str, tree: ast.Module) -> set[str]:
+    """Names of the modules of this package that a syntax tree imports, parent packages included."""
+    is_package = _module_file(module).name == "__init__.py"
+    found = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            found.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ""
+            if node.level:
+                parents = module.split(".") if is_package else module.split(".")[:-1]
+                base = ".".join(parents[: len(parents) - node.level + 1] + ([base] if base else []))
+            found.add(base)
+            found.update(f"{base}.{alias.name}" for alias in node.names)
+    ours = {name for name in found if name.split(".")[0] == ROOT and _module_file(name)}
+    return ours | {".".join(name.split(".")[:n]) for name in ours for n in range(1, name.count(".") + 1)}
+
+
+def source_digest(*modules: str) -> str:
+    """Digest of modules and of every module of this package that they import, directly or not.
+
+    A module is a dotted name of this package or the path of a planner's file. Comments and layout do not count: the digest is
+    taken over syntax trees.
+    """
+    todo, trees = list(modules), {}
+    while todo:
+        module = todo.pop()
+        if module in trees:
+            continue
+        file = Path(module) if module.endswith(".py") else _module_file(module)
+        if file is None:
+            raise ValueError(f"no module {module} in the package {ROOT}")
+        tree = _parsed(file.resolve())
+        trees[module] = tree
+        todo += _imports(ROOT if module.endswith(".py") else module, tree)
+    text = "\n".join(f"{name} {ast.dump(trees[name])}" for name in sorted(trees))
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def package_digest() -> str:
+    """Digest of the source text of the whole package."""
+    state = hashlib.sha256()
+    for file in sorted(PACKAGE.rglob("*.py")):
+        state.update(str(file.relative_to(PACKAGE)).encode() + b"\0" + file.read_bytes() + b"\0")
+    return state.hexdigest()[:16]
+
+
+def point_numba_cache() -> None:
+    """Give compiled kernels a cache folder that is named by the package's source.
+
+    The folder lies in `.cache` of the working tree or, where that cannot be written, of the user's home. numba reads the variable once,
+    when it is imported; so an earlier import is corrected as well.
+    """
+    tree = PACKAGE.parents[1]
+    place = tree if os.access(tree, os.W_OK) else Path.home()
+    folder = str(place / ".cache" / "kernels" / package_digest())
+    os.environ["NUMBA_CACHE_DIR"] = folder
+    if "numba" in sys.modules:
+        sys.modules["numba"].config.CACHE_DIR = folder

@@ -1,0 +1,69 @@
+"""A quantity along the path of one picked run, beside the limit that the paper claims for it."""
+
+import math
+from typing import Any, Literal
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+
+from bezierplan import curves, style
+from bezierplan.analysis.results import Results, path_of
+from bezierplan.figures.paths import picked, run_note
+
+_SAMPLES = 1001
+
+# A peak higher than so many limits would press the curve onto the axis; then the scale ends at some limits and an arrow stands for the peak.
+_HIGHEST_PEAK = 10
+_CUT_SCALE = 4
+
+
+def data(
+    results: Results, *, pick: dict[str, Any], quantity: Literal["curvature"], limit: float | None = None
+) -> pd.DataFrame:
+    """One row a sample of a path, uniform in its parameter; columns: those of `paths.picked`, quantity, limit, t (0 to 1), value.
+
+    The value of curvature is its magnitude in 1/unit, empty where the curve stands still. Without a path one row with neither t nor value.
+
+    pick: the run, as in `analysis.results.pick`. limit: the published one, in 1/unit. Raises ValueError unless all runs are of one problem
+    and one method.
+    """
+    run, names = picked(results, pick)
+    names |= {"quantity": quantity, "limit": math.nan if limit is None else limit}
+    path = None if run is None else path_of(run)
+    if path is None:
+        return pd.DataFrame([names | {"t": math.nan, "value": math.nan}])
+    values, _ = curves.curvature(path, _SAMPLES)
+    frame = pd.DataFrame({"t": np.linspace(0, 1, _SAMPLES), "value": np.abs(values)}).assign(**names)
+    return frame[[*names, "t", "value"]]
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data`; returns the note below the panel's title."""
+    row = frame.iloc[0]
+    unit = scene.problems[panel["experiment"]][row["problem"]].workspace.unit
+    axes.set_xlim(0, 1)
+    axes.set_xlabel("curve parameter t (-)")
+    axes.set_ylabel(f"|{row['quantity']}| (1/{unit})")
+    axes.set_box_aspect(style.PANEL_HEIGHT)
+    axes.grid(visible=True)
+    if not math.isnan(row["limit"]):
+        axes.axhline(row["limit"], label=f"limit in the paper: {row['limit']:g} 1/{unit}", zorder=3, **style.PUBLISHED)
+    if frame["t"].isna().all():
+        return run_note(frame) + ("" if pd.isna(row["run"]) else ": no path")
+    axes.plot(frame["t"], frame["value"], label="path", **style.RUN_SHOWN)
+    return f"{run_note(frame)}\n{_mark_highest(axes, frame, unit)}"
+
+
+def _mark_highest(axes: Axes, frame: pd.DataFrame, unit: str) -> str:
+    """Mark the highest value and fit the scale to it; returns the words for it, and for the samples left out."""
+    highest = frame.loc[frame["value"].idxmax()]
+    limit = highest["limit"]
+    cut = highest["value"] > _HIGHEST_PEAK * limit
+    top = _CUT_SCALE * limit if cut else 1.12 * np.nanmax([highest["value"], limit, 1e-3])
+    axes.set_ylim(0, top)
+    mark = {"marker": "^" if cut else "o", "markersize": 5, "color": style.BLACK, "linestyle": "", "label": "highest value"}
+    axes.plot(highest["t"], min(highest["value"], top), clip_on=False, zorder=4, **mark)
+    words = f"highest {highest['value']:.3g} 1/{unit} at t = {highest['t']:.2f}"
+    still = int(frame["value"].isna().sum())
+    return words + (f"; stands still in {still} of {len(frame)} samples" if still else "")

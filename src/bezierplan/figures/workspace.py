@@ -1,0 +1,151 @@
+"""A workspace: cells with their numbers, circles or polygons; nothing planned."""
+
+from typing import Any, Literal
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.collections import PatchCollection, PolyCollection
+from matplotlib.patches import Circle, PathPatch
+from matplotlib.path import Path as Outline
+
+from bezierplan import style
+from bezierplan.problem import Workspace
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import Grid, embed as embed_cells
+from bezierplan.workspaces.polygons import Polygons
+
+_CELLS = {
+    "free": {"facecolor": style.FREE},
+    "occupied": {"facecolor": style.OCCUPIED, "label": "occupied cell"},
+    "surplus": {"facecolor": style.SURPLUS, "label": "surplus cell, occupied", **style.SURPLUS_HATCH},
+}
+
+
+def data(workspace: Workspace, *, numbers: Literal["all", "free", "none"] = "none", embed: bool = False) -> pd.DataFrame:
+    """What is drawn of a workspace, in its unit: one row a corner of its bounds, a cell, a circle, or a point of a ring.
+
+    Columns: part (corner, free, occupied, surplus, circle, ring), x, y (a cell's or circle's centre), size (a cell's side, a circle's
+    radius), obstacle and ring (polygons only), number (of the cells that show it; see `workspaces.grid`).
+
+    numbers: which cells show their number. embed: put a grid into one of a power of two of rows and columns, its surplus cells marked.
+    Raises ValueError if numbers or embedding are asked of a workspace without cells.
+    """
+    if isinstance(workspace, Grid):
+        return _cells(workspace, numbers, embed)
+    if numbers != "none" or embed:
+        raise ValueError("numbers and embed are options of workspaces of kind grid")
+    return parts(workspace)
+
+
+def parts(workspace: Workspace) -> pd.DataFrame:
+    """What is drawn of a workspace as it is, without numbers: rows as in `data`."""
+    if isinstance(workspace, Grid):
+        return _cells(workspace, "none", False)
+    if isinstance(workspace, Circles):
+        x, y = workspace.centres.T
+        circles = pd.DataFrame({"part": "circle", "x": x, "y": y, "size": workspace.radii, "obstacle": range(len(x))})
+        return pd.concat([_corners(workspace.bounds), circles], ignore_index=True)
+    return _rings(workspace)
+
+
+def _corners(bounds: tuple[float, float, float, float]) -> pd.DataFrame:
+    return pd.DataFrame({"part": "corner", "x": bounds[:2], "y": bounds[2:]})
+
+
+def _cells(grid: Grid, numbers: str, embed: bool) -> pd.DataFrame:
+    own_rows, own_columns = grid.occupied.shape
+    whole = Grid(embed_cells(grid.occupied), grid.cell, grid.unit) if embed else grid
+    row, column = (index.ravel() for index in np.indices(whole.occupied.shape))
+    surplus = (row >= own_rows) | (column >= own_columns)
+    part = np.where(surplus, "surplus", np.where(whole.occupied.ravel(), "occupied", "free"))
+    shown = {"all": part != "", "free": part == "free", "none": part == ""}[numbers]
+    cells = pd.DataFrame({"part": part, "x": (column + 0.5) * grid.cell, "y": (row + 0.5) * grid.cell, "size": grid.cell})
+    cells["number"] = pd.Series(np.arange(len(cells)), dtype="Int64").where(shown)
+    return pd.concat([_corners(whole.bounds), cells], ignore_index=True)
+
+
+def _rings(workspace: Polygons) -> pd.DataFrame:
+    rings = [
+        pd.DataFrame({"part": "ring", "x": points[:, 0], "y": points[:, 1], "obstacle": obstacle, "ring": ring})
+        for obstacle, outline in enumerate(workspace.obstacles)
+        for ring, points in enumerate(outline)
+    ]
+    return pd.concat([_corners(workspace.bounds), *rings], ignore_index=True)
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data`; returns the note below the panel's title.
+
+    Cells that show their numbers need no scale: it would take the room that makes the numbers legible.
+    """
+    unit = scene.workspaces[panel["workspace"]].unit
+    shade(axes, frame)
+    numbered = frame[frame["number"].notna()] if "number" in frame else frame[:0]
+    for x, y, number in zip(numbered["x"], numbered["y"], numbered["number"]):
+        axes.text(x, y, str(int(number)), ha="center", va="center_baseline")
+    if numbered.empty:
+        scale(axes, unit)
+        return ""
+    axes.set_xticks([])
+    axes.set_yticks([])
+    side = numbered["size"].iloc[0]
+    return f"cells of {side:g} x {side:g} {unit}"
+
+
+def scale(axes: Axes, unit: str) -> None:
+    """Name the two coordinates of a workspace."""
+    axes.set_xlabel(f"x ({unit})")
+    axes.set_ylabel(f"y ({unit})")
+
+
+def shade(axes: Axes, frame: pd.DataFrame) -> None:
+    """Draw the rows of `data` or `parts` without numbers or labels of the axes, to scale."""
+    corners = frame[frame["part"] == "corner"]
+    axes.set_xlim(corners["x"].min(), corners["x"].max())
+    axes.set_ylim(corners["y"].min(), corners["y"].max())
+    axes.set_aspect("equal")
+    for part, look in _CELLS.items():
+        _draw_cells(axes, frame[frame["part"] == part], look)
+    _draw_circles(axes, frame[frame["part"] == "circle"])
+    _draw_polygons(axes, frame[frame["part"] == "ring"])
+
+
+def _draw_cells(axes: Axes, cells: pd.DataFrame, look: dict) -> None:
+    if cells.empty:
+        return
+    square = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
+    corners = cells[["x", "y"]].to_numpy()[:, None] + cells["size"].to_numpy()[:, None, None] * square
+    axes.add_collection(PolyCollection(corners, edgecolor=style.CELL_LINE, linewidth=0.4, zorder=0.5, **look), autolim=False)
+
+
+def _draw_circles(axes: Axes, circles: pd.DataFrame) -> None:
+    shapes = [Circle((x, y), radius) for x, y, radius in zip(circles["x"], circles["y"], circles["size"])]
+    _draw_obstacles(axes, shapes)
+
+
+def _draw_polygons(axes: Axes, rings: pd.DataFrame) -> None:
+    if rings.empty:
+        return
+    outlines = [
+        Outline.make_compound_path(*(Outline(np.vstack([ring, ring[:1]]), closed=True) for ring in _oriented(obstacle)))
+        for _, obstacle in rings.groupby("obstacle")
+    ]
+    _draw_obstacles(axes, [PathPatch(outline) for outline in outlines])
+
+
+def _oriented(obstacle: pd.DataFrame) -> list[np.ndarray]:
+    """The rings (n, 2) of an obstacle, the outer one counterclockwise and its holes clockwise: only so do holes stay open."""
+    rings = []
+    for number, ring in obstacle.groupby("ring"):
+        points = ring[["x", "y"]].to_numpy()
+        x, y = points.T
+        counterclockwise = x @ np.roll(y, -1) > y @ np.roll(x, -1)
+        rings.append(points if counterclockwise == (number == 0) else points[::-1])
+    return rings
+
+
+def _draw_obstacles(axes: Axes, shapes: list) -> None:
+    if shapes:
+        look = {"facecolor": style.OCCUPIED, "edgecolor": "0.4", "linewidth": 0.5, "label": "obstacle", "zorder": 0.5}
+        axes.add_collection(PatchCollection(shapes, **look), autolim=False)

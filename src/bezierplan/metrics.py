@@ -1,0 +1,191 @@
+"""Every metric once: name, unit, meaning, and over which runs it is taken.
+
+A metric is a column of the runs table, or is computed from other columns: from the history of the objective, or from the path. This module
+is also read where only the names matter, so it imports pandas, and what draws curves, no earlier than a value is asked for.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from bezierplan.workspaces.grid import ON_LINE, Grid, embed
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from bezierplan.problem import Path, Problem
+
+# Values of a curve's parameter at which curvature is taken: 100 steps on each of the six quadratic pieces of song2016.
+CURVATURE_SAMPLES = 601
+# A finer test than any planner's own.
+FINE_SAMPLES = 4001
+
+
+class Metric(NamedTuple):
+    """unit: `u` stands for the workspace's unit of length, `-` for a number without unit. meaning: one phrase.
+
+    feasible_only: taken over the runs whose path the certified checker accepts, otherwise over all runs.
+    compute: (runs, problems) -> one number a run (n,), where runs is a table of at least one run; None for a column of the runs table.
+    """
+
+    unit: str
+    meaning: str
+    feasible_only: bool
+    compute: Callable[[pd.DataFrame, dict[str, Problem]], np.ndarray] | None = None
+
+
+def values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Series:
+    """A metric of each run, as floats (truth as 1 and 0) with the runs' index.
+
+    Not a number where the run has no such value, and where the metric is for feasible runs only and the run is not feasible. A metric that
+    compares runs with each other compares those given. Raises KeyError for an unknown metric, and where the runs table lacks a column.
+    """
+    import pandas as pd
+
+    metric = METRICS[name]
+    counted = runs[runs["feasible"].astype(bool)] if metric.feasible_only else runs
+    if counted.empty:
+        numbers = pd.Series(dtype=float)
+    elif metric.compute is None:
+        numbers = counted[name].astype(float)
+    else:
+        numbers = pd.Series(np.asarray(metric.compute(counted, problems), dtype=float), index=counted.index)
+    return numbers.reindex(runs.index)
+
+
+def unit(name: str, workspace_unit: str) -> str:
+    """The unit of a metric in a workspace with the given unit of length."""
+    return re.sub(r"\bu\b", workspace_unit, METRICS[name].unit)
+
+
+def _held_history(runs: pd.DataFrame) -> np.ndarray:
+    """Best objective so far by generation: (runs, most generations + 1). Runs that stopped early hold their last value."""
+    lengths = runs["history"].map(len).to_numpy()
+    starts = np.cumsum(lengths) - lengths
+    columns = np.minimum(np.arange(lengths.max()), lengths[:, None] - 1)
+    return np.concatenate(runs["history"].to_list())[starts[:, None] + columns]
+
+
+def _first_generation_within(share: float, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """First generation (n,) whose best objective so far is at most 1 + share times the final one."""
+    held = _held_history(runs)
+    return (held <= held[:, -1:] * (1 + share)).argmax(axis=1)
+
+
+def _improvement_by(generation: int, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Share (n,) of the improvement from generation 0 to the last one that is made by a generation."""
+    held = _held_history(runs)
+    total = held[:, 0] - held[:, -1]
+    made = held[:, 0] - held[:, min(generation, held.shape[1] - 1)]
+    return np.divide(made, total, out=np.full(len(held), np.nan), where=total > 0)
+
+
+def _gap(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    return runs["length"] / runs["bound"] - 1
+
+
+def _gap_best(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    best = runs.groupby(["experiment", "condition", "method"])["length"].transform("min")
+    return runs["length"] / best - 1
+
+
+def _paths(runs: pd.DataFrame) -> Iterator[Path | None]:
+    """The path of each run, None where it has none."""
+    from bezierplan.problem import Path
+
+    for curve, points in zip(runs["path_curve"], runs["path_points"]):
+        yield Path(curve, np.reshape(points, (-1, 2))) if curve else None
+
+
+def _of_path(measure: Callable[[Path], float], runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
+    """A number of each run's path, not a number where the run has none."""
+    return [np.nan if path is None else measure(path) for path in _paths(runs)]
+
+
+def _of_path_on_grid(measure: Callable[[Path, Grid], float], runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
+    """A number of each run's path and the grid that it lies in, not a number where the run has no path."""
+    return [
+        np.nan if path is None else measure(path, problems[problem].workspace) for path, problem in zip(_paths(runs), runs["problem"])
+    ]
+
+
+def _max_curvature(path: Path) -> float:
+    from bezierplan import curves
+
+    kappa, _ = curves.curvature(path, CURVATURE_SAMPLES)
+    return float(np.nan_to_num(np.abs(kappa)).max())
+
+
+def _zero_speed_points(path: Path) -> int:
+    from bezierplan import curves
+
+    kappa, _ = curves.curvature(path, CURVATURE_SAMPLES)
+    return int(np.isnan(kappa).sum())
+
+
+def _curvature_jump(path: Path) -> float:
+    from bezierplan import curves
+
+    return curves.curvature_jump(path)
+
+
+def _distinct_points(path: Path) -> int:
+    return len(set(map(tuple, path.points.tolist())))
+
+
+def _in_occupied_cells(points: np.ndarray, grid: Grid) -> int:
+    """How many of the points (n, 2), in units, lie in occupied cells; a point on a grid line belongs to the cell above or to the right.
+
+    song2016's planner may use surplus cells beside a grid that is not a power of two wide (`grid.embed`); they count as occupied.
+    """
+    occupied = embed(grid.occupied)
+    columns, rows = np.floor(points / grid.cell + ON_LINE).astype(int).T
+    return int(occupied[np.minimum(rows, occupied.shape[0] - 1), np.minimum(columns, occupied.shape[1] - 1)].sum())
+
+
+def _occupied_points(path: Path, grid: Grid) -> int:
+    return _in_occupied_cells(path.points, grid)
+
+
+def _fine_bad(path: Path, grid: Grid) -> int:
+    from bezierplan import curves
+
+    return _in_occupied_cells(curves.sample_matrix(path.curve, len(path.points), FINE_SAMPLES) @ path.points, grid)
+
+
+METRICS: dict[str, Metric] = {
+    "objective": Metric("u", "the planner's own final value, in its own rule", False),
+    "length": Metric("u", "exact arc length", True),
+    "claimed_feasible": Metric("-", "the planner's own test of the path", False),
+    "feasible": Metric("-", "the certified checker's test of the path", False),
+    "collision_depth": Metric("u", "depth of the first certified collision", False),
+    "clearance": Metric("u", "least distance to the obstacles", False),
+    "evaluations": Metric("-", "paths whose objective the planner asked for", False),
+    "generations": Metric("-", "generations really done", False),
+    "gap": Metric("-", "length / exact shortest length of the problem - 1", True, _gap),
+    "gap_best": Metric("-", "length / length of the best feasible run of the same method and condition - 1", True, _gap_best),
+    "generation_improved": Metric("generation", "last generation that improved the objective", False, partial(_first_generation_within, 0.0)),
+    "generation_1pct": Metric(
+        "generation", "first generation within 1 % of the run's final objective", False, partial(_first_generation_within, 0.01)
+    ),
+    "generation_5pct": Metric(
+        "generation", "first generation within 5 % of the run's final objective", False, partial(_first_generation_within, 0.05)
+    ),
+    "improvement_30": Metric("-", "share of the improvement of the objective made by generation 30", False, partial(_improvement_by, 30)),
+    "max_curvature": Metric(
+        "1/u", f"largest absolute curvature over {CURVATURE_SAMPLES} samples, corners between pieces left out", True, partial(_of_path, _max_curvature)
+    ),
+    "curvature_jump": Metric("1/u", "largest jump of curvature over the joints, infinite at a corner", True, partial(_of_path, _curvature_jump)),
+    "zero_speed_points": Metric(
+        "-", f"samples of {CURVATURE_SAMPLES} where the curve stands still and curvature is not defined", True, partial(_of_path, _zero_speed_points)
+    ),
+    "distinct_points": Metric("-", "control points that differ from each other", False, partial(_of_path, _distinct_points)),
+    "occupied_points": Metric("-", "control points in occupied cells of a grid", True, partial(_of_path_on_grid, _occupied_points)),
+    "bad_samples": Metric("-", "samples of the path that the planner punished", False),
+    "fine_bad": Metric("-", f"samples of {FINE_SAMPLES} in occupied cells of a grid", False, partial(_of_path_on_grid, _fine_bad)),
+}

@@ -1,0 +1,272 @@
+"""Genetic algorithm over the cells of a grid, each control point a binary cell number (song2016, Section III).
+
+A chromosome is the sequence of the free control points between start and target. Every control point is the centre of a cell, free or
+occupied; only the samples of the curve are tested. Cells are numbered so that every bit string is a cell (`grid.embed`), so no operator
+can leave the workspace. Lengths in the kernels are in cells.
+
+The objective is a sum over stretches of the curve: runs of samples that depend on the same few control points (three of eight for
+quadratic pieces). A stretch that a child inherits whole from a parent keeps its parent's length, which leaves every result as it is.
+"""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from numba import njit
+
+from bezierplan import curves
+from bezierplan.problem import Path, Plan, Problem, Range
+from bezierplan.search.genetic import complement_bit, roulette, swap_tails
+from bezierplan.workspaces.grid import ON_LINE, embed
+
+workspaces = ("grid",)
+
+_MUTATIONS = ("one_bit", "each_gene", "each_bit")
+_ONE_BIT, _EACH_GENE, _EACH_BIT = range(3)
+
+
+def check(settings: dict) -> None:
+    """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
+    least = curves.least_points(settings["curve"]) - 2
+    if settings["genes"] < least:
+        raise ValueError(f"genes: {settings['genes']}; a curve of kind {settings['curve']} needs at least {least}")
+    if settings["population"] % 2:
+        raise ValueError(f"population: {settings['population']}; parents are crossed in pairs, so an even number is needed")
+    if settings["spacing"] == "arc_length" and settings["curve"] != "polyline":
+        raise ValueError("spacing: arc_length; only a polyline has it, other curves need parameter")
+    if settings["cut"] == "gene" and settings["genes"] == 1:
+        raise ValueError("cut: gene; a single gene can only be cut at a bit")
+    pieces = len(curves.piece_matrix(settings["curve"], settings["genes"] + 2))
+    if settings["samples"] < pieces + 1:
+        raise ValueError(f"samples: {settings['samples']}; the {pieces} pieces of this curve need at least {pieces + 1}")
+
+
+def plan(
+    problem: Problem,
+    rng: np.random.Generator,
+    *,
+    curve: Literal["polyline", "piecewise_quadratic", "piecewise_cubic", "bezier"],
+    genes: Annotated[int, Range(0, 60)],
+    samples: Annotated[int, Range(2)],
+    spacing: Literal["parameter", "arc_length"],
+    population: Annotated[int, Range(2)],
+    generations: Annotated[int, Range(0)],
+    crossover_probability: Annotated[float, Range(0, 1)],
+    cut: Literal["bit", "gene"],
+    mutation_probability: Annotated[float, Range(0, 1)],
+    mutation: Literal["one_bit", "each_gene", "each_bit"],
+    elitism: Annotated[int, Range(0, 1)],
+    penalty: Annotated[float, Range(0)],
+    penalty_for: Literal["each_sample", "path"],
+    occupied_point_penalty: Annotated[float, Range(0)],
+) -> Plan:
+    """Shortest penalised curve through `genes` free control points (song2016, Sections III and IV).
+
+    curve: its kind, with genes + 2 control points. samples: points of the curve that are tested and measured, both ends included;
+    spacing: uniform in the parameter, or (polylines) along the path. crossover_probability: of a pair of parents; cut: the single point
+    lies before any bit, or between genes. mutation_probability: of a chromosome, whose one_bit is complemented; of each_gene, likewise;
+    or of each_bit. elitism: how many of the best so far replace a chromosome. penalty: in units of length, for each_sample in an occupied
+    cell, or once for a path that has any. occupied_point_penalty: in units of length, for each control point in an occupied cell.
+
+    The planner's own test: no sample in an occupied cell. Extra column: bad_samples, the number of samples that are.
+    """
+    grid = problem.workspace
+    occupied = embed(grid.occupied)
+    ends = [np.ravel_multi_index(grid.cell_of(*point), occupied.shape) for point in (problem.start, problem.target)]
+    starts, moves = rng.spawn(2)
+    if genes == 0 or problem.start == problem.target:
+        # Nothing to search: one chromosome, the straight line or the point.
+        population = 1
+        generations = 0
+        cells = np.full((1, genes + 2), ends[0])
+    else:
+        cells = np.empty((population, genes + 2), dtype=np.int64)
+        cells[:, 1:-1] = starts.integers(0, occupied.size, size=(population, genes))
+    cells[:, 0], cells[:, -1] = ends
+
+    basis = curves.sample_matrix(curve, genes + 2, samples)
+    best, best_bad, history = _search(
+        moves,
+        cells,
+        occupied,
+        np.ascontiguousarray(basis.T),
+        np.array([[0, genes + 1, 0, samples - 1]]) if spacing == "arc_length" else stretches(basis),
+        spacing == "arc_length",
+        generations,
+        crossover_probability,
+        cut == "gene",
+        mutation_probability,
+        _MUTATIONS.index(mutation),
+        elitism,
+        penalty / grid.cell,
+        penalty_for == "each_sample",
+        occupied_point_penalty / grid.cell,
+    )
+    rows, columns = np.divmod(best, occupied.shape[1])
+    return Plan(
+        path=Path(curve, (np.column_stack([columns, rows]) + 0.5) * grid.cell),
+        objective=history[-1] * grid.cell,
+        claimed_feasible=best_bad == 0,
+        evaluations=population * (generations + 1),
+        history=history * grid.cell,
+        stop="generations",
+        extra={"bad_samples": int(best_bad)},
+    )
+
+
+def stretches(basis: np.ndarray) -> np.ndarray:
+    """Runs of chords between samples whose two ends depend on the same control points.
+
+    basis: (samples, control points), the curve's linear map. Returns (stretches, 4): first and last control point, first and last sample.
+    """
+    first = (basis != 0).argmax(axis=1)
+    last = basis.shape[1] - 1 - (basis != 0)[:, ::-1].argmax(axis=1)
+    support = np.column_stack([np.minimum(first[:-1], first[1:]), np.maximum(last[:-1], last[1:])])
+    begins = np.flatnonzero(np.any(support[1:] != support[:-1], axis=1)) + 1
+    begins = np.concatenate([[0], begins, [len(support)]])
+    return np.column_stack([support[begins[:-1]], begins[:-1], begins[1:]])
+
+
+@njit(cache=True)
+def _search(
+    rng,
+    cells,
+    occupied,
+    basis,
+    stretches,
+    by_arc_length,
+    generations,
+    crossover_probability,
+    cut_between_genes,
+    mutation_probability,
+    mutation,
+    elitism,
+    penalty,
+    penalty_for_each,
+    occupied_point_penalty,
+):
+    """Cells (control points,) of the best chromosome, its samples in occupied cells, and the best objective so far (generations + 1,)."""
+    population, points = cells.shape
+    genes = points - 2
+    bits = int(np.log2(occupied.size) + 0.5)
+    lengths, bad = np.empty((population, len(stretches))), np.empty((population, len(stretches)), dtype=np.int64)
+    parent_lengths, parent_bad = np.empty_like(lengths), np.empty_like(bad)
+    parents, drawn = np.full_like(cells, -1), np.zeros(population, dtype=np.int64)  # the first generation inherits nothing
+    objective = np.empty(population)
+    best, best_objective, best_bad = cells[0].copy(), np.inf, 0
+    history = np.empty(generations + 1)
+    x, y = np.empty(basis.shape[1]), np.empty(basis.shape[1])
+
+    for generation in range(generations + 1):
+        for i in range(population):
+            pair = i - i % 2
+            for k in range(len(stretches)):
+                first, last = stretches[k, 0], stretches[k, 1]
+                if _same(cells[i], parents[drawn[pair]], first, last):
+                    lengths[i, k], bad[i, k] = parent_lengths[drawn[pair], k], parent_bad[drawn[pair], k]
+                elif _same(cells[i], parents[drawn[pair + 1]], first, last):
+                    lengths[i, k], bad[i, k] = parent_lengths[drawn[pair + 1], k], parent_bad[drawn[pair + 1], k]
+                elif by_arc_length:
+                    lengths[i, k], bad[i, k] = _measure_by_arc_length(cells[i], occupied, len(x))
+                else:
+                    lengths[i, k], bad[i, k] = _measure(cells[i], occupied, basis, stretches[k], x, y)
+            count = bad[i].sum()
+            objective[i] = lengths[i].sum() + penalty * (count if penalty_for_each else min(count, 1))
+            if occupied_point_penalty > 0:
+                for cell in cells[i]:
+                    objective[i] += occupied_point_penalty * occupied.flat[cell]
+            if objective[i] < best_objective:
+                best[:], best_objective, best_bad = cells[i], objective[i], count
+        history[generation] = best_objective
+        if generation == generations:
+            break
+
+        parents, cells = cells, parents
+        parent_lengths, lengths = lengths, parent_lengths
+        parent_bad, bad = bad, parent_bad
+        drawn = roulette(rng, 1.0 / objective, population)
+        for i in range(population):
+            cells[i] = parents[drawn[i]]
+        for i in range(0, population, 2):
+            if rng.random() < crossover_probability:
+                cut = bits * rng.integers(1, genes) if cut_between_genes else rng.integers(1, bits * genes)
+                swap_tails(cells[i, 1:-1], cells[i + 1, 1:-1], cut, bits)
+        for i in range(population):
+            _mutate(rng, cells[i, 1:-1], bits, mutation_probability, mutation)
+        if elitism:
+            cells[0] = best
+    return best, best_bad, history
+
+
+@njit(cache=True)
+def _same(cells, others, first, last):
+    """Whether two chromosomes agree in the control points first .. last."""
+    for p in range(first, last + 1):
+        if cells[p] != others[p]:
+            return False
+    return True
+
+
+@njit(cache=True)
+def _mutate(rng, genes, bits, probability, mutation):
+    """Complement random bits of a chromosome in place (song2016, Section III-E reads as `one_bit`)."""
+    if mutation == _ONE_BIT:
+        if rng.random() < probability:
+            complement_bit(genes, rng.integers(0, bits * len(genes)), bits)
+    elif mutation == _EACH_GENE:
+        for gene in range(len(genes)):
+            if rng.random() < probability:
+                complement_bit(genes, gene * bits + rng.integers(0, bits), bits)
+    else:
+        for position in range(bits * len(genes)):
+            if rng.random() < probability:
+                complement_bit(genes, position, bits)
+
+
+@njit(cache=True)
+def _measure(cells, occupied, basis, stretch, x, y):
+    """Length in cells of one stretch of a curve and the number of its samples in occupied cells, its first sample not counted.
+
+    basis: (control points, samples). x, y: (samples,) scratch. Start and target lie in free cells, so no sample goes uncounted.
+    """
+    first_point, last_point, first, last = stretch
+    columns = occupied.shape[1]
+    samples = last - first + 1
+    x[:samples] = 0.0
+    y[:samples] = 0.0
+    for p in range(first_point, last_point + 1):
+        weights = basis[p, first : last + 1]
+        column, row = cells[p] % columns + 0.5, cells[p] // columns + 0.5
+        for s in range(samples):
+            x[s] += weights[s] * column
+            y[s] += weights[s] * row
+    bad = 0
+    for s in range(1, samples):
+        bad += occupied[int(y[s] + ON_LINE), int(x[s] + ON_LINE)]
+    # Roots and their sum in two loops: the first one can then use vector instructions, and the order of the sum stays as written.
+    for s in range(samples - 1):
+        x[s] = np.sqrt((x[s + 1] - x[s]) ** 2 + (y[s + 1] - y[s]) ** 2)
+    length = 0.0
+    for s in range(samples - 1):
+        length += x[s]
+    return length, bad
+
+
+@njit(cache=True)
+def _measure_by_arc_length(cells, occupied, samples):
+    """Length in cells of a polyline through cell centres and the number of its occupied samples, which are equally spaced along it."""
+    columns = occupied.shape[1]
+    x, y = cells % columns + 0.5, cells // columns + 0.5
+    edges = np.sqrt(np.diff(x) ** 2 + np.diff(y) ** 2)
+    length = edges.sum()
+    bad = 0
+    edge, passed = 0, 0.0
+    for s in range(1, samples):
+        along = length * s / (samples - 1)
+        while edge < len(edges) - 1 and along > passed + edges[edge]:
+            passed += edges[edge]
+            edge += 1
+        share = min((along - passed) / edges[edge], 1.0) if edges[edge] > 0 else 1.0
+        row = y[edge] + share * (y[edge + 1] - y[edge])
+        column = x[edge] + share * (x[edge + 1] - x[edge])
+        bad += occupied[int(row + ON_LINE), int(column + ON_LINE)]
+    return length, bad

@@ -1,0 +1,116 @@
+"""Problems, paths, plans, and the interface of a planner.
+
+A planner is a module with a function
+
+    plan(problem, rng, *, <settings>) -> Plan
+
+whose keyword-only arguments are its settings, all without default values: annotated with `bool`, `int`, `float`, `Literal[...]`, or
+`Annotated[int, Range(...)]`. It may also have `workspaces`, the kinds of workspace that it serves; `exact = True`, if its own test of
+feasibility is meant to agree with the certified one; and `check(settings)`, which raises ValueError for settings that do not fit together.
+"""
+
+import importlib
+import importlib.util
+import inspect
+import math
+import typing
+from pathlib import Path as File
+from types import ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.polygons import Polygons
+
+Workspace = Grid | Circles | Polygons
+
+
+class Problem(NamedTuple):
+    """A workspace with a start and a target, both (x, y) in the workspace's unit."""
+
+    name: str
+    workspace: Workspace
+    start: tuple[float, float]
+    target: tuple[float, float]
+
+
+class Path(NamedTuple):
+    """A curve kind of `curves.CURVES` and its control points (n, 2), in the workspace's unit."""
+
+    curve: str
+    points: np.ndarray
+
+
+class Plan(NamedTuple):
+    """What a planner answers.
+
+    path: None if it found nothing to show. objective: its own final value, in its own rule. claimed_feasible: its own test of the path.
+    evaluations: paths whose objective it asked for. history: its best objective after generation 0, 1, ..., (generations + 1,).
+    stop: why it ended. extra: further columns of the runs table, by name.
+    """
+
+    path: Path | None
+    objective: float
+    claimed_feasible: bool
+    evaluations: int
+    history: np.ndarray
+    stop: str
+    extra: dict[str, float]
+
+
+class Range(NamedTuple):
+    """Limits of a setting's value, both included."""
+
+    low: float = -math.inf
+    high: float = math.inf
+
+    def __str__(self) -> str:
+        if math.isinf(self.high):
+            return f"at least {self.low:g}"
+        return f"from {self.low:g} to {self.high:g}"
+
+
+def planner_module(planner: str) -> ModuleType:
+    """The module of a planner: `name` is planners/name.py of this package, `folder/name.py` a file of the reader's own.
+
+    Raises ModuleNotFoundError or FileNotFoundError if there is none.
+    """
+    if not planner.endswith(".py"):
+        return importlib.import_module(f"bezierplan.planners.{planner}")
+    spec = importlib.util.spec_from_file_location(File(planner).stem, planner)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def known_planners() -> list[str]:
+    """Names of the planners of this package."""
+    return sorted(file.stem for file in (File(__file__).parent / "planners").glob("*.py") if file.stem != "__init__")
+
+
+def planner_settings(module: ModuleType) -> dict[str, Any]:
+    """Settings of a planner: name -> annotation, in the order of its signature."""
+    hints = typing.get_type_hints(module.plan, include_extras=True)
+    parameters = inspect.signature(module.plan).parameters.values()
+    return {p.name: hints[p.name] for p in parameters if p.kind is inspect.Parameter.KEYWORD_ONLY}
+
+
+def setting_fault(annotation: Any, value: Any) -> str | None:
+    """What would be right instead of a setting's value, or None if the value is right."""
+    limits = Range()
+    if type(None) in typing.get_args(annotation):
+        annotation = next(part for part in typing.get_args(annotation) if part is not type(None))
+    if typing.get_origin(annotation) is typing.Annotated:
+        annotation, limits = typing.get_args(annotation)
+    if typing.get_origin(annotation) is typing.Literal:
+        choices = typing.get_args(annotation)
+        return None if value in choices else "one of " + ", ".join(map(str, choices))
+    number = {bool: "true or false", int: "a whole number", float: "a number"}[annotation]
+    accepted = (int, float) if annotation is float else annotation
+    if not isinstance(value, accepted) or (isinstance(value, bool) and annotation is not bool):
+        return number
+    if annotation is not bool and not limits.low <= value <= limits.high:
+        return f"{number} {limits}"
+    return None

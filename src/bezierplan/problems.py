@@ -1,0 +1,104 @@
+"""The problems of an experiment: made from their descriptions, and kept in a file with one row a problem.
+
+Columns of a problem file: problem, workspace (its name), start_x, start_y, target_x, target_y (units), drawn (the workspace itself, as
+JSON: `workspaces.files.to_json`). Columns of a file of bounds: problem, straight_line, bound (units; infinite without a free path),
+bound_path (the shortest path, flat as x0, y0, x1, y1, ...).
+"""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pyarrow as pa
+import pyarrow.parquet as parquet
+
+from bezierplan.exact import checker
+from bezierplan.exact.region import region
+from bezierplan.problem import Problem, Workspace
+from bezierplan.workspaces import files
+from bezierplan.workspaces.grid import Grid
+
+
+def build(name: str, description: dict, workspace: Workspace) -> Problem:
+    """A problem from its description: start and target, (x, y) in units, or start_cell and target_cell, numbers of a grid's cells.
+
+    Raises ValueError, naming key and value, unless start and target are free places of the workspace.
+    """
+    return Problem(name, workspace, _end("start", description, workspace), _end("target", description, workspace))
+
+
+def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, float]:
+    key = end if end in description else f"{end}_cell"
+    value = description[key]
+    if key == end:
+        point = (float(value[0]), float(value[1]))
+    elif isinstance(workspace, Grid):
+        try:
+            point = workspace.centre(value)
+        except ValueError as error:
+            raise ValueError(f"{key}: {error}") from None
+    else:
+        raise ValueError(f"{key}: {value}: only a grid has cell numbers; expected {end}: [x, y]")
+    x_low, x_high, y_low, y_high = workspace.bounds
+    if not (x_low <= point[0] <= x_high and y_low <= point[1] <= y_high):
+        raise ValueError(f"{key}: {value}: outside the workspace; expected x from {x_low:g} to {x_high:g} and y from {y_low:g} to {y_high:g}")
+    if not checker.check(np.array([[point, point]]), region(workspace)).feasible:
+        raise ValueError(f"{key}: {value}: in an obstacle; expected a free place of the workspace")
+    return point
+
+
+def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, str]]:
+    """Problems and the names of their workspaces, both by problem, from their descriptions (`study.problems_job`).
+
+    Map files are sought in a folder. Raises ValueError for a fault in any of them.
+    """
+    workspaces = {name: files.load(description, folder) for name, description in job["workspaces"].items()}
+    homes = {name: description["workspace"] for name, description in job["problems"].items()}
+    return {name: build(name, job["problems"][name], workspaces[home]) for name, home in homes.items()}, homes
+
+
+def write(problems: dict[str, Problem], workspaces: dict[str, str], file: str) -> None:
+    """Write problems, by name, with the names of their workspaces."""
+    rows = [
+        {
+            "problem": name,
+            "workspace": workspaces[name],
+            "start_x": problem.start[0],
+            "start_y": problem.start[1],
+            "target_x": problem.target[0],
+            "target_y": problem.target[1],
+            "drawn": files.to_json(problem.workspace),
+        }
+        for name, problem in problems.items()
+    ]
+    parquet.write_table(pa.Table.from_pylist(rows), file)
+
+
+def read(file: str) -> dict[str, Problem]:
+    """The problems of a file, by name, in its order. Problems in the same workspace share it."""
+    table = parquet.read_table(file).to_pylist()
+    drawn = {text: files.from_json(text) for text in {row["drawn"] for row in table}}
+    return {
+        row["problem"]: Problem(
+            row["problem"], drawn[row["drawn"]], (row["start_x"], row["start_y"]), (row["target_x"], row["target_y"])
+        )
+        for row in table
+    }
+
+
+def write_bounds(problems: dict[str, Problem], file: str) -> None:
+    """Write the straight line and the exact shortest path of each problem."""
+    from bezierplan.exact import bounds
+
+    rows = []
+    for name, problem in problems.items():
+        bound = bounds.shortest_path(problem)
+        rows.append(
+            {
+                "problem": name,
+                "straight_line": math.dist(problem.start, problem.target),
+                "bound": bound.length,
+                "bound_path": bound.points.ravel().tolist(),
+            }
+        )
+    parquet.write_table(pa.Table.from_pylist(rows), file)

@@ -1,0 +1,28 @@
+"""Digests of run tables: what it means that two of them have the same content."""
+
+import hashlib
+import json
+from pathlib import Path
+
+import pyarrow.parquet as parquet
+
+
+def run_tables(folder: Path) -> dict[str, list[Path]]:
+    """The chunk files of each run table below a folder, by `study/experiment/method`. Raises FileNotFoundError if there is none."""
+    tables: dict[str, list[Path]] = {}
+    for file in sorted(folder.rglob("runs/*/*/*.parquet")):
+        if not file.name.endswith(".times.parquet"):
+            study, _, experiment, method, _ = file.parts[-5:]
+            tables.setdefault(f"{study}/{experiment}/{method}", []).append(file)
+    if not tables:
+        raise FileNotFoundError(f"{folder}: no runs here; expected a folder of results, such as results/full")
+    return tables
+
+
+def table_digest(files: list[Path]) -> str:
+    """A hash over the rows of chunk files, sorted by id, each row once. Numbers count with all their digits, columns by name.
+
+    Neither the order of the files nor how the repeats are cut into chunks matters.
+    """
+    rows = {json.dumps(row, sort_keys=True) for file in files for row in parquet.read_table(file).to_pylist()}
+    return hashlib.sha256("\n".join(sorted(rows)).encode()).hexdigest()[:16]

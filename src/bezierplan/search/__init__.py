@@ -1,0 +1,1 @@
+"""Parts of search algorithms: genetic operators, swarm steps, chaotic maps. Nothing here knows of paths."""

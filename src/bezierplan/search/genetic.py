@@ -1,0 +1,36 @@
+"""Genetic operators on chromosomes of whole-number genes, each gene a number of `bits` bits, most significant bit first.
+
+A chromosome (genes,) is one bit string in the order of its genes. Functions that change a chromosome say so; no function keeps state.
+"""
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True)
+def roulette(rng: np.random.Generator, fitness: np.ndarray, draws: int) -> np.ndarray:
+    """Indices (draws,) of parents, drawn with replacement in proportion to fitness (n,), all above 0 (song2016, eq. 10)."""
+    wheel = np.cumsum(fitness)
+    parents = np.empty(draws, dtype=np.int64)
+    for draw in range(draws):
+        parents[draw] = np.searchsorted(wheel, rng.random() * wheel[-1], side="right")
+    # A draw next to 1 can round up to the whole wheel.
+    return np.minimum(parents, len(fitness) - 1)
+
+
+@njit(cache=True)
+def swap_tails(one: np.ndarray, other: np.ndarray, cut: int, bits: int) -> None:
+    """Exchange, in place, the bits behind the first `cut` bits of two chromosomes (song2016, Section III-E: single-point crossover)."""
+    gene = cut // bits
+    behind = (1 << (bits - cut % bits)) - 1
+    difference = (one[gene] ^ other[gene]) & behind
+    one[gene] ^= difference
+    other[gene] ^= difference
+    for later in range(gene + 1, len(one)):
+        one[later], other[later] = other[later], one[later]
+
+
+@njit(cache=True)
+def complement_bit(chromosome: np.ndarray, position: int, bits: int) -> None:
+    """Complement, in place, one bit of a chromosome, counted from its beginning (song2016, Section III-E: mutation)."""
+    chromosome[position // bits] ^= 1 << (bits - 1 - position % bits)

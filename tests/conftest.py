@@ -1,0 +1,23 @@
+"""What holds for every test: the tree's own source, one thread a process, and the same examples every time."""
+
+import os
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+
+# Before numpy and numba are imported, which read these once. Processes that tests start inherit them.
+for library in ("OMP", "OPENBLAS", "MKL", "NUMBA"):
+    os.environ[f"{library}_NUM_THREADS"] = "1"
+
+# A copy of the tree tests its own source, whatever the environment's path file says; so do the processes that tests start.
+SOURCE = str(ROOT / "src")
+sys.path.insert(0, SOURCE)
+os.environ["PYTHONPATH"] = os.pathsep.join([SOURCE, *filter(None, [os.environ.get("PYTHONPATH")])])
+
+from hypothesis import configuration, settings  # noqa: E402
+
+# No deadline: the first call of a compiled kernel takes longer than the usual 200 ms. Derandomized: a failure shows itself to everybody.
+settings.register_profile("bezierplan", deadline=None, derandomize=True, database=None)
+settings.load_profile("bezierplan")
+configuration.set_hypothesis_home_dir(ROOT / ".cache" / "hypothesis")

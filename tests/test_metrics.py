@@ -1,0 +1,133 @@
+"""Metrics: closed forms of paths and histories, and which runs count."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bezierplan import metrics
+from bezierplan.problem import Problem
+from bezierplan.workspaces.grid import from_lines
+
+# One occupied cell, x and y from 10 to 20.
+GRID = from_lines(["....", "....", ".#..", "...."], 10.0, "unit")
+PROBLEMS = {"across": Problem("across", GRID, (5.0, 5.0), (35.0, 35.0))}
+
+histories = st.lists(st.lists(st.floats(1, 1000), min_size=1, max_size=40), min_size=1, max_size=5)
+
+
+def runs(paths=(), **columns) -> pd.DataFrame:
+    """A runs table of feasible runs, with other columns as given."""
+    count = len(paths) or len(next(iter(columns.values())))
+    table = {"problem": ["across"] * count, "feasible": [True] * count, **columns}
+    if paths:
+        table["path_curve"] = [curve for curve, _ in paths]
+        table["path_points"] = [np.ravel(points).astype(float) for _, points in paths]
+    return pd.DataFrame(table)
+
+
+def value(name: str, curve: str, points: list) -> float:
+    return metrics.values(runs([(curve, points)]), name, PROBLEMS)[0]
+
+
+def history_values(name: str, *history: list[float]) -> list[float]:
+    return metrics.values(runs(history=list(history)), name, PROBLEMS).to_list()
+
+
+def test_infeasible_run_has_no_length_but_an_objective():
+    table = runs(objective=[3.0, 9.0], length=[3.0, 2.0], bound=[2.0, 2.0], feasible=[True, False])
+    assert metrics.values(table, "length", PROBLEMS).to_list() == pytest.approx([3.0, math.nan], nan_ok=True)
+    assert metrics.values(table, "gap", PROBLEMS).to_list() == pytest.approx([0.5, math.nan], nan_ok=True)
+    assert metrics.values(table, "objective", PROBLEMS).to_list() == [3.0, 9.0]
+    assert metrics.values(table, "feasible", PROBLEMS).to_list() == [1.0, 0.0]
+
+
+def test_gap_best_is_against_the_best_feasible_run_of_the_same_method_and_condition():
+    table = runs(
+        experiment=["e"] * 5,
+        condition=["a", "a", "a", "b", "a"],
+        method=["m", "m", "m", "m", "other"],
+        length=[4.0, 5.0, 1.0, 7.0, 9.0],
+        feasible=[True, True, False, True, True],
+    )
+    assert metrics.values(table, "gap_best", PROBLEMS).to_list() == pytest.approx([0.0, 0.25, math.nan, 0.0, 0.0], nan_ok=True)
+
+
+def test_generations_of_an_early_stop_are_held():
+    early, late = [200.0, 104.0, 100.0], [400.0, 300.0, 106.0, 105.0, 101.0, 100.5, 100.0]
+    assert history_values("generation_improved", early, late) == [2, 6]
+    assert history_values("generation_1pct", early, late) == [2, 4]
+    assert history_values("generation_5pct", early, late) == [1, 3]
+    assert history_values("improvement_30", early, late) == [1.0, 1.0]
+
+
+def test_improvement_by_generation_30():
+    assert history_values("improvement_30", [100.0] * 30 + [80.0] * 5 + [60.0]) == [0.5]
+    assert math.isnan(history_values("improvement_30", [7.0, 7.0])[0])
+
+
+@given(histories)
+def test_generations_agree_with_their_definition(drawn):
+    history = [np.minimum.accumulate(values) for values in drawn]
+    expected = [next(g for g, best in enumerate(values) if best <= values[-1] * 1.05) for values in history]
+    assert history_values("generation_5pct", *history) == expected
+
+
+def test_curvature_of_a_parabola():
+    # y = x^2 / 2 from x = -1 to 1: largest curvature 1, at the vertex.
+    assert value("max_curvature", "bezier", [[-1, 0.5], [0, -0.5], [1, 0.5]]) == pytest.approx(1)
+
+
+def test_curvature_jump_of_each_curve_kind():
+    points = [[5, 5], [5, 25], [25, 5], [35, 35], [5, 35]]
+    assert value("curvature_jump", "bezier", points) == 0
+    assert value("curvature_jump", "piecewise_cubic", points) < 1e-9
+    assert 1e-3 < value("curvature_jump", "piecewise_quadratic", points) < math.inf
+    assert value("curvature_jump", "polyline", points) == math.inf
+
+
+def test_standing_still_is_counted_and_never_infinite():
+    points = [[5, 5], [5, 5], [25, 5], [35, 35]]
+    assert value("zero_speed_points", "bezier", points) == 1
+    assert math.isfinite(value("max_curvature", "bezier", points))
+
+
+def test_distinct_control_points():
+    assert value("distinct_points", "bezier", [[5, 5], [15, 5], [5, 5], [35, 35], [15, 5]]) == 3
+
+
+def test_occupied_control_points():
+    # On the lower and left side of the occupied cell, inside, and on its upper and right side, which belong to the next cells.
+    assert value("occupied_points", "bezier", [[15, 10], [10, 15], [15, 15], [15, 20], [20, 15]]) == 3
+
+
+def test_fine_samples_of_a_line_through_the_occupied_cell():
+    # A third of the way from x = 5 to 35 lies between 10 and 20.
+    inside = value("fine_bad", "polyline", [[5, 15], [35, 15]])
+    assert inside == pytest.approx(metrics.FINE_SAMPLES / 3, abs=1)
+    assert value("fine_bad", "polyline", [[5, 20], [35, 20]]) == 0
+
+
+@pytest.mark.parametrize("name", ["distinct_points", "occupied_points", "fine_bad", "max_curvature"])
+def test_run_without_a_path_has_no_value(name):
+    values = metrics.values(runs([("", []), ("bezier", [[5, 5], [5, 35]])]), name, PROBLEMS)
+    assert values.isna().to_list() == [True, False]
+
+
+@pytest.mark.parametrize("name", ["length", "generation_1pct", "max_curvature", "gap_best"])
+def test_no_runs_have_no_values(name):
+    assert metrics.values(runs(history=[[1.0]]).iloc[:0], name, PROBLEMS).empty
+
+
+def test_index_of_the_runs_is_kept():
+    table = runs(history=[[2.0, 1.0], [1.0], [3.0, 2.0, 1.0]], feasible=[True, False, True]).iloc[[2, 0, 1]]
+    assert metrics.values(table, "generation_improved", PROBLEMS).to_dict() == {2: 2, 0: 1, 1: 0}
+
+
+def test_units():
+    assert metrics.unit("length", "m") == "m"
+    assert metrics.unit("max_curvature", "cell") == "1/cell"
+    assert metrics.unit("evaluations", "m") == "-"

@@ -1,0 +1,149 @@
+"""Statistics, bootstrap intervals, and the yardstick: closed forms, and how often they are right on known distributions."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bezierplan.analysis.statistics import DRAWS, LEAST_RUNS, STATISTICS, generator, interval, resampled, statistic, yardstick
+
+samples = st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=30).map(np.array)
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("mean", 4.0),
+        ("median", 3.0),
+        ("unstated", 3.0),
+        ("std", math.sqrt(50 / 4)),
+        ("quartile1", 2.0),
+        ("quartile3", 4.0),
+        ("iqr", 2.0),
+        ("range", 9.0),
+        ("min", 1.0),
+        ("max", 10.0),
+    ],
+)
+def test_worked_example(name, expected):
+    assert statistic(name, np.array([10.0, 1.0, 3.0, 4.0, 2.0])) == pytest.approx(expected)
+
+
+def test_count_and_share_of_a_boolean_metric():
+    values = np.array([1.0, 0.0, 1.0, 1.0])
+    assert statistic("count", values) == 3
+    assert statistic("share", values) == 0.75
+
+
+@pytest.mark.parametrize("name", STATISTICS)
+def test_no_values_give_no_number(name):
+    assert math.isnan(statistic(name, np.array([])))
+
+
+def test_one_value_has_no_standard_deviation():
+    assert math.isnan(statistic("std", np.array([2.0])))
+
+
+def test_median_with_infinite_values():
+    assert statistic("median", np.array([1.0, 2.0, math.inf])) == 2
+    assert statistic("median", np.array([1.0, math.inf])) == math.inf
+
+
+@given(samples)
+def test_quantiles_are_those_of_numpy(values):
+    for name, share in [("quartile1", 0.25), ("median", 0.5), ("quartile3", 0.75)]:
+        assert statistic(name, values) == pytest.approx(np.quantile(values, share), rel=1e-12, abs=1e-9)
+
+
+@pytest.mark.parametrize("name", STATISTICS)
+def test_rows_are_taken_one_by_one(name):
+    values = np.random.default_rng(0).random((4, 7))
+    assert STATISTICS[name](values) == pytest.approx([statistic(name, row) for row in values])
+
+
+def test_draws_belong_to_a_name():
+    first, again, other = (generator(name).random(3) for name in ("a", "a", "b"))
+    assert (first == again).all()
+    assert (first != other).all()
+
+
+def test_resampled_mean_has_the_standard_error():
+    values = np.random.default_rng(1).normal(size=50)
+    drawn = resampled("mean", values, 20, generator("standard error"))
+    assert drawn.shape == (DRAWS,)
+    assert drawn.std() == pytest.approx(values.std() / math.sqrt(20), rel=0.05)
+
+
+@pytest.mark.parametrize(("name", "truth"), [("mean", 0.0), ("median", 0.0)])
+def test_interval_covers_the_truth_about_95_times_in_100(name, truth):
+    rng = np.random.default_rng(2)
+    hits = 0
+    for repeat in range(150):
+        low, high = interval(name, rng.normal(size=40), generator(f"coverage {repeat}"))
+        hits += low <= truth <= high
+    assert 0.88 <= hits / 150 <= 0.99
+
+
+@pytest.mark.parametrize(("name", "count"), [("mean", 0), ("mean", 1), ("min", 10), ("max", 10), ("range", 10)])
+def test_interval_is_empty_where_it_would_say_nothing(name, count):
+    assert all(math.isnan(end) for end in interval(name, np.arange(float(count)), generator("a")))
+
+
+@given(samples, st.sampled_from(sorted(STATISTICS)))
+def test_interval_is_ordered(values, name):
+    low, high = interval(name, values, generator("ordered"))
+    assert math.isnan(low) or low <= high
+
+
+OURS = np.random.default_rng(3).normal(100, 5, size=60)
+
+
+@pytest.mark.parametrize("size", [None, 1, 10, 60])
+@pytest.mark.parametrize(("published", "quantile"), [(0.0, 0.0), (200.0, 1.0)])
+def test_value_far_outside_is_not_reproduced(size, published, quantile):
+    assert yardstick("mean", OURS, published, size, 2, generator("far")) == (quantile, False)
+
+
+@pytest.mark.parametrize("size", [None, 1, 10, 60])
+def test_value_in_the_middle_is_reproduced(size):
+    quantile, reproduced = yardstick("mean", OURS, float(np.median(OURS)), size, 2, generator("middle"))
+    assert reproduced
+    assert 0.2 < quantile < 0.8
+
+
+def test_size_of_the_papers_experiment_matters():
+    # Two standard deviations of a run are ordinary for one run, and far from the mean of sixty.
+    published = float(OURS.mean() + 1.5 * OURS.std())
+    assert yardstick("mean", OURS, published, 1, None, generator("size"))[1]
+    assert not yardstick("mean", OURS, published, 60, None, generator("size"))[1]
+
+
+def test_ties_count_for_it():
+    assert yardstick("median", np.full(20, 64.0), 64.0, None, 0, generator("ties")) == (0.5, True)
+
+
+def test_ours_are_rounded_like_the_printed_number():
+    exact = np.full(20, 29.94163)
+    assert yardstick("mean", exact, 29.9416, 20, 4, generator("rounded"))[1]
+    assert not yardstick("mean", exact, 29.9417, 20, 4, generator("rounded"))[1]
+
+
+def test_too_few_runs_are_not_judged():
+    assert yardstick("mean", OURS[: LEAST_RUNS - 1], 0.0, 10, 2, generator("few")) == (0.0, None)
+
+
+@pytest.mark.parametrize(("values", "published"), [(np.array([]), 1.0), (OURS, math.nan)])
+def test_nothing_to_judge(values, published):
+    quantile, reproduced = yardstick("mean", values, published, 10, 2, generator("nothing"))
+    assert math.isnan(quantile)
+    assert reproduced is None
+
+
+def test_yardstick_accepts_its_own_distribution():
+    # With many more runs of ours than of the paper's, about 5 % of the true numbers are refused.
+    rng = np.random.default_rng(4)
+    ours = rng.gamma(3, size=2000)
+    refused = sum(not yardstick("mean", ours, rng.gamma(3, size=10).mean(), 10, 4, generator(f"own {r}"))[1] for r in range(100))
+    assert refused <= 12

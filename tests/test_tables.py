@@ -1,0 +1,220 @@
+"""Tables as printed, and the comparison with published numbers."""
+
+import io
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from bezierplan.analysis import comparison, tables
+from bezierplan.analysis.results import Results
+from bezierplan.problem import Problem
+from bezierplan.workspaces.grid import from_lines
+
+GRID = from_lines(["..", ".."], 1.0, "m")
+PROBLEMS = {name: Problem(name, GRID, (0.5, 0.5), (1.5, 1.5)) for name in ("long", "brief")}
+
+SPEC = {
+    "where": {"problem": ["long", "brief"], "method": ["plain", "fast"]},
+    "index": ["problem"],
+    "columns": ["value", "method"],
+    "values": [
+        {"metric": "evaluations", "statistic": "median", "label": "number of evaluations", "decimals": 0},
+        {"metric": "length", "statistic": "median", "label": "length", "decimals": 2},
+    ],
+}
+LABELS = {"long": "the long one", "plain": "plain method"}
+
+PUBLISHED = """problem,method,metric,statistic,n,unit,value
+long,plain,length,unstated,,m,{plain}
+long,fast,length,unstated,,m,10.00
+long,fast,evaluations,median,20,-,1000
+"""
+
+
+def results(repeats: int = 20) -> Results:
+    """Three methods, one of them a variant of `fast`, on two problems; every fifth run is infeasible and shorter than any path."""
+    rng = np.random.default_rng(5)
+    rows = [
+        {
+            "id": f"study/experiment/{problem}/{method}/{repeat}",
+            "problem": problem,
+            "method": method,
+            "repeat": repeat,
+            "length": 1.0 if repeat % 5 == 0 else rng.normal(10 if problem == "long" else 5, 0.1),
+            "evaluations": 1000 if method == "fast" else 2000,
+            "feasible": repeat % 5 != 0,
+            "claimed_feasible": True,
+            "bound": 9.0 if problem == "long" else 4.5,
+        }
+        for problem in PROBLEMS
+        for method in ("faster", "fast", "plain")
+        for repeat in range(repeats)
+    ]
+    return Results(pd.DataFrame(rows), PROBLEMS, pd.DataFrame())
+
+
+def published(plain: float = 10.0) -> pd.DataFrame:
+    return pd.read_csv(io.StringIO(PUBLISHED.format(plain=plain)))
+
+
+def compare(ours: Results, plain: float = 10.0, spec: dict = SPEC) -> pd.DataFrame:
+    return comparison.compare(ours, spec, published(plain), {"faster": "fast"}, "study/table1")
+
+
+def row(table: pd.DataFrame, *key: str) -> pd.Series:
+    """The row of a comparison with the given problem, method, metric."""
+    found = table[(table[["problem", "method", "metric"]] == key).all(axis=1)]
+    assert len(found) == 1
+    return found.iloc[0]
+
+
+def shuffled(ours: Results) -> Results:
+    return ours._replace(runs=ours.runs.sample(frac=1, random_state=6).reset_index(drop=True))
+
+
+def test_table_in_the_order_of_the_configuration():
+    table = tables.pivot(results(), SPEC, LABELS)
+    assert table.index.to_list() == ["the long one", "brief"]
+    assert table.columns.to_list() == [
+        "number of evaluations: plain method",
+        "number of evaluations: fast",
+        "length: plain method",
+        "length: fast",
+    ]
+    assert table.iloc[:, 0].to_list() == ["2000", "2000"]
+    assert [float(text) for text in table["length: fast"]] == pytest.approx([10, 5], abs=0.2)
+
+
+def test_failed_runs_are_never_averaged():
+    ours = results()
+    feasible = ours.runs.query("feasible and problem == 'long' and method == 'plain'")["length"]
+    spec = SPEC | {"values": [{"metric": "length", "statistic": "mean", "decimals": 6}]}
+    assert tables.pivot(ours, spec, {}).loc["long", "length: plain"] == f"{feasible.mean():.6f}"
+    found = row(compare(ours), "long", "plain", "length")
+    assert (found["n_ours"], found["best"]) == (16, feasible.min())
+    assert found["value_ours"] == feasible.median()
+
+
+def test_empty_group_gives_an_empty_cell():
+    ours = results()
+    ours.runs.loc[ours.runs["method"] == "fast", "feasible"] = False
+    assert tables.pivot(ours, SPEC, {})["length: fast"].to_list() == ["", ""]
+    found = row(compare(ours), "long", "fast", "length")
+    assert found["n_ours"] == 0
+    assert found[["value_ours", "best", "low95_ours", "quantile_published", "reproduced", "gap"]].isna().all()
+    assert found["share_feasible"] == 0
+
+
+def test_no_runs_at_all():
+    ours = results()
+    ours = ours._replace(runs=ours.runs.iloc[:0])
+    assert tables.pivot(ours, SPEC, {}).empty
+    found = compare(ours)
+    assert found["value_published"].to_list() == [10.0, 1000.0, 10.0]
+    assert (found["n_ours"] == 0).all()
+
+
+def test_where_of_a_value_and_several_statistics():
+    spec = {
+        "where": {"problem": "brief"},
+        "index": ["statistic"],
+        "columns": ["method", "value"],
+        "values": [{"metric": "length", "statistic": ["min", "max"], "where": {"repeat": [1, 2]}, "decimals": 3}],
+    }
+    ours = results()
+    table = tables.pivot(ours, spec, {})
+    two = ours.runs.query("problem == 'brief' and method == 'plain' and repeat in [1, 2]")["length"]
+    assert table.index.to_list() == ["min", "max"]
+    assert table["plain: length"].to_list() == [f"{two.min():.3f}", f"{two.max():.3f}"]
+    assert table.columns.to_list() == ["fast: length", "faster: length", "plain: length"]
+
+
+def test_words_left_out_become_levels_where_needed():
+    length = {"metric": "length", "statistic": "mean"}
+    one = {"index": ["problem"], "columns": ["method"], "values": [length]}
+    assert tables.pivot(results(), one, {}).columns.to_list() == ["fast", "faster", "plain"]
+    lone = {"index": ["problem", "method"], "values": [length]}
+    assert tables.pivot(results(), lone, {}).columns.to_list() == ["length"]
+    several = {"index": ["problem", "method"], "values": [length | {"statistic": ["min", "max"]}, {"metric": "evaluations", "statistic": "mean"}]}
+    table = tables.pivot(results(), several, {})
+    assert table.columns.to_list() == ["length: min", "length: max", "evaluations: mean"]
+    assert table.index.names == ["problem", "method"]
+
+
+def test_numbers_in_the_index_are_sorted_as_numbers():
+    table = tables.pivot(results(), {"index": ["repeat"], "values": [{"metric": "evaluations", "statistic": "count"}]}, {})
+    assert table.index.to_list() == [str(repeat) for repeat in range(20)]
+
+
+def test_order_of_the_runs_never_changes_a_byte():
+    ours = results()
+    assert tables.pivot(shuffled(ours), SPEC, {}).to_csv() == tables.pivot(ours, SPEC, {}).to_csv()
+    assert compare(shuffled(ours)).to_csv() == compare(ours).to_csv()
+
+
+def test_rows_do_not_depend_on_the_others():
+    alone = compare(results(), spec=SPEC | {"where": {"problem": ["long"], "method": ["plain"]}})
+    pd.testing.assert_series_equal(
+        row(alone, "long", "plain", "length"), row(compare(results()), "long", "plain", "length"), check_names=False
+    )
+
+
+def test_columns_of_the_comparison():
+    assert compare(results()).columns.to_list() == (
+        "problem method metric statistic unit n_published value_published n_ours value_ours best mean median quartile1 quartile3 "
+        "low95_ours high95_ours quantile_published reproduced share_claimed share_feasible bound gap"
+    ).split()
+
+
+def test_rows_of_the_comparison():
+    table = compare(results())
+    # Of each problem the table's methods, then the variant; of each of these the table's values.
+    assert table["problem"].to_list() == ["long"] * 6 + ["brief"] * 6
+    assert table["method"].to_list() == ["plain", "plain", "fast", "fast", "faster", "faster"] * 2
+    assert table["metric"].to_list() == ["evaluations", "length"] * 6
+
+
+def test_published_numbers_and_those_of_variants():
+    table = compare(results())
+    assert row(table, "long", "fast", "length")["value_published"] == 10
+    assert row(table, "long", "faster", "length")["value_published"] == 10
+    assert row(table, "long", "faster", "evaluations")["n_published"] == 20
+    empty = row(table, "brief", "plain", "length")
+    assert empty[["n_published", "value_published", "quantile_published", "reproduced"]].isna().all()
+    assert empty["low95_ours"] < empty["value_ours"] < empty["high95_ours"]
+
+
+def test_statistic_is_named_as_in_the_paper():
+    table = compare(results())
+    assert set(table.loc[table["metric"] == "length", "statistic"]) == {"unstated"}
+    assert set(table.loc[table["metric"] == "evaluations", "statistic"]) == {"median"}
+
+
+@pytest.mark.parametrize(("number", "reproduced"), [(10.0, True), (10.9, False), (8.1, False)])
+def test_wrong_published_number_is_flagged(number, reproduced):
+    found = row(compare(results(), plain=number), "long", "plain", "length")
+    assert found["value_published"] == number
+    assert found["reproduced"] == reproduced
+
+
+def test_shares_bound_and_gap():
+    ours = results()
+    found = row(compare(ours), "long", "plain", "length")
+    feasible = ours.runs.query("feasible and problem == 'long' and method == 'plain'")["length"]
+    assert (found["share_claimed"], found["share_feasible"], found["bound"], found["unit"]) == (1.0, 0.8, 9.0, "m")
+    assert found["gap"] == pytest.approx(feasible.median() / 9 - 1)
+
+
+def test_published_number_without_runs_keeps_its_row():
+    found = row(compare(results(), spec=SPEC | {"where": {"method": ["fast"]}}), "long", "plain", "length")
+    assert found["value_published"] == 10
+    assert found["n_ours"] == 0
+    assert math.isnan(found["value_ours"])
+
+
+def test_too_few_runs_are_not_judged():
+    table = compare(results(repeats=3))
+    assert table["reproduced"].isna().all()
+    assert not row(table, "long", "plain", "length")[["quantile_published"]].isna().any()

@@ -1,0 +1,16 @@
+# The only expensive rule: a method on every condition of an experiment, one block of repeats.
+
+
+rule runs:
+    input:
+        problems=f"{RESULTS}/problems/{{experiment}}.parquet",
+    output:
+        runs=f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
+        times=f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.times.parquet",
+    log:
+        f"{RESULTS}/logs/runs/{{experiment}}/{{method}}/{{chunk}}.log",
+    params:
+        job=run_job,
+        code=run_code,
+    script:
+        "../scripts/runs.py"

@@ -1,0 +1,30 @@
+# Tables, laid out like the paper's, and the comparison of each with the published numbers.
+
+
+rule table:
+    input:
+        runs=artefact_runs,
+        problems=artefact_problems,
+        bounds=artefact_bounds,
+        published=table_published,
+    output:
+        table=report(
+            f"{RESULTS}/tables/{{table}}.csv",
+            category="{study}",
+            labels={"item": "{table}", "shows": "our numbers, laid out as in the paper"},
+            caption="../report/artefact.rst",
+        ),
+        comparison=report(
+            f"{RESULTS}/tables/{{table}}.comparison.csv",
+            category="{study}",
+            labels={"item": "{table}", "shows": "published numbers beside ours"},
+            caption="../report/artefact.rst",
+        ),
+    log:
+        f"{RESULTS}/logs/tables/{{table}}.log",
+    params:
+        job=table_job,
+        caption=caption,
+        code=source_digest("bezierplan.analysis.tables", "bezierplan.analysis.comparison"),
+    script:
+        "../scripts/table.py"

@@ -1,0 +1,19 @@
+"""Make a figure from the data that it draws, which are written first and read back."""
+
+from bezierplan import log
+
+with log.job(snakemake.log[0]):
+    from pathlib import Path
+
+    from bezierplan import sheet
+    from bezierplan.analysis import results
+    from bezierplan.workspaces import files
+
+    job, inputs, output = snakemake.params.job, snakemake.input, snakemake.output
+    found = results.read_all(inputs.runs, job["repeats"], inputs.problems, inputs.bounds)
+    bare = {name: files.load(description, Path(snakemake.params.folder)) for name, description in job["workspaces"].items()}
+    panels = job["spec"]["panels"]
+    sheet.write_data(sheet.data(panels, found, bare), output.data)
+    scene = sheet.Scene({name: each.problems for name, each in found.items()}, bare, job["labels"], job["unit"])
+    figure = sheet.draw(panels, sheet.read_data(output.data), scene, job["spec"]["columns"])
+    sheet.save(figure, output.svg, output.png)
