@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import comparison, tables
+from bezierplan.analysis import comparison, statistics, tables
 from bezierplan.analysis.results import Results
 from bezierplan.problem import Problem
 from bezierplan.workspaces.grid import from_lines
@@ -65,9 +65,14 @@ def compare(ours: Results, plain: float = 10.0, spec: dict = SPEC) -> pd.DataFra
 
 def row(table: pd.DataFrame, *key: str) -> pd.Series:
     """The row of a comparison with the given problem, method, metric."""
-    found = table[(table[["problem", "method", "metric"]] == key).all(axis=1)]
+    found = table[(table[["problem", "method", "metric"]] == list(key)).all(axis=1)]
     assert len(found) == 1
     return found.iloc[0]
+
+
+@pytest.fixture(autouse=True)
+def few_draws(monkeypatch):
+    monkeypatch.setattr(statistics, "DRAWS", 1000)
 
 
 def shuffled(ours: Results) -> Results:
@@ -137,10 +142,20 @@ def test_words_left_out_become_levels_where_needed():
     assert tables.pivot(results(), one, {}).columns.to_list() == ["fast", "faster", "plain"]
     lone = {"index": ["problem", "method"], "values": [length]}
     assert tables.pivot(results(), lone, {}).columns.to_list() == ["length"]
-    several = {"index": ["problem", "method"], "values": [length | {"statistic": ["min", "max"]}, {"metric": "evaluations", "statistic": "mean"}]}
+    several = {
+        "index": ["problem", "method"],
+        "values": [length | {"statistic": ["min", "max"]}, {"metric": "evaluations", "statistic": "mean"}],
+    }
     table = tables.pivot(results(), several, {})
     assert table.columns.to_list() == ["length: min", "length: max", "evaluations: mean"]
     assert table.index.names == ["problem", "method"]
+
+
+def test_decimals_of_some_values_only():
+    values = [{"metric": "gap", "statistic": "mean"}, {"metric": "evaluations", "statistic": "mean", "decimals": 1}]
+    spec = SPEC | {"values": values}
+    assert set(tables.pivot(results(), spec, {})["evaluations: fast"]) == {"1000.0"}
+    assert row(compare(results(), spec=spec), "long", "fast", "gap")["n_ours"] == 16
 
 
 def test_numbers_in_the_index_are_sorted_as_numbers():
@@ -162,10 +177,10 @@ def test_rows_do_not_depend_on_the_others():
 
 
 def test_columns_of_the_comparison():
-    assert compare(results()).columns.to_list() == (
-        "problem method metric statistic unit n_published value_published n_ours value_ours best mean median quartile1 quartile3 "
-        "low95_ours high95_ours quantile_published reproduced share_claimed share_feasible bound gap"
-    ).split()
+    assert ",".join(compare(results()).columns) == (
+        "problem,method,metric,statistic,unit,n_published,value_published,n_ours,value_ours,best,mean,median,quartile1,quartile3,"
+        "low95_ours,high95_ours,quantile_published,reproduced,share_claimed,share_feasible,bound,gap"
+    )
 
 
 def test_rows_of_the_comparison():
@@ -212,6 +227,21 @@ def test_published_number_without_runs_keeps_its_row():
     assert found["value_published"] == 10
     assert found["n_ours"] == 0
     assert math.isnan(found["value_ours"])
+
+
+def test_published_file(tmp_path):
+    file = tmp_path / "table.csv"
+    file.write_text("problem,term,metric,statistic,n,unit,value\nlong,none,length,mean,,m,3\nlong,NA,length,mean,5,m,\n")
+    table = comparison.read_published(str(file), SPEC)
+    assert table["term"].to_list() == ["none", "NA"]
+    assert table[["n", "value"]].isna().to_numpy().tolist() == [[True, False], [False, True]]
+
+
+def test_table_without_published_numbers():
+    table = comparison.compare(results(), SPEC, comparison.read_published(None, SPEC), {}, "study/extra")
+    assert len(table) == 8
+    assert table[["n_published", "value_published", "quantile_published", "reproduced"]].isna().all(axis=None)
+    assert table["value_ours"].notna().all()
 
 
 def test_too_few_runs_are_not_judged():

@@ -24,9 +24,9 @@ def main(words: list[str]) -> None:
 
 def list_studies(names: list[str] | None) -> None:
     """Print what the studies of the configuration, or those named, hold."""
-    from bezierplan import study as studies
+    from bezierplan import study_file
 
-    for key, study in studies.load(studies.read_config({"studies": names} if names else {})).items():
+    for key, study in study_file.load(study_file.read_config({"studies": names} if names else {})).items():
         print(f"{key}: {study.title}")
         for kind, artefacts in (("table", study.tables), ("figure", study.figures)):
             for name, content in artefacts.items():

@@ -65,7 +65,7 @@ def piece_matrix(curve: str, points: int) -> np.ndarray:
 
 
 def bezier_pieces(path: Path) -> np.ndarray:
-    """The path as Bezier pieces: control points (pieces, degree + 1, 2) in the path's unit, each piece beginning where the last one ends."""
+    """The path as Bezier pieces (pieces, degree + 1, 2), in its unit, each piece beginning where the last one ends."""
     return piece_matrix(path.curve, len(path.points)) @ path.points
 
 

@@ -109,9 +109,7 @@ def _of_path(measure: Callable[[Path], float], runs: pd.DataFrame, problems: dic
 
 def _of_path_on_grid(measure: Callable[[Path, Grid], float], runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
     """A number of each run's path and the grid that it lies in, not a number where the run has no path."""
-    return [
-        np.nan if path is None else measure(path, problems[problem].workspace) for path, problem in zip(_paths(runs), runs["problem"])
-    ]
+    return [np.nan if path is None else measure(path, problems[problem].workspace) for path, problem in zip(_paths(runs), runs["problem"])]
 
 
 def _max_curvature(path: Path) -> float:
@@ -169,7 +167,9 @@ METRICS: dict[str, Metric] = {
     "generations": Metric("-", "generations really done", False),
     "gap": Metric("-", "length / exact shortest length of the problem - 1", True, _gap),
     "gap_best": Metric("-", "length / length of the best feasible run of the same method and condition - 1", True, _gap_best),
-    "generation_improved": Metric("generation", "last generation that improved the objective", False, partial(_first_generation_within, 0.0)),
+    "generation_improved": Metric(
+        "generation", "last generation that improved the objective", False, partial(_first_generation_within, 0.0)
+    ),
     "generation_1pct": Metric(
         "generation", "first generation within 1 % of the run's final objective", False, partial(_first_generation_within, 0.01)
     ),
@@ -178,11 +178,19 @@ METRICS: dict[str, Metric] = {
     ),
     "improvement_30": Metric("-", "share of the improvement of the objective made by generation 30", False, partial(_improvement_by, 30)),
     "max_curvature": Metric(
-        "1/u", f"largest absolute curvature over {CURVATURE_SAMPLES} samples, corners between pieces left out", True, partial(_of_path, _max_curvature)
+        "1/u",
+        f"largest absolute curvature over {CURVATURE_SAMPLES} samples, corners between pieces left out",
+        True,
+        partial(_of_path, _max_curvature),
     ),
-    "curvature_jump": Metric("1/u", "largest jump of curvature over the joints, infinite at a corner", True, partial(_of_path, _curvature_jump)),
+    "curvature_jump": Metric(
+        "1/u", "largest jump of curvature over the joints, infinite at a corner", True, partial(_of_path, _curvature_jump)
+    ),
     "zero_speed_points": Metric(
-        "-", f"samples of {CURVATURE_SAMPLES} where the curve stands still and curvature is not defined", True, partial(_of_path, _zero_speed_points)
+        "-",
+        f"samples of {CURVATURE_SAMPLES} where the curve stands still and curvature is not defined",
+        True,
+        partial(_of_path, _zero_speed_points),
     ),
     "distinct_points": Metric("-", "control points that differ from each other", False, partial(_of_path, _distinct_points)),
     "occupied_points": Metric("-", "control points in occupied cells of a grid", True, partial(_of_path_on_grid, _occupied_points)),

@@ -20,11 +20,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.polygons import Polygons
-
-Workspace = Grid | Circles | Polygons
+from bezierplan.workspaces.files import Workspace
 
 
 class Problem(NamedTuple):

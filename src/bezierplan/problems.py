@@ -41,7 +41,9 @@ def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, floa
         raise ValueError(f"{key}: {value}: only a grid has cell numbers; expected {end}: [x, y]")
     x_low, x_high, y_low, y_high = workspace.bounds
     if not (x_low <= point[0] <= x_high and y_low <= point[1] <= y_high):
-        raise ValueError(f"{key}: {value}: outside the workspace; expected x from {x_low:g} to {x_high:g} and y from {y_low:g} to {y_high:g}")
+        raise ValueError(
+            f"{key}: {value}: outside the workspace; expected x from {x_low:g} to {x_high:g} and y from {y_low:g} to {y_high:g}"
+        )
     if not checker.check(np.array([[point, point]]), region(workspace)).feasible:
         raise ValueError(f"{key}: {value}: in an obstacle; expected a free place of the workspace")
     return point
@@ -79,9 +81,7 @@ def read(file: str) -> dict[str, Problem]:
     table = parquet.read_table(file).to_pylist()
     drawn = {text: files.from_json(text) for text in {row["drawn"] for row in table}}
     return {
-        row["problem"]: Problem(
-            row["problem"], drawn[row["drawn"]], (row["start_x"], row["start_y"]), (row["target_x"], row["target_y"])
-        )
+        row["problem"]: Problem(row["problem"], drawn[row["drawn"]], (row["start_x"], row["start_y"]), (row["target_x"], row["target_y"]))
         for row in table
     }
 

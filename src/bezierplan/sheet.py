@@ -3,8 +3,8 @@
 A kind of panel is a module of `bezierplan.figures` with two functions:
 
     data(source, *, <options>) -> DataFrame         what is drawn; the source is Results, or a Workspace where nothing is planned
-    draw(axes, frame, scene, panel) -> str          draws the rows of its panel, labels its artists for the legend, fixes the shape of its
-                                                    axes, computes no statistics; returns the note printed below the panel's title
+    draw(axes, frame, scene, panel) -> str          draws the rows of its panel, labels its artists for the legend, computes no
+                                                    statistics; returns the note printed below the panel's title
 
 The keyword-only arguments of `data` are the options that a panel may have; those without a default value it must have.
 """
@@ -19,12 +19,11 @@ from pathlib import Path as File
 from types import ModuleType
 from typing import Any, NamedTuple
 
-import matplotlib
+import matplotlib as mpl
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.legend import Legend
 
 from bezierplan import style
 from bezierplan.analysis.results import Results, select
@@ -102,7 +101,7 @@ def write_data(frame: pd.DataFrame, file: str) -> None:
 
 def read_data(file: str) -> pd.DataFrame:
     """What `write_data` wrote, every number to its last bit."""
-    return pd.read_csv(file, float_precision="round_trip")
+    return pd.read_csv(file)
 
 
 def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, columns: int) -> Figure:
@@ -112,18 +111,22 @@ def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, column
     """
     rows = math.ceil(len(panels) / columns)
     width = style.NARROW if columns == 1 else style.WIDE
-    with matplotlib.rc_context(style.SETTINGS):
-        figure = Figure(figsize=(width, 1.5 * width * rows / columns), layout="constrained")
+    with mpl.rc_context(style.SETTINGS):
+        figure = Figure(figsize=(width, width * rows / columns))
         grid = figure.subplots(rows, columns, squeeze=False)
+        notes = []
         for number, panel in enumerate(panels):
             own = frame[frame["panel"] == number]
             note = kind_module(panel["kind"]).draw(grid.flat[number], own, scene, panel)
+            notes.append(_wrapped(note, width / columns, style.SMALLEST_TEXT))
             letter = f"({string.ascii_lowercase[number]}) " if len(panels) > 1 else ""
-            _write_head(grid.flat[number], letter + _title(panel, own, scene), note, 72 * width / columns)
+            heading = _wrapped(letter + _title(panel, own, scene), width / columns, style.TITLE_TEXT)
+            grid.flat[number].set_title(heading, loc="left")
+        for first in range(0, len(panels), columns):
+            _write_notes(grid.flat[first : first + columns], notes[first : first + columns])
         for axes in grid.flat[len(panels) :]:
-            axes.set_axis_off()
-        legend = _draw_legend(figure)
-        _fit_height(figure, grid, legend)
+            axes.set_visible(False)
+        _lay_out(figure, grid, _draw_legend(figure))
     return figure
 
 
@@ -134,20 +137,21 @@ def _title(panel: dict[str, Any], frame: pd.DataFrame, scene: Scene) -> str:
     return ", ".join(word for word in words if word)
 
 
-def _write_head(axes: Axes, title: str, note: str, width: float) -> None:
-    """Write a panel's title and, below it, its note; width: room of the panel in points."""
-    beside = 36  # points that the labels of an upright axis take
-    words = _wrapped(note, width - beside, style.SMALLEST_TEXT)
-    heading = _wrapped(title, width - beside, style.TITLE_TEXT)
-    gap = 4
-    lines = words.count("\n") + 1 if words else 0
-    axes.annotate(words, (0, 1), xytext=(0, gap), xycoords="axes fraction", textcoords="offset points", va="bottom", linespacing=1.2)
-    axes.set_title(heading, loc="left", pad=gap + 1.3 * style.SMALLEST_TEXT * lines)
+def _write_notes(row: np.ndarray, notes: list[str]) -> None:
+    """Write the notes of a row of panels between the panels and their titles, all titles at one height."""
+    lines = max(len(note.splitlines()) for note in notes)
+    top = 3 + 1.25 * style.SMALLEST_TEXT * lines
+    place = {"xy": (0, 1), "xycoords": "axes fraction", "xytext": (0, top), "textcoords": "offset points", "va": "top"}
+    for axes, note in zip(row, notes):
+        axes.set_title(axes.get_title(loc="left"), loc="left", pad=top + 3)
+        if note:
+            axes.annotate(note, linespacing=1.1, **place)
 
 
 def _wrapped(text: str, width: float, size: float) -> str:
-    """Text broken after spaces, commas and slashes into lines of at most about a width; width and size of the text in points."""
-    most = int(width / (0.6 * size))  # a character of this font is 0.6 of its size wide on average
+    """Text broken after spaces, commas and slashes, short enough for a panel of a width in inches; size of the text in points."""
+    beside = 36  # points that the labels of an upright axis take
+    most = int((72 * width - beside) / (0.57 * size))  # on average a character of this font is a little less wide than this
     lines = []
     for paragraph in text.splitlines():
         line = ""
@@ -160,36 +164,59 @@ def _wrapped(text: str, width: float, size: float) -> str:
     return "\n".join(lines)
 
 
-def _draw_legend(figure: Figure) -> Legend | None:
-    """One legend of all panels below them, each label once, in as few rows as fit the width."""
+def _draw_legend(figure: Figure) -> float:
+    """One legend of all panels below them, each label once, in as few rows as fit the width; returns the room for it in inches."""
     handles = {}
     for axes in figure.axes:
         for handle, label in zip(*axes.get_legend_handles_labels()):
             handles.setdefault(label, handle)
     for columns in range(len(handles), 0, -1):
-        legend = figure.legend(handles.values(), handles.keys(), loc="outside lower center", ncols=columns)
-        if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
-            return legend
+        legend = figure.legend(handles.values(), handles.keys(), loc="lower center", ncols=columns)
+        extent = legend.get_window_extent()
+        if columns == 1 or extent.width <= figure.bbox.width:
+            return extent.y1 / figure.dpi + style.GAP / 2
         legend.remove()
-    return None
+    return 0.0
 
 
-def _fit_height(figure: Figure, grid: np.ndarray, legend: Legend | None) -> None:
-    """Cut the sheet to what its panels need: they are as wide as the sheet allows, and their shapes are fixed.
+def _lay_out(figure: Figure, grid: np.ndarray, legend: float) -> None:
+    """Place panels (rows, columns), all as wide as the sheet allows, and make the sheet as high as they and the legend then need.
 
-    Two rounds, because a lower sheet moves the panels, and with them how many tick labels there are.
+    Two rounds, because the labels beside a panel depend on its size. legend: room for it, in inches.
     """
     for _ in range(2):
-        figure.draw_without_rendering()
-        heights = [max(axes.get_tightbbox().height for axes in row if axes.axison) for row in grid]
-        if legend is not None:
-            heights.append(legend.get_window_extent().height)
-        gap = 0.1 * figure.dpi
-        figure.set_figheight((sum(heights) + gap * len(heights)) / figure.dpi)
+        margins = np.array([[_margins(axes) for axes in row] for row in grid]) + style.GAP / 2
+        left, right = margins[:, :, :2].max(axis=0).T
+        bottom, top = margins[:, :, 2:].max(axis=1).T
+        sheet_width = figure.get_figwidth()
+        width = (sheet_width - (left + right).sum()) / len(left)
+        heights = np.array([max(width * _shape(axes) for axes in row) for row in grid])
+        sheet_height = legend + (bottom + heights + top).sum()
+        figure.set_figheight(sheet_height)
+        x = np.cumsum(left) + np.cumsum(right) - right + width * np.arange(len(left))
+        y = sheet_height - np.cumsum(bottom + heights + top) + bottom
+        for (row, column), axes in np.ndenumerate(grid):
+            share = [x[column] / sheet_width, y[row] / sheet_height, width / sheet_width, heights[row] / sheet_height]
+            axes.set_position(share)
+
+
+def _margins(axes: Axes) -> tuple[float, float, float, float]:
+    """What stands out of a panel to the left, to the right, below and above, in inches."""
+    outer = axes.get_tightbbox(for_layout_only=True)
+    if outer is None:  # a place without a panel
+        return 0.0, 0.0, 0.0, 0.0
+    inner = axes.get_window_extent()
+    dots = np.array([inner.x0 - outer.x0, outer.x1 - inner.x1, inner.y0 - outer.y0, outer.y1 - inner.y1])
+    return tuple(np.maximum(dots, 0) / axes.figure.dpi)
+
+
+def _shape(axes: Axes) -> float:
+    """Height of a panel as a share of its width: to scale where the kind asks for it, else the same for all."""
+    return style.PANEL_HEIGHT if axes.get_aspect() == "auto" else axes.get_data_ratio() * axes.get_aspect()
 
 
 def save(figure: Figure, svg: str, png: str) -> None:
     """Save a figure as svg and as png of 300 dots per inch; equal drawings give equal bytes, whenever they are made."""
-    with matplotlib.rc_context(style.SETTINGS):
+    with mpl.rc_context(style.SETTINGS):
         figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
         figure.savefig(png, format="png", dpi=300, metadata={"Software": None})

@@ -30,8 +30,6 @@ SETTINGS = {
     "hatch.linewidth": 0.4,
     "legend.frameon": False,
     "legend.handlelength": 2.2,
-    "figure.constrained_layout.w_pad": 0.03,
-    "figure.constrained_layout.h_pad": 0.03,
     "svg.fonttype": "none",  # words stay words: they can be searched, and read aloud
     "svg.hashsalt": "bezierplan",  # equal drawings get equal identifiers
 }
@@ -51,5 +49,6 @@ FREE, OCCUPIED, SURPLUS = "#FFFFFF", "0.66", "0.94"
 CELL_LINE = "0.85"
 SURPLUS_HATCH = {"hatch": "/////", "hatchcolor": "0.7"}
 
-# Height of a panel with two unlike axes, as a share of its width.
+# Height of a panel with two unlike axes, as a share of its width, and room between panels in inches.
 PANEL_HEIGHT = 0.62
+GAP = 0.1

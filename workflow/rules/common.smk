@@ -9,11 +9,11 @@ SOURCE = str(Path(str(workflow.current_basedir)).parents[1] / "src")
 sys.path.insert(0, SOURCE)
 os.environ.update(PYTHONPATH=SOURCE, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", NUMBA_NUM_THREADS="1")
 
-from bezierplan import checked, study as studies
+from bezierplan import checked, study as studies, study_file
 from bezierplan.digest import source_digest
 
 try:
-    STUDIES = studies.load(studies.read_config(config))
+    STUDIES = study_file.load(study_file.read_config(config))
 except checked.Fault as fault:
     sys.exit(str(fault))
 

@@ -10,4 +10,4 @@ with log.job(snakemake.log[0]):
     published = comparison.read_published(snakemake.input.get("published"), job["spec"])
     compared = comparison.compare(found, job["spec"], published, job["variants"], job["name"])
     tables.pivot(found, job["spec"], job["labels"]).to_csv(snakemake.output.table, lineterminator="\n")
-    compared.to_csv(snakemake.output.comparison, index=False, lineterminator="\n")
+    compared.to_csv(snakemake.output.comparison, index=False, float_format="%.10g", lineterminator="\n")

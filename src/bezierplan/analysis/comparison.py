@@ -13,9 +13,9 @@ One row for each group of runs, metric and statistic; an empty cell means that t
 | n_ours | our runs that count: feasible ones for metrics of feasible paths, all for the others |
 | value_ours | the statistic of these runs |
 | best, mean, median, quartile1, quartile3 | of the same runs; best is the lowest |
-| low95_ours, high95_ours | 95 % bootstrap interval of value_ours; empty below two runs, and for min, max and range, which depend on the number of runs |
-| quantile_published | the published number's place among 10,000 experiments of the paper's size, drawn from our runs; among our runs if n is unknown |
-| reproduced | whether that place is within the central 95 %; ours are rounded like the printed number, ties count for it; empty below six runs |
+| low95_ours, high95_ours | 95 % bootstrap interval of value_ours; empty below two runs, and for min, max and range |
+| quantile_published | quantile of the published number in 10,000 draws of n_published from our runs; in our runs if that is empty |
+| reproduced | is that within the central 95 %? Ours are rounded like the printed number, ties count for it; empty below six runs |
 | share_claimed | share of all runs whose path passed the planner's own test |
 | share_feasible | share of all runs whose path the certified checker accepts |
 | bound | exact shortest length of the problem; of several problems, the median over the runs |
@@ -37,35 +37,50 @@ _COLUMNS = [
 ]
 
 
+def read_published(file: str | None, spec: dict) -> pd.DataFrame:
+    """The published numbers of a table: key columns, metric, statistic, n, unit, value. Without a file none, with the table's keys."""
+    if file is None:
+        return pd.DataFrame(columns=[*tables.keys(spec), "metric", "statistic", "n", "unit", "value"])
+    # Only an empty cell means that there is nothing: `none` and `NA` may be names.
+    return pd.read_csv(file, keep_default_na=False, na_values=[""])
+
+
 def compare(results: Results, spec: dict, published: pd.DataFrame, variant_of: dict[str, str], name: str) -> pd.DataFrame:
     """The published numbers of a table beside ours, in the order of the table; the columns are described above.
 
-    spec: as for `tables.pivot`. published: key columns, metric, statistic, n, unit, value. variant_of: method -> the method whose published
-    numbers it is compared with; variants of the table's methods get rows, whether or not the table shows them. name: `study/table`, from
-    which each row's random draws follow.
+    spec: as for `tables.pivot`. published: as from `read_published`. variant_of: method -> the method whose published numbers it is
+    compared with; variants of the table's methods get rows, whether or not the table shows them. name: `study/table`, from which each row's
+    random draws follow.
     """
     given = published.columns[: published.columns.get_loc("metric")].to_list()
     keys = given + [key for key in tables.keys(spec) if key not in given]
     spec = _with_variants(spec, variant_of) if "method" in keys else spec
-    ours = tables.cells(results, spec, keys)
-    theirs = published.rename(columns={"n": "n_published", "value": "value_published", "statistic": "printed"}).drop(columns="unit")
-    theirs = theirs.astype({key: ours[key].dtype for key in given}).assign(statistic=theirs["printed"].replace("unstated", "median"))
-    printed = dict(zip(zip(theirs["metric"], theirs["statistic"]), theirs["printed"]))
-    ours["statistic"] = ours["statistic"].replace("unstated", "median")
-    if "method" in given:
-        ours = ours.assign(own_method=ours["method"], method=ours["method"].replace(variant_of))
-
-    both = ours.merge(theirs.drop(columns="printed"), how="outer", on=[*given, "metric", "statistic"])
-    if "method" in given:
-        both["method"] = both["own_method"].fillna(both["method"])
-    both["statistic"] = [printed.get(quantity, quantity[1]) for quantity in zip(both["metric"], both["statistic"])]
+    both = _side_by_side(tables.cells(results, spec, keys), published, given, variant_of)
     order = tables.in_order(both, spec, list(results.problems)).sort_values([*keys, "value", "metric", "statistic"]).index
-    both = both.loc[order]
+    both = both.loc[order].reset_index(drop=True)
     workspace_unit = next(iter(results.problems.values())).workspace.unit
     both["unit"] = [metrics.unit(metric, workspace_unit) for metric in both["metric"]]
     described = pd.DataFrame([_described(row, keys, name) for _, row in both.iterrows()], index=both.index)
-    table = both.join(described).reindex(columns=keys + _COLUMNS).reset_index(drop=True)
+    table = both.join(described).reindex(columns=keys + _COLUMNS)
     return table.astype({"n_published": "Int64", "n_ours": "Int64", "reproduced": "boolean"})
+
+
+def _side_by_side(ours: pd.DataFrame, published: pd.DataFrame, given: list[str], variant_of: dict[str, str]) -> pd.DataFrame:
+    """Our cells with n_published and value_published, and published numbers for which there are no runs; statistics named as published.
+
+    given: the key columns of the published numbers.
+    """
+    theirs = published.rename(columns={"n": "n_published", "value": "value_published", "statistic": "printed"}).drop(columns="unit")
+    # What is printed as unstated is compared with the median.
+    theirs = theirs.astype({key: ours[key].dtype for key in given}).assign(statistic=theirs["printed"].replace("unstated", "median"))
+    ours = ours.assign(statistic=ours["statistic"].replace("unstated", "median"))
+    if "method" in given:
+        ours = ours.assign(own_method=ours["method"], method=ours["method"].replace(variant_of))
+    both = ours.merge(theirs.drop(columns="printed"), how="outer", on=[*given, "metric", "statistic"])
+    if "method" in given:
+        both["method"] = both["own_method"].fillna(both["method"])
+    printed = dict(zip(zip(theirs["metric"], theirs["statistic"]), theirs["printed"]))
+    return both.assign(statistic=[printed.get(quantity, quantity[1]) for quantity in zip(both["metric"], both["statistic"])])
 
 
 def _with_variants(spec: dict, variant_of: dict[str, str]) -> dict:

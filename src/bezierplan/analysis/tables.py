@@ -2,14 +2,14 @@
 
 A table's description (`spec`) has the keys
 
-    index, columns   columns of the runs table, and the words `value` (which entry of `values`) and `statistic`; a word that is needed to tell
-                     numbers apart and is not named becomes a level of the columns. `columns` may be missing
-    values           a list of {metric, statistic: a name or a list of names, where, label, decimals}; where, label and decimals may be missing
+    index, columns   columns of the runs table, and the words `value` (which entry of `values`) and `statistic`; a word that is needed to
+                     tell numbers apart and is not named becomes a level of the columns. `columns` may be missing
+    values           a list of {metric, statistic, where, label, decimals}; statistic is a name or a list of names, the last three may be
+                     missing
     where            which runs: column -> value or list of values; a list also gives the order. May be missing
 """
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -44,9 +44,9 @@ def in_order(table: pd.DataFrame, spec: dict, problems: Sequence[str]) -> pd.Dat
 def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
     """The numbers behind a table: one row for each group of runs with equal keys, entry of `values`, and statistic.
 
-    Columns: the keys; value (the entry's number), metric, statistic, decimals; numbers, sorted (n,): the metric of the runs that count, which
-    satisfy the entry's `where` and have one; and of all runs of the group: runs (how many), share_claimed, share_feasible, bound (median),
-    gap (median of the feasible ones).
+    Columns: the keys; value (the entry's number), metric, statistic, decimals; numbers, sorted (n,): the metric of the runs that count,
+    which satisfy the entry's `where` and have one; and of all runs of the group: runs (how many), share_claimed, share_feasible, bound
+    (median), gap (median of the feasible ones).
     """
     # Sorted by name, so that no sum depends on the order in which chunks were read.
     runs = select(results.runs, spec.get("where", {})).sort_values("id")
@@ -70,7 +70,8 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
                 cell = {"value": value, "metric": entry["metric"], "statistic": statistic, "decimals": entry.get("decimals")}
                 rows.append(described | cell | {"numbers": numbers})
     columns = [*keys, "runs", "share_claimed", "share_feasible", "bound", "gap", "value", "metric", "statistic", "decimals", "numbers"]
-    return pd.DataFrame(rows, columns=columns).astype({"decimals": object})
+    # Of type object, so that whole numbers stay whole beside entries without decimals.
+    return pd.DataFrame(rows, columns=columns).assign(decimals=pd.Series([row["decimals"] for row in rows], dtype=object))
 
 
 def pivot(results: Results, spec: dict, labels: dict[str, str]) -> pd.DataFrame:
@@ -123,7 +124,7 @@ def _labelled(level: pd.Series, labels: dict[str, str], titles: list[str]) -> pd
     return pd.Series(names, index=level.index, dtype=object)
 
 
-def _printed(number: Any, decimals: int | None) -> str:
+def _printed(number: float, decimals: int | None) -> str:
     """A number with the given decimals, or with six significant digits where none are given; empty for one that does not exist."""
     if np.isnan(number):
         return ""

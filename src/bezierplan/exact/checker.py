@@ -1,8 +1,8 @@
 """The certified collision check: whether a path of Bezier pieces enters the blocked region, where first, how deep, and how near it comes.
 
 The curve of a piece lies in the hull of its control points. A piece is halved until every part is either certified free, because its hull
-is, or begins with a point that is certainly blocked. There are two thresholds, so that this always ends: a collision is certified by a point
-deeper than `TOLERANCE`, freedom by a depth of at most twice that (on cells and in the notches of polygons: twice that from each side).
+is, or begins with a point that is certainly blocked. There are two thresholds, so that this always ends: a collision is certified by a
+point deeper than `TOLERANCE`, freedom by a depth of at most twice that. (In a corner between two walls it is twice that from each wall.)
 
 The search is written once. What it asks of a kind of region (`_is_blocked`, `_is_free`, `_depth`, `_depth_bound`) is chosen by the type of
 the region when the kernel is compiled.
@@ -78,7 +78,7 @@ def check(pieces: np.ndarray, region: Region, squeeze: Literal["open", "closed"]
     """
     pieces = np.ascontiguousarray(pieces, dtype=float)
     _refuse_unfit(pieces, squeeze)
-    collision_at, intervals = _first_collision(pieces, region)
+    collision_at, intervals = first_collision(pieces, region)
     if squeeze == "closed" and isinstance(region, GridRegion):
         squeezed_at = _first_squeeze(pieces, region.pinches, _PINCH_RADIUS * region.cell)
         if squeezed_at < collision_at:
@@ -290,7 +290,7 @@ def _distance_to_edges(x: float, y: float, edges: np.ndarray) -> float:
 
 
 def _depth_bound_by_edges(points, region):
-    """No point of a hull is farther from an edge than its control points are, and no blocked point is deeper than its distance to an edge."""
+    """A point of a hull is no farther from an edge than some control point, and no deeper than it is far from an edge."""
     least = math.inf
     for ax, ay, bx, by in region.edges:
         farthest = 0.0
@@ -439,9 +439,8 @@ def _is_free_in_polygons(points, region):
 def _passes_chain(points, region, touched, first, along_x, along_y, across_low, across_high) -> int:
     """Number of edges of a chain of touched edges if a hull passes it on the free side, else 0.
 
-    Where the chain bends away from free space all of its lines have the hull on their free side, or it is not passed. Where it bends
-    towards free space, one such line is enough, or any line between hull and chain; the one along the hull is tried. A chain that bends both
-    ways is not decided.
+    Where the blocked region is reflex at the chain's corners, the hull must lie on the free side of all of its lines. Where it is convex,
+    one of them is enough, or any line between hull and chain; the one along the hull is tried. A chain with both is not decided.
     """
     reach = 2.0 * TOLERANCE
     length = 0
@@ -501,7 +500,7 @@ def _choose_depth_bound(points, region):
 
 
 @njit(cache=True)
-def _first_collision(pieces: np.ndarray, region: Region) -> tuple[float, int]:
+def first_collision(pieces: np.ndarray, region: Region) -> tuple[float, int]:
     """Piece number plus parameter of the first collision (infinite without one), and the number of intervals examined.
 
     Depth first, left half first: what lies before the interval in hand is certified free.
@@ -606,9 +605,7 @@ def _clearance_of_point(x: float, y: float, obstacles: np.ndarray, edges: np.nda
 
 
 @njit(cache=True)
-def _clearance_bound(
-    points: np.ndarray, bulge: float, obstacle: int, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray
-) -> float:
+def _clearance_bound(points: np.ndarray, bulge: float, obstacle: int, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> float:
     """Lower bound of the distance of a curve to an obstacle. A curve leaves its chord by `bulge` at most."""
     ax, ay = points[0]
     bx, by = points[-1]

@@ -85,13 +85,13 @@ def border_edges(bounds: tuple[float, float, float, float]) -> np.ndarray:
 
 def walled(occupied: np.ndarray) -> np.ndarray:
     """Occupied cells with a ring of occupied cells around them, which stands for the outside: bool (rows + 2, columns + 2)."""
-    return np.pad(occupied, 1, constant_values=True)
+    return np.ascontiguousarray(np.pad(occupied, 1, constant_values=True))
 
 
 def occupied_around(cells: np.ndarray) -> np.ndarray:
-    """Occupied cells at each inner vertex of `walled` cells: bool (4, rows + 1, columns + 1), below left, below right, above left, above right.
+    """Whether the cells around each inner vertex of `walled` cells are occupied: bool (4, rows + 1, columns + 1).
 
-    Vertex [i, j] lies at x = j and y = i, in cells.
+    First below left, then below right, above left, above right. Vertex [i, j] lies at x = j and y = i, in cells.
     """
     return np.stack([cells[:-1, :-1], cells[:-1, 1:], cells[1:, :-1], cells[1:, 1:]])
 
@@ -128,8 +128,8 @@ def _runs(boundary: np.ndarray) -> np.ndarray:
 
 
 def _circle_region(circles: Circles) -> CircleRegion:
-    centres = np.asarray(circles.centres, dtype=float).reshape(-1, 2)
-    radii = np.asarray(circles.radii, dtype=float).reshape(-1)
+    centres = np.ascontiguousarray(circles.centres, dtype=float).reshape(-1, 2)
+    radii = np.ascontiguousarray(circles.radii, dtype=float)
     return CircleRegion(centres, radii, np.array(circles.bounds, dtype=float), border_edges(circles.bounds))
 
 

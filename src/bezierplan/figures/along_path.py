@@ -13,14 +13,12 @@ from bezierplan.figures.paths import picked, run_note
 
 _SAMPLES = 1001
 
-# A peak higher than so many limits would press the curve onto the axis; then the scale ends at some limits and an arrow stands for the peak.
+# A peak of more limits than this would press the curve onto the axis: then the scale ends at fewer, and an arrow stands for the peak.
 _HIGHEST_PEAK = 10
 _CUT_SCALE = 4
 
 
-def data(
-    results: Results, *, pick: dict[str, Any], quantity: Literal["curvature"], limit: float | None = None
-) -> pd.DataFrame:
+def data(results: Results, *, pick: dict[str, Any], quantity: Literal["curvature"], limit: float | None = None) -> pd.DataFrame:
     """One row a sample of a path, uniform in its parameter; columns: those of `paths.picked`, quantity, limit, t (0 to 1), value.
 
     The value of curvature is its magnitude in 1/unit, empty where the curve stands still. Without a path one row with neither t nor value.
@@ -45,12 +43,11 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     axes.set_xlim(0, 1)
     axes.set_xlabel("curve parameter t (-)")
     axes.set_ylabel(f"|{row['quantity']}| (1/{unit})")
-    axes.set_box_aspect(style.PANEL_HEIGHT)
     axes.grid(visible=True)
     if not math.isnan(row["limit"]):
-        axes.axhline(row["limit"], label=f"limit in the paper: {row['limit']:g} 1/{unit}", zorder=3, **style.PUBLISHED)
+        axes.axhline(row["limit"], label=f"published limit: {row['limit']:g} 1/{unit}", zorder=3, **style.PUBLISHED)
     if frame["t"].isna().all():
-        return run_note(frame) + ("" if pd.isna(row["run"]) else ": no path")
+        return run_note(frame) + ("" if pd.isna(row["run"]) else "\nno path")
     axes.plot(frame["t"], frame["value"], label="path", **style.RUN_SHOWN)
     return f"{run_note(frame)}\n{_mark_highest(axes, frame, unit)}"
 
@@ -66,4 +63,4 @@ def _mark_highest(axes: Axes, frame: pd.DataFrame, unit: str) -> str:
     axes.plot(highest["t"], min(highest["value"], top), clip_on=False, zorder=4, **mark)
     words = f"highest {highest['value']:.3g} 1/{unit} at t = {highest['t']:.2f}"
     still = int(frame["value"].isna().sum())
-    return words + (f"; stands still in {still} of {len(frame)} samples" if still else "")
+    return words + (f"\n{still} of {len(frame)} samples left out (the curve stands still)" if still else "")

@@ -44,6 +44,5 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     axes.set_xlim(0, max(1, generation.max()))
     axes.set_xlabel("generation (-)")
     axes.set_ylabel(f"objective ({scene.unit})")
-    axes.set_box_aspect(style.PANEL_HEIGHT)
     axes.grid(visible=True)
     return f"{run_note(frame)}\n{feasible_note(frame)}"

@@ -8,7 +8,8 @@ import shapely
 from matplotlib.axes import Axes
 
 from bezierplan import curves, style
-from bezierplan.analysis.results import Results, path_of, pick as pick_run
+from bezierplan.analysis.results import Results, path_of
+from bezierplan.analysis.results import pick as pick_run
 from bezierplan.figures import workspace as workspaces
 from bezierplan.problem import Path
 
@@ -99,13 +100,11 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
         axes.plot(points["x"], points["y"], clip_on=False, **_LOOK[part])
     if pd.isna(row["run"]):
         return run_note(frame)
+    if "control" not in set(frame["part"]):
+        return f"{run_note(frame)}\nno path"
     control = frame.loc[frame["part"] == "control", ["x", "y"]]
-    if control.empty:
-        return f"{run_note(frame)}: no path"
-    return (
-        f"{run_note(frame)}: {row['length']:.1f} {workspace.unit}\n"
-        f"{len(control.drop_duplicates())} of {len(control)} control points are distinct; {feasible_note(frame)}"
-    )
+    distinct = f"{len(control.drop_duplicates())} of {len(control)} control points distinct"
+    return f"{run_note(frame)}\nlength {row['length']:.1f} {workspace.unit}, {distinct}\n{feasible_note(frame)}"
 
 
 def feasible_note(frame: pd.DataFrame) -> str:

@@ -12,7 +12,8 @@ from matplotlib.path import Path as Outline
 from bezierplan import style
 from bezierplan.problem import Workspace
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.grid import Grid, embed as embed_cells
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.grid import embed as embed_cells
 from bezierplan.workspaces.polygons import Polygons
 
 _CELLS = {
@@ -20,6 +21,8 @@ _CELLS = {
     "occupied": {"facecolor": style.OCCUPIED, "label": "occupied cell"},
     "surplus": {"facecolor": style.SURPLUS, "label": "surplus cell, occupied", **style.SURPLUS_HATCH},
 }
+
+_COLUMNS = ["part", "x", "y", "size", "obstacle", "ring", "number"]
 
 
 def data(workspace: Workspace, *, numbers: Literal["all", "free", "none"] = "none", embed: bool = False) -> pd.DataFrame:
@@ -45,12 +48,14 @@ def parts(workspace: Workspace) -> pd.DataFrame:
     if isinstance(workspace, Circles):
         x, y = workspace.centres.T
         circles = pd.DataFrame({"part": "circle", "x": x, "y": y, "size": workspace.radii, "obstacle": range(len(x))})
-        return pd.concat([_corners(workspace.bounds), circles], ignore_index=True)
+        return _table(workspace.bounds, circles)
     return _rings(workspace)
 
 
-def _corners(bounds: tuple[float, float, float, float]) -> pd.DataFrame:
-    return pd.DataFrame({"part": "corner", "x": bounds[:2], "y": bounds[2:]})
+def _table(bounds: tuple[float, float, float, float], *drawn: pd.DataFrame) -> pd.DataFrame:
+    """The corners of the bounds and all that is drawn within them, with all columns."""
+    corners = pd.DataFrame({"part": "corner", "x": bounds[:2], "y": bounds[2:]})
+    return pd.concat([corners, *drawn], ignore_index=True).reindex(columns=_COLUMNS)
 
 
 def _cells(grid: Grid, numbers: str, embed: bool) -> pd.DataFrame:
@@ -62,7 +67,7 @@ def _cells(grid: Grid, numbers: str, embed: bool) -> pd.DataFrame:
     shown = {"all": part != "", "free": part == "free", "none": part == ""}[numbers]
     cells = pd.DataFrame({"part": part, "x": (column + 0.5) * grid.cell, "y": (row + 0.5) * grid.cell, "size": grid.cell})
     cells["number"] = pd.Series(np.arange(len(cells)), dtype="Int64").where(shown)
-    return pd.concat([_corners(whole.bounds), cells], ignore_index=True)
+    return _table(whole.bounds, cells)
 
 
 def _rings(workspace: Polygons) -> pd.DataFrame:
@@ -71,7 +76,7 @@ def _rings(workspace: Polygons) -> pd.DataFrame:
         for obstacle, outline in enumerate(workspace.obstacles)
         for ring, points in enumerate(outline)
     ]
-    return pd.concat([_corners(workspace.bounds), *rings], ignore_index=True)
+    return _table(workspace.bounds, *rings)
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
@@ -81,9 +86,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     """
     unit = scene.workspaces[panel["workspace"]].unit
     shade(axes, frame)
-    numbered = frame[frame["number"].notna()] if "number" in frame else frame[:0]
+    numbered = frame[frame["number"].notna()]
     for x, y, number in zip(numbered["x"], numbered["y"], numbered["number"]):
-        axes.text(x, y, str(int(number)), ha="center", va="center_baseline")
+        axes.text(x, y, str(int(number)), ha="center", va="center_baseline", in_layout=False)
     if numbered.empty:
         scale(axes, unit)
         return ""

@@ -158,13 +158,13 @@ def _search(
 
     for generation in range(generations + 1):
         for i in range(population):
-            pair = i - i % 2
+            mother, father = drawn[i - i % 2], drawn[min(i | 1, population - 1)]
             for k in range(len(stretches)):
                 first, last = stretches[k, 0], stretches[k, 1]
-                if _same(cells[i], parents[drawn[pair]], first, last):
-                    lengths[i, k], bad[i, k] = parent_lengths[drawn[pair], k], parent_bad[drawn[pair], k]
-                elif _same(cells[i], parents[drawn[pair + 1]], first, last):
-                    lengths[i, k], bad[i, k] = parent_lengths[drawn[pair + 1], k], parent_bad[drawn[pair + 1], k]
+                if _same(cells[i], parents[mother], first, last):
+                    lengths[i, k], bad[i, k] = parent_lengths[mother, k], parent_bad[mother, k]
+                elif _same(cells[i], parents[father], first, last):
+                    lengths[i, k], bad[i, k] = parent_lengths[father, k], parent_bad[father, k]
                 elif by_arc_length:
                     lengths[i, k], bad[i, k] = _measure_by_arc_length(cells[i], occupied, len(x))
                 else:

@@ -14,11 +14,12 @@ from pathlib import Path
 
 import numpy as np
 
-from bezierplan.problem import Workspace
 from bezierplan.workspaces import grid
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
+
+Workspace = Grid | Circles | Polygons
 
 LARGEST = 1e5
 # Between obstacles, or an obstacle and the border, a gap smaller than this is meant to be closed: the checker's tolerance could not tell.

@@ -1,0 +1,578 @@
+"""Exact shortest paths of a point robot: any-angle on grids, around circles and polygons; through cell centres; on the 8-connected lattice.
+
+They read the same region as the certified check, and the paths that they give are free by it: touching is allowed.
+"""
+
+import math
+from fractions import Fraction
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numba import njit
+
+from bezierplan.exact.checker import TOLERANCE, check, first_collision
+from bezierplan.exact.region import CircleRegion, GridRegion, PolygonRegion, occupied_around, region, walled
+from bezierplan.problem import Problem
+from bezierplan.workspaces.grid import Grid
+
+# A graph has an entry for every pair of nodes; more nodes than this would need gigabytes.
+MOST_NODES = 5000
+
+# Start and target are put on a lattice of at most this many points a cell, so that visibility is decided with whole numbers.
+_FINEST_LATTICE = 2**20
+
+# A value this near to a fraction with a small denominator, in cells, is meant as that fraction.
+_SAME_FRACTION = 1e-12
+
+# The polyline along arcs is at most this much longer than they are, in units.
+POLYLINE_EXCESS = 1e-6
+
+# Arcs that overlap by less than this angle count as touching.
+_SAME_ANGLE = 1e-8
+
+# A polyline around an arc is refined this many times at most to keep clear of a neighbouring circle.
+_REFINEMENTS = 20
+
+# A cell centre may be this far off, in cells.
+_CENTRE_TOLERANCE = 1e-9
+
+# Sparse matrices take an entry of zero for no edge.
+_NO_LENGTH = 1e-300
+
+
+class Bound(NamedTuple):
+    """A shortest path.
+
+    length: in the problem's unit, infinite if there is no path. points: (n, 2) a polyline along it from start to target, (0, 2) if there
+    is no path.
+    """
+
+    length: float
+    points: np.ndarray
+
+
+def least_length(bound: Bound) -> float:
+    """The least length that a path may have which the certified check calls free.
+
+    Such a path may be a few 1e-9 deep and cuts its bends by that; the allowance is a relative 1e-9 and 1e-8 a radian of turning. Obstacles
+    that are sharper than a right angle and gaps below 1e-7 can allow more.
+    """
+    if len(bound.points) < 3:
+        return bound.length * (1 - 1e-9)
+    step = np.diff(bound.points, axis=0)
+    step = step[np.any(step != 0, axis=1)]
+    heading = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))
+    return bound.length * (1 - 1e-9) - 1e-8 * np.abs(np.diff(heading)).sum()
+
+
+def shortest_path(problem: Problem, squeeze: Literal["open", "closed"] = "open") -> Bound:
+    """The shortest path from start to target; no path if one of them is blocked.
+
+    squeeze: whether it may pass between two occupied cells that meet only by a corner; matters on grids only. On a grid the visibility of
+    start and target is decided where they lie on a lattice of at most 2**20 points a cell; lengths are those of the points themselves.
+    Raises ValueError if the visibility graph has more than `MOST_NODES` nodes.
+    """
+    blocked = region(problem.workspace)
+    for point in (problem.start, problem.target):
+        if not check(np.array([[point, point]]), blocked).feasible:
+            return _no_path()
+    if isinstance(blocked, GridRegion):
+        return _shortest_on_grid(problem, squeeze)
+    if isinstance(blocked, CircleRegion):
+        return _shortest_around_circles(problem, blocked)
+    return _shortest_among_polygons(problem, blocked)
+
+
+def centre_path(problem: Problem) -> Bound:
+    """The shortest polyline through centres of free cells of a grid, in the problem's unit.
+
+    Raises ValueError if start or target is not the centre of a cell, within 1e-9 of a cell's side, and for more than `MOST_NODES` free
+    cells.
+    """
+    grid = problem.workspace
+    nodes = [_centre_cell(grid, name, point) for name, point in (("start", problem.start), ("target", problem.target))]
+    if any(grid.occupied[row, column] for row, column in nodes):
+        return _no_path()
+    cells = np.concatenate([nodes, np.argwhere(~grid.occupied)])
+    _refuse_large(len(cells))
+    lattice = 2 * cells[:, ::-1] + 1
+    anything = np.zeros((len(cells), 2), dtype=np.int64)
+    visible = _visible_on_grid(lattice, anything[:, 0], anything, walled(grid.occupied), 2, False)
+    return _shortest_in_graph(lattice * (0.5 * grid.cell), visible)
+
+
+def _centre_cell(grid: Grid, name: str, point: tuple[float, float]) -> tuple[int, int]:
+    """Row and column of the cell whose centre a point is."""
+    column, row = (value / grid.cell - 0.5 for value in point)
+    rows, columns = grid.occupied.shape
+    is_centre = abs(column - round(column)) <= _CENTRE_TOLERANCE and abs(row - round(row)) <= _CENTRE_TOLERANCE
+    if not (is_centre and 0 <= round(row) < rows and 0 <= round(column) < columns):
+        raise ValueError(f"the {name} {point} is not the centre of a cell")
+    return round(row), round(column)
+
+
+def lattice_path(
+    occupied: np.ndarray,
+    start: tuple[int, int],
+    target: tuple[int, int],
+    diagonal_weight: float,
+    corner_rule: Literal["free", "one", "none"],
+) -> Bound:
+    """The shortest path over the 8 neighbours of free cells, by Dijkstra's algorithm; length and points (x, y) in cells.
+
+    occupied: bool (rows, columns). start, target: row and column. diagonal_weight: length of a diagonal step; others count 1. corner_rule:
+    how many of the two cells beside a diagonal step may be occupied: `free` both, `one` one, `none` none.
+    Raises ValueError for an unknown rule and for a start or target outside of the grid.
+    """
+    from scipy.sparse import coo_array
+
+    allowed = {"free": 2, "one": 1, "none": 0}
+    if corner_rule not in allowed:
+        raise ValueError(f"unknown corner rule {corner_rule!r}; known: {', '.join(allowed)}")
+    rows, columns = occupied.shape
+    for name, (row, column) in (("start", start), ("target", target)):
+        if not (0 <= row < rows and 0 <= column < columns):
+            raise ValueError(f"the {name} cell (row {row}, column {column}) is not on the grid of {rows} x {columns} cells")
+    if occupied[start] or occupied[target]:
+        return _no_path()
+
+    number = np.arange(rows * columns).reshape(rows, columns)
+    lower, upper, left, right = np.s_[:-1], np.s_[1:], np.s_[:-1], np.s_[1:]
+    everything = np.s_[:]
+    steps = []
+    for a, b in (((everything, left), (everything, right)), ((lower, everything), (upper, everything))):
+        steps.append((number[a], number[b], ~occupied[a] & ~occupied[b], 1.0))
+    for a, b, beside in (
+        ((lower, left), (upper, right), ((lower, right), (upper, left))),
+        ((lower, right), (upper, left), ((lower, left), (upper, right))),
+    ):
+        passable = occupied[beside[0]].astype(int) + occupied[beside[1]] <= allowed[corner_rule]
+        steps.append((number[a], number[b], ~occupied[a] & ~occupied[b] & passable, diagonal_weight))
+    tail = np.concatenate([a[free] for a, _, free, _ in steps])
+    head = np.concatenate([b[free] for _, b, free, _ in steps])
+    weight = np.concatenate([np.full(free.sum(), length) for _, _, free, length in steps])
+    graph = coo_array((weight, (tail, head)), shape=(rows * columns, rows * columns)).tocsr()
+    length, cells = _dijkstra(graph, int(number[start]), int(number[target]))
+    row, column = np.divmod(cells, columns)
+    return Bound(length, np.column_stack([column + 0.5, row + 0.5]))
+
+
+def _no_path() -> Bound:
+    return Bound(math.inf, np.empty((0, 2)))
+
+
+def _refuse_large(nodes: int) -> None:
+    if nodes > MOST_NODES:
+        raise ValueError(f"the visibility graph has {nodes} nodes, more than {MOST_NODES}; use a coarser or a smaller workspace")
+
+
+def _dijkstra(graph, start: int, target: int) -> tuple[float, np.ndarray]:
+    """Length of a shortest path in a sparse graph, whose edges go both ways, and the nodes along it; none without a path."""
+    from scipy.sparse.csgraph import dijkstra
+
+    distances, predecessors = dijkstra(graph, directed=False, indices=start, return_predecessors=True)
+    if math.isinf(distances[target]):
+        return math.inf, np.empty(0, dtype=np.int64)
+    nodes = [target]
+    while nodes[-1] != start:
+        nodes.append(int(predecessors[nodes[-1]]))
+    return float(distances[target]), np.array(nodes[::-1])
+
+
+def _shortest_in_graph(points: np.ndarray, visible: np.ndarray) -> Bound:
+    """The shortest polyline from the first to the second of some points (n, 2), along pairs that see each other: bool (n, n), i < j."""
+    from scipy.sparse import coo_array
+
+    tail, head = np.nonzero(visible)
+    lengths = np.hypot(*(points[head] - points[tail]).T)
+    graph = coo_array((np.maximum(lengths, _NO_LENGTH), (tail, head)), shape=visible.shape).tocsr()
+    _, nodes = _dijkstra(graph, 0, 1)
+    if not len(nodes):
+        return _no_path()
+    path = points[nodes]
+    moving = np.any(np.diff(path, axis=0) != 0, axis=1)
+    path = np.concatenate([path[:1], path[1:][moving]]) if moving.any() else path[:2]
+    return Bound(math.fsum(np.hypot(*np.diff(path, axis=0).T)), path)
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Grids: visibility between corners, in whole numbers
+
+
+def _shortest_on_grid(problem: Problem, squeeze: str) -> Bound:
+    """The visibility graph of start, target and the corners at which a shortest path can turn.
+
+    Those are the vertices with exactly one occupied cell around them, and pinches. A pinch that is closed is two nodes, one a free
+    quadrant, each with directions of its own quadrant only.
+    """
+    grid = problem.workspace
+    cells = walled(grid.occupied)
+    corners, slopes, quadrants = _grid_corners(cells, squeeze == "closed")
+    ends = np.array([problem.start, problem.target], dtype=float)
+    scale = _lattice(ends / grid.cell)
+    lattice = np.concatenate([np.rint(ends / grid.cell * scale).astype(np.int64), corners * scale])
+    _refuse_large(len(lattice))
+    slopes = np.concatenate([[0, 0], slopes])
+    quadrants = np.concatenate([np.zeros((2, 2), dtype=np.int64), quadrants])
+    visible = _visible_on_grid(lattice, slopes, quadrants, cells, scale, squeeze == "closed")
+    return _shortest_in_graph(np.concatenate([ends, corners * grid.cell]), visible)
+
+
+def _grid_corners(cells: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Corners (n, 2) as x and y in cells, slopes (n,) and quadrants (n, 2) of the directions that a shortest path can take from them.
+
+    A slope of +1 stands for directions with dx dy >= 0, -1 for dx dy <= 0. A quadrant holds the signs of dx and dy, or zeros for any.
+    """
+    around = occupied_around(cells)
+    below_left, below_right, above_left, above_right = around
+    single = around.sum(axis=0) == 1
+    pair = around.sum(axis=0) == 2
+    # Around a single occupied cell a path turns from one of the two quadrants beside it to the other; at a pinch it stays in the free ones.
+    rising = (single & (below_right | above_left)) | (pair & below_right & above_left)
+    falling = (single & (below_left | above_right)) | (pair & below_left & above_right)
+    row, column = np.nonzero(rising | falling)
+    corners = np.column_stack([column, row])
+    slopes = np.where(rising[row, column], 1, -1)
+    quadrants = np.zeros_like(corners)
+    if closed:
+        pinch = pair[row, column]
+        twice = np.repeat(np.arange(len(corners)), np.where(pinch, 2, 1))
+        corners, slopes, pinch = corners[twice], slopes[twice], pinch[twice]
+        first = np.concatenate([[True], twice[1:] != twice[:-1]])[: len(twice)]
+        side = np.where(first, 1, -1)
+        quadrants = np.where(pinch[:, None], np.column_stack([side, side * slopes]), 0)
+    return corners, slopes, quadrants
+
+
+def _lattice(points: np.ndarray) -> int:
+    """The least number of lattice points a cell that makes all coordinates whole; the largest allowed if that is not enough."""
+    fractions = [Fraction(value).limit_denominator(_FINEST_LATTICE) for value in points.ravel().tolist()]
+    scale = math.lcm(*(fraction.denominator for fraction in fractions))
+    exact = all(abs(value - fraction) <= _SAME_FRACTION for value, fraction in zip(points.ravel(), fractions))
+    return scale if exact and scale <= _FINEST_LATTICE else _FINEST_LATTICE
+
+
+@njit(cache=True)
+def _visible_on_grid(
+    nodes: np.ndarray, slopes: np.ndarray, quadrants: np.ndarray, cells: np.ndarray, scale: int, closed: bool
+) -> np.ndarray:
+    """Which pairs i < j of nodes can follow each other on a shortest path: bool (n, n).
+
+    nodes: (n, 2) whole numbers, `scale` a cell. cells: occupied cells with a ring around them.
+    """
+    visible = np.zeros((len(nodes), len(nodes)), dtype=np.bool_)
+    for i in range(len(nodes)):
+        for j in range(i + 1, len(nodes)):
+            dx = nodes[j, 0] - nodes[i, 0]
+            dy = nodes[j, 1] - nodes[i, 1]
+            if slopes[i] * dx * dy < 0 or slopes[j] * dx * dy < 0:
+                continue
+            if not (_in_quadrant(dx, dy, quadrants[i]) and _in_quadrant(-dx, -dy, quadrants[j])):
+                continue
+            if dx == 0 and dy == 0:
+                # The two nodes of a closed pinch lie in one place and do not see each other.
+                visible[i, j] = quadrants[i, 0] == 0 or quadrants[j, 0] == 0
+            elif dx == 0:
+                visible[i, j] = _sees_along_column(nodes[i, 0], min(nodes[i, 1], nodes[j, 1]), abs(dy), cells, scale, closed)
+            elif dy == 0:
+                visible[i, j] = _sees_along_column(nodes[i, 1], min(nodes[i, 0], nodes[j, 0]), abs(dx), cells.T, scale, closed)
+            else:
+                visible[i, j] = _sees_across(nodes[i, 0], nodes[i, 1], dx, dy, cells, scale, closed)
+    return visible
+
+
+@njit(cache=True)
+def _in_quadrant(dx: int, dy: int, quadrant: np.ndarray) -> bool:
+    return dx * quadrant[0] >= 0 and dy * quadrant[1] >= 0
+
+
+@njit(cache=True)
+def _sees_along_column(x: int, low: int, length: int, cells: np.ndarray, scale: int, closed: bool) -> bool:
+    """Whether a vertical segment is free. On a grid line it passes edges, blocked if both of their cells are occupied."""
+    column = x // scale
+    on_line = x % scale == 0
+    for row in range(low // scale, (low + length - 1) // scale + 1):
+        if cells[row + 1, column + 1] and (not on_line or cells[row + 1, column]):
+            return False
+        if closed and on_line and row * scale > low and _is_pinch(cells, row, column):
+            return False
+    return True
+
+
+@njit(cache=True)
+def _is_pinch(cells: np.ndarray, row: int, column: int) -> bool:
+    """Whether two occupied cells meet only by a corner in a vertex, given by its grid lines."""
+    below_left, below_right = cells[row, column], cells[row, column + 1]
+    above_left, above_right = cells[row + 1, column], cells[row + 1, column + 1]
+    return below_left == above_right and below_right == above_left and below_left != below_right
+
+
+@njit(cache=True)
+def _sees_across(x: int, y: int, dx: int, dy: int, cells: np.ndarray, scale: int, closed: bool) -> bool:
+    """Whether a slanted segment is free: a walk over the cells that it enters.
+
+    to_x and to_y are the distances from the segment's begin to the next vertical and horizontal grid line, along each axis.
+    """
+    step_x = 1 if dx > 0 else -1
+    step_y = 1 if dy > 0 else -1
+    width = abs(dx)
+    height = abs(dy)
+    column = x // scale if dx > 0 else (x - 1) // scale
+    row = y // scale if dy > 0 else (y - 1) // scale
+    to_x = (column + 1) * scale - x if dx > 0 else x - column * scale
+    to_y = (row + 1) * scale - y if dy > 0 else y - row * scale
+    while not cells[row + 1, column + 1]:
+        if to_x >= width and to_y >= height:
+            return True
+        order = to_x * height - to_y * width
+        if order == 0 and closed and cells[row + 1, column + 1 + step_x] and cells[row + 1 + step_y, column + 1]:
+            return False
+        if order <= 0:
+            column += step_x
+            to_x += scale
+        if order >= 0:
+            row += step_y
+            to_y += scale
+    return False
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Polygons: visibility between convex corners
+
+
+def _shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
+    """The visibility graph of start, target, the convex corners of the blocked region, and the points at which its corners meet."""
+    begin = blocked.edges[:, :2]
+    corner = np.flatnonzero(blocked.convex)
+    repeated, count = np.unique(begin, axis=0, return_counts=True)
+    anywhere = np.concatenate([[problem.start, problem.target], repeated[count > 1]])
+    nodes = np.concatenate([anywhere, blocked.edges[corner, 2:]])
+    before = np.concatenate([anywhere, begin[corner]])
+    after = np.concatenate([anywhere, blocked.edges[blocked.following[corner], 2:]])
+    _refuse_large(len(nodes))
+    return _shortest_in_graph(nodes, _visible_among_polygons(nodes, before, after, blocked))
+
+
+@njit(cache=True)
+def _visible_among_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion) -> np.ndarray:
+    """Which pairs i < j of nodes can follow each other on a shortest path: bool (n, n).
+
+    before, after: (n, 2) the neighbours of a corner along the boundary; the node itself where a path may turn in any way.
+    """
+    visible = np.zeros((len(nodes), len(nodes)), dtype=np.bool_)
+    segment = np.empty((1, 2, 2))
+    for i in range(len(nodes)):
+        for j in range(i + 1, len(nodes)):
+            if not (_is_taut(nodes, i, j, before, after) and _is_taut(nodes, j, i, before, after)):
+                continue
+            segment[0, 0] = nodes[i]
+            segment[0, 1] = nodes[j]
+            visible[i, j] = not _crosses(nodes[i], nodes[j], region.edges) and first_collision(segment, region)[0] == math.inf
+    return visible
+
+
+@njit(cache=True)
+def _offset(a: np.ndarray, b: np.ndarray, point: np.ndarray) -> float:
+    """Distance of a point from the line through a and b, positive on its left; 0 if a and b are one point."""
+    length = math.hypot(b[0] - a[0], b[1] - a[1])
+    if length == 0.0:
+        return 0.0
+    return ((b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])) / length
+
+
+@njit(cache=True)
+def _apart(first: float, second: float) -> bool:
+    """Whether two offsets from a line lie strictly on its two sides."""
+    return min(first, second) < -TOLERANCE and max(first, second) > TOLERANCE
+
+
+@njit(cache=True)
+def _is_taut(nodes: np.ndarray, i: int, j: int, before: np.ndarray, after: np.ndarray) -> bool:
+    """Whether a shortest path can turn at corner i on its way to or from j: the corner lies on one side of the line."""
+    return not _apart(_offset(nodes[i], nodes[j], before[i]), _offset(nodes[i], nodes[j], after[i]))
+
+
+@njit(cache=True)
+def _crosses(a: np.ndarray, b: np.ndarray, edges: np.ndarray) -> bool:
+    """Whether a segment and an edge lie strictly across each other. What only touches edges is left to the certified check."""
+    for e in range(len(edges)):
+        c, d = edges[e, :2], edges[e, 2:]
+        if _apart(_offset(a, b, c), _offset(a, b, d)) and _apart(_offset(c, d, a), _offset(c, d, b)):
+            return True
+    return False
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Circles: the tangent graph
+
+
+class _Tangents(NamedTuple):
+    """Nodes of a tangent graph and the straight pairs between them that are not yet tested.
+
+    points: positions (x, y). circles: the circle that a node lies on, -1 for start and target. angles: its angle there. pairs: two nodes.
+    """
+
+    points: list[tuple[float, float]]
+    circles: list[int]
+    angles: list[float]
+    pairs: list[tuple[int, int]]
+
+    def add(self, centre: np.ndarray, radius: float, circle: int, angle: float) -> int:
+        """Add a node on a circle and return its number."""
+        self.points.append((centre[0] + radius * math.cos(angle), centre[1] + radius * math.sin(angle)))
+        self.circles.append(circle)
+        self.angles.append(angle % math.tau)
+        return len(self.points) - 1
+
+
+def _shortest_around_circles(problem: Problem, blocked: CircleRegion) -> Bound:
+    """The tangent graph: start, target, and the ends of all common tangents, joined by tangents and by the arcs between them."""
+    from scipy.sparse import coo_array
+
+    centres, radii = _outer_circles(blocked)
+    tangents = _tangents(problem, centres, radii)
+    _refuse_large(len(tangents.points))
+    points = np.array(tangents.points)
+    pairs = np.array(tangents.pairs).reshape(-1, 2)
+    pairs = pairs[_straight_is_free(points[pairs[:, 0]], points[pairs[:, 1]], centres, radii, blocked.bounds)]
+    straight = np.hypot(*(points[pairs[:, 1]] - points[pairs[:, 0]]).T)
+    arcs, sweeps = _free_arcs(tangents, centres, radii, blocked.bounds)
+
+    tail, head = np.concatenate([pairs, arcs]).T
+    sweep = np.concatenate([np.zeros(len(pairs)), sweeps])
+    on_circle = np.array(tangents.circles)[arcs[:, 0]]
+    lengths = np.concatenate([straight, radii[on_circle] * sweeps])
+    # Sparse matrices add duplicate entries; of two edges between the same nodes only the shorter one is kept.
+    order = np.lexsort([lengths, np.maximum(tail, head), np.minimum(tail, head)])
+    low, high = np.minimum(tail, head)[order], np.maximum(tail, head)[order]
+    order = order[np.concatenate([[True], (np.diff(low) != 0) | (np.diff(high) != 0)])[: len(order)]]
+    tail, head, sweep, lengths = tail[order], head[order], sweep[order], lengths[order]
+    graph = coo_array((np.maximum(lengths, _NO_LENGTH), (tail, head)), shape=(len(points), len(points))).tocsr()
+    _, nodes = _dijkstra(graph, 0, 1)
+    if not len(nodes):
+        return _no_path()
+    number = {pair: edge for edge, pair in enumerate(zip(tail.tolist(), head.tolist()))}
+    steps = list(zip(nodes[:-1].tolist(), nodes[1:].tolist()))
+    sweeps = [sweep[number[a, b]] if (a, b) in number else -sweep[number[b, a]] for a, b in steps]
+    length = math.fsum(lengths[number.get((a, b), number.get((b, a)))] for a, b in steps)
+    return Bound(length, _circumscribed(points[nodes], np.array(tangents.circles)[nodes], sweeps, centres, radii, blocked))
+
+
+def _outer_circles(blocked: CircleRegion) -> tuple[np.ndarray, np.ndarray]:
+    """Centres and radii of the circles that lie inside no other one; of equal circles the first."""
+    centres, radii = blocked.centres, blocked.radii
+    distance = np.hypot(*(centres[:, None] - centres[None]).transpose(2, 0, 1))
+    inside = distance + radii[:, None] <= radii[None]
+    number = np.arange(len(radii))
+    dropped = (inside & (~inside.T | (number[:, None] > number[None]))).any(axis=1)
+    return centres[~dropped], radii[~dropped]
+
+
+def _tangents(problem: Problem, centres: np.ndarray, radii: np.ndarray) -> _Tangents:
+    """Nodes 0 and 1 are start and target. Where one of them lies on a circle, a node of the circle lies in the same place."""
+    graph = _Tangents([problem.start, problem.target], [-1, -1], [math.nan, math.nan], [(0, 1)])
+    for end, (x, y) in enumerate((problem.start, problem.target)):
+        for k, (centre, radius) in enumerate(zip(centres, radii)):
+            distance = math.hypot(x - centre[0], y - centre[1])
+            towards = math.atan2(y - centre[1], x - centre[0])
+            half = 0.0 if distance <= radius + TOLERANCE else math.acos(radius / distance)
+            for side in (-1, 1) if half else (1,):
+                graph.pairs.append((end, graph.add(centre, radius, k, towards + side * half)))
+    for i in range(len(radii)):
+        for j in range(i + 1, len(radii)):
+            dx, dy = centres[j] - centres[i]
+            distance = math.hypot(dx, dy)
+            towards = math.atan2(dy, dx)
+            tangents = []
+            if distance > abs(radii[i] - radii[j]):
+                tangents.append((math.acos((radii[i] - radii[j]) / distance), 0.0))
+            if distance >= radii[i] + radii[j] - TOLERANCE:
+                tangents.append((math.acos(min(1.0, (radii[i] + radii[j]) / distance)), math.pi))
+            for half, opposite in tangents:
+                for side in (-1, 1):
+                    a = graph.add(centres[i], radii[i], i, towards + side * half)
+                    b = graph.add(centres[j], radii[j], j, towards + side * half + opposite)
+                    graph.pairs.append((a, b))
+    return graph
+
+
+def _straight_is_free(a: np.ndarray, b: np.ndarray, centres: np.ndarray, radii: np.ndarray, bounds: np.ndarray) -> np.ndarray:
+    """Which segments from a to b, both (n, 2), are free: bool (n,)."""
+    step = b - a
+    square = np.maximum((step**2).sum(axis=1), _NO_LENGTH)[:, None]
+    share = np.clip(((centres[None] - a[:, None]) * step[:, None]).sum(axis=2) / square, 0, 1)
+    nearest = a[:, None] + share[:, :, None] * step[:, None] - centres[None]
+    clear = (np.hypot(nearest[:, :, 0], nearest[:, :, 1]) >= radii - TOLERANCE).all(axis=1)
+    left, right, bottom, top = bounds
+    low, high = np.minimum(a, b), np.maximum(a, b)
+    inside = (low >= np.array([left, bottom]) - TOLERANCE).all(axis=1) & (high <= np.array([right, top]) + TOLERANCE).all(axis=1)
+    return clear & inside
+
+
+def _free_arcs(tangents: _Tangents, centres: np.ndarray, radii: np.ndarray, bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Arcs between neighbouring nodes of a circle, counterclockwise: node pairs (n, 2) and angles (n,)."""
+    circles, angles = np.array(tangents.circles), np.array(tangents.angles)
+    pairs, sweeps = [np.empty((0, 2), dtype=np.int64)], [np.empty(0)]
+    for k in range(len(radii)):
+        nodes = np.flatnonzero(circles == k)
+        nodes = nodes[np.argsort(angles[nodes])]
+        if len(nodes) < 2:
+            continue
+        begin = angles[nodes]
+        sweep = np.diff(begin, append=begin[0] + math.tau)
+        middle, half = _covered_angles(k, centres, radii, bounds)
+        after = (middle[None] - begin[:, None]) % math.tau
+        overlap = np.full(after.shape, -math.inf)
+        for turn in (-math.tau, 0.0, math.tau):
+            shared = np.minimum(sweep[:, None], after + turn + half) - np.maximum(0, after + turn - half)
+            overlap = np.maximum(overlap, shared)
+        free = (overlap <= _SAME_ANGLE).all(axis=1)
+        pairs.append(np.column_stack([nodes, np.roll(nodes, -1)])[free])
+        sweeps.append(sweep[free])
+    return np.concatenate(pairs), np.concatenate(sweeps)
+
+
+def _covered_angles(k: int, centres: np.ndarray, radii: np.ndarray, bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Parts of a circle that lie in other circles or outside of the border: middle and half of each angle."""
+    radius = radii[k]
+    step = np.delete(centres - centres[k], k, axis=0)
+    other = np.delete(radii, k)
+    distance = np.hypot(step[:, 0], step[:, 1])
+    meets = distance < radius + other - TOLERANCE
+    step, other, distance = step[meets], other[meets], distance[meets]
+    cosine = (distance**2 + radius**2 - other**2) / (2 * distance * radius)
+    left, right, bottom, top = bounds
+    margin = np.array([right - centres[k, 0], top - centres[k, 1], centres[k, 0] - left, centres[k, 1] - bottom]) / radius
+    outward = np.array([0.0, 0.5, 1.0, 1.5]) * math.pi
+    middle = np.concatenate([np.arctan2(step[:, 1], step[:, 0]), outward[margin < 1]])
+    return middle, np.arccos(np.clip(np.concatenate([cosine, margin[margin < 1]]), -1, 1))
+
+
+def _circumscribed(
+    points: np.ndarray, circles: np.ndarray, sweeps: list[float], centres: np.ndarray, radii: np.ndarray, blocked: CircleRegion
+) -> np.ndarray:
+    """The polyline (n, 2) along a path of straight pieces (sweep 0) and arcs: around the arcs, fine enough to be free."""
+    runs = []
+    for node, sweep in enumerate(sweeps):
+        if runs and sweep * runs[-1][1] > 0:
+            runs[-1] = (runs[-1][0], runs[-1][1] + sweep, node + 1)
+        else:
+            runs.append((node, sweep, node + 1))
+    arc_length = sum(abs(sweep) * radii[circles[node]] for node, sweep, _ in runs if sweep)
+    step = math.sqrt(12 * POLYLINE_EXCESS / arc_length) if arc_length else math.inf
+    for _ in range(_REFINEMENTS):
+        polyline = [points[:1]]
+        for node, sweep, end in runs:
+            if sweep:
+                circle = circles[node]
+                parts = math.ceil(abs(sweep) / step)
+                from_centre = points[node] - centres[circle]
+                middles = math.atan2(from_centre[1], from_centre[0]) + sweep / parts * (np.arange(parts) + 0.5)
+                reach = radii[circle] / math.cos(0.5 * sweep / parts)
+                polyline.append(centres[circle] + reach * np.column_stack([np.cos(middles), np.sin(middles)]))
+            polyline.append(points[end : end + 1])
+        line = np.concatenate(polyline)
+        if check(np.stack([line[:-1], line[1:]], axis=1), blocked).feasible:
+            break
+        step *= 0.5
+    return line

@@ -1,0 +1,260 @@
+"""Studies read from their folders and checked: everything that can be wrong in one is found here, before the first job starts, and told in
+one line (`checked.Fault`).
+"""
+
+import csv
+import math
+from pathlib import Path
+from typing import Any
+
+from bezierplan import checked, metrics, problems, sheet
+from bezierplan.analysis import statistics
+from bezierplan.checked import Fault, closest
+from bezierplan.digest import PACKAGE
+from bezierplan.problem import Workspace, known_planners, planner_module, planner_settings, setting_fault
+from bezierplan.running import RUN_COLUMNS, conditions
+from bezierplan.study import Study, relative
+from bezierplan.workspaces import files
+
+PUBLISHED_COLUMNS = ("metric", "statistic", "n", "unit", "value")
+PICKS = ("lowest", "median", "repeat")
+
+
+def read_config(given: dict) -> list[Path]:
+    """Folders of the studies that a configuration names: config/config.yaml of the working folder, and what was given besides.
+
+    Raises Fault.
+    """
+    file = Path("config/config.yaml")
+    content = (checked.read(file, "config") if file.is_file() else {}) | given
+    place = f"{file} or --config"
+    checked.check(content, "config", place)
+    root = PACKAGE.parents[1] / "config" / "studies"
+    folders = []
+    for name in content["studies"]:
+        folder = root / name if "/" not in name else Path(name)
+        if not (folder / "experiments.yaml").is_file():
+            known = [place.parent.name for place in root.glob("*/experiments.yaml")]
+            raise Fault(f"{place}: studies: {name}: no experiments.yaml in {relative(folder)}{closest(name, known)}")
+        folders.append(folder)
+    return folders
+
+
+def load(folders: list[Path]) -> dict[str, Study]:
+    """The studies in folders, by name, read and checked. Raises Fault."""
+    studies = {}
+    for folder in folders:
+        study = _read(folder)
+        if study.key in studies:
+            raise Fault(f"{relative(folder)}: a study of the name {study.key} is there already; rename the folder")
+        _check(study)
+        studies[study.key] = study
+    return studies
+
+
+def _read(folder: Path) -> Study:
+    experiments = checked.read(_shown(folder / "experiments.yaml"), "experiments")
+    artefacts = checked.read(_shown(folder / "artefacts.yaml"), "artefacts") if (folder / "artefacts.yaml").is_file() else {}
+    return Study(
+        key=folder.resolve().name,
+        folder=folder,
+        labels=artefacts.get("labels", {}),
+        tables=artefacts.get("tables", {}),
+        figures=artefacts.get("figures", {}),
+        **experiments,
+    )
+
+
+def _shown(file: Path) -> Path:
+    return Path(relative(file))
+
+
+def _check(study: Study) -> None:
+    place = relative(study.folder / "experiments.yaml")
+    for name in study.methods:
+        _check_planner(study, name, f"{place}: methods: {name}")
+    used = {setting for name in study.methods for setting in planner_settings(planner_module(study.planner(name)))}
+    for setting in study.settings:
+        if setting not in used:
+            raise Fault(f"{place}: settings: {setting}: no planner of this study has this setting{closest(setting, used)}")
+    for name in study.methods:
+        _check_settings(planner_module(study.planner(name)), study.resolved(name), f"{place}: methods: {name}")
+    workspaces = {name: _workspace(study, name, place) for name in study.workspaces}
+    for name, problem in study.problems.items():
+        _known(problem["workspace"], study.workspaces, f"{place}: problems: {name}: workspace")
+        try:
+            problems.build(name, problem, workspaces[problem["workspace"]])
+        except ValueError as error:
+            raise Fault(f"{place}: problems: {name}: {error}") from None
+    for name, experiment in study.experiments.items():
+        _check_experiment(study, experiment, f"{place}: experiments: {name}")
+    place = relative(study.folder / "artefacts.yaml")
+    for name, table in study.tables.items():
+        _check_table(study, table, f"{place}: tables: {name}")
+    for name, figure in study.figures.items():
+        if name in study.tables:
+            raise Fault(f"{place}: figures: {name}: a table has this name already")
+        for number, panel in enumerate(figure["panels"]):
+            _check_panel(study, panel, f"{place}: figures: {name}: panels: {number}")
+
+
+def _known(name: str, known: Any, place: str) -> None:
+    if name not in known:
+        raise Fault(f"{place}: {name}: unknown{closest(name, known)}")
+
+
+def _check_planner(study: Study, name: str, place: str) -> None:
+    method = study.methods[name]
+    planner = method["planner"]
+    if planner.endswith(".py"):
+        if not (study.folder / planner).is_file():
+            raise Fault(f"{place}: planner: {planner}: no such file in {relative(study.folder)}")
+    else:
+        _known(planner, known_planners(), f"{place}: planner")
+    if "variant_of" in method:
+        _known(method["variant_of"], study.methods, f"{place}: variant_of")
+    for setting in method.get("settings", {}):
+        _known(setting, planner_settings(planner_module(study.planner(name))), f"{place}: settings")
+
+
+def _check_settings(module: Any, settings: dict[str, Any], place: str) -> None:
+    """Settings of one method, complete, each of its type and within its range, and fitting together."""
+    accepted = planner_settings(module)
+    for setting, annotation in accepted.items():
+        if setting not in settings:
+            raise Fault(f"{place}: settings: {setting}: missing; {module.__name__.split('.')[-1]} needs it")
+        wanted = setting_fault(annotation, settings[setting])
+        if wanted:
+            raise Fault(f"{place}: settings: {setting}: {settings[setting]!r}; expected {wanted}")
+    if hasattr(module, "check"):
+        try:
+            module.check(settings)
+        except ValueError as error:
+            raise Fault(f"{place}: settings: {error}") from None
+
+
+def _workspace(study: Study, name: str, place: str) -> Workspace:
+    try:
+        return files.load(study.workspaces[name], study.folder)
+    except ValueError as error:
+        raise Fault(f"{place}: workspaces: {name}: {error}") from None
+
+
+def _check_experiment(study: Study, experiment: dict, place: str) -> None:
+    for problem in experiment["problems"]:
+        _known(problem, study.problems, f"{place}: problems")
+    for method in experiment["methods"]:
+        _known(method, study.methods, f"{place}: methods")
+        module = planner_module(study.planner(method))
+        for problem in experiment["problems"]:
+            kind = study.workspaces[study.problems[problem]["workspace"]]["kind"]
+            if kind not in getattr(module, "workspaces", (kind,)):
+                served = ", ".join(module.workspaces)
+                raise Fault(
+                    f"{place}: methods: {method}: its planner does not serve a workspace of kind {kind} ({problem}); it serves {served}"
+                )
+        for setting in experiment.get("vary", {}):
+            _known(setting, planner_settings(module), f"{place}: vary")
+        for condition in conditions(experiment["problems"][:1], experiment.get("vary", {})):
+            _check_settings(module, study.resolved(method) | condition.values, f"{place}: vary" if condition.values else place)
+
+
+def _columns(study: Study, experiment: str) -> set[str]:
+    """Columns of the runs table of an experiment that a selection may name."""
+    methods = study.experiments[experiment]["methods"]
+    return {"straight_line", "bound", *RUN_COLUMNS, *(setting for name in methods for setting in study.resolved(name))}
+
+
+def _check_where(study: Study, experiment: str, where: dict, place: str) -> None:
+    for column, wanted in where.items():
+        _known(column, _columns(study, experiment), place)
+        for value in wanted if isinstance(wanted, list) else [wanted]:
+            if column == "method":
+                _known(value, study.experiments[experiment]["methods"], f"{place}: method")
+            if column == "problem":
+                _known(value, study.experiments[experiment]["problems"], f"{place}: problem")
+
+
+def _check_table(study: Study, table: dict, place: str) -> None:
+    _known(table["experiment"], study.experiments, f"{place}: experiment")
+    experiment = table["experiment"]
+    _check_where(study, experiment, table.get("where", {}), f"{place}: where")
+    for key in ("index", "columns"):
+        for column in table.get(key, []):
+            _known(column, {"value", "statistic", *_columns(study, experiment)}, f"{place}: {key}")
+    for number, value in enumerate(table["values"]):
+        _known(value["metric"], metrics.METRICS, f"{place}: values: {number}: metric")
+        _known(value["statistic"], statistics.STATISTICS, f"{place}: values: {number}: statistic")
+        _check_where(study, experiment, value.get("where", {}), f"{place}: values: {number}: where")
+    if "published" in table:
+        _check_published(study, experiment, study.folder / "published" / table["published"], place)
+
+
+def _check_published(study: Study, experiment: str, file: Path, place: str) -> None:
+    """A file of published numbers: its columns, its key columns, and in every row known names and numbers. Raises Fault."""
+    if not file.is_file():
+        raise Fault(f"{place}: published: {file.name}: no such file in {relative(file.parent)}")
+    with open(file, encoding="utf-8", newline="") as text:
+        reader = csv.DictReader(text, restkey="")
+        place = relative(file)
+        header = reader.fieldnames or []
+        for column in PUBLISHED_COLUMNS:
+            if column not in header:
+                raise Fault(f"{place}: line 1: column {column} is missing; expected key columns, {', '.join(PUBLISHED_COLUMNS)}")
+        for column in header:
+            if column not in PUBLISHED_COLUMNS:
+                _known(column, _columns(study, experiment), f"{place}: line 1: column")
+        for row in reader:
+            where = f"{place}: line {reader.line_num}"
+            if "" in row or None in row.values():
+                raise Fault(f"{where}: expected {len(header)} values, one a column")
+            _known(row["metric"], metrics.METRICS, f"{where}: metric")
+            _known(row["statistic"], statistics.STATISTICS, f"{where}: statistic")
+            for column, needed in (("value", True), ("n", False)):
+                if not _is_number(row[column]) and (needed or row[column]):
+                    raise Fault(f"{where}: {column}: {row[column]!r}; expected a number")
+            if "method" in row:
+                _known(row["method"], study.experiments[experiment]["methods"], f"{where}: method")
+            if "problem" in row:
+                _known(row["problem"], study.experiments[experiment]["problems"], f"{where}: problem")
+
+
+def _is_number(text: str) -> bool:
+    try:
+        return math.isfinite(float(text))
+    except ValueError:
+        return False
+
+
+def _check_panel(study: Study, panel: dict, place: str) -> None:
+    _known(panel["kind"], sheet.known_kinds(), f"{place}: kind")
+    options = sheet.panel_options(panel["kind"])
+    for key in panel:
+        _known(key, [*sheet.PANEL_KEYS, *options], place)
+    for option in sheet.required_options(panel["kind"]):
+        if option not in panel:
+            raise Fault(f"{place}: {option}: missing; {panel['kind']} needs it")
+    for option, annotation in options.items():
+        wanted = option != "pick" and option in panel and setting_fault(annotation, panel[option])
+        if wanted:
+            raise Fault(f"{place}: {option}: {panel[option]!r}; expected {wanted}")
+    if ("experiment" in panel) == ("workspace" in panel):
+        raise Fault(f"{place}: expected either experiment or workspace")
+    if "workspace" in panel:
+        _known(panel["workspace"], study.workspaces, f"{place}: workspace")
+        return
+    _known(panel["experiment"], study.experiments, f"{place}: experiment")
+    _check_where(study, panel["experiment"], panel.get("where", {}), f"{place}: where")
+    if "pick" in panel:
+        _check_pick(study, panel["experiment"], panel["pick"], f"{place}: pick")
+
+
+def _check_pick(study: Study, experiment: str, pick: Any, place: str) -> None:
+    if not isinstance(pick, dict) or len(pick) != 1:
+        raise Fault(f"{place}: {pick!r}; expected {{lowest: column}}, {{median: column}} or {{repeat: number}}")
+    ((word, value),) = pick.items()
+    _known(word, PICKS, place)
+    if word == "repeat" and not isinstance(value, int):
+        raise Fault(f"{place}: repeat: {value!r}; expected a whole number")
+    if word != "repeat":
+        _known(value, _columns(study, experiment), f"{place}: {word}")

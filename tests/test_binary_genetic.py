@@ -1,0 +1,170 @@
+"""The genetic algorithm of song2016: its objective against an independent reference, its degenerate cases, its settings."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bezierplan import curves
+from bezierplan.planners import binary_genetic
+from bezierplan.problem import Problem
+from bezierplan.workspaces.grid import Grid, from_lines
+
+SETTINGS = {
+    "curve": "piecewise_quadratic",
+    "genes": 6,
+    "samples": 601,
+    "spacing": "parameter",
+    "population": 20,
+    "generations": 10,
+    "crossover_probability": 0.5,
+    "cut": "bit",
+    "mutation_probability": 0.1,
+    "mutation": "one_bit",
+    "elitism": 1,
+    "penalty": 10.0,
+    "penalty_for": "each_sample",
+    "occupied_point_penalty": 0.0,
+}
+SAMPLES = {"polyline": 701, "piecewise_quadratic": 601, "piecewise_cubic": 601, "bezier": 601}
+OPEN = Grid(np.zeros((16, 16), dtype=bool), 10.0, "unit")
+WALL = from_lines(["......#.", "......#.", "......#.", "......#."], 1.0, "unit")
+
+
+def problem(workspace, start, target):
+    return Problem("test", workspace, workspace.centre(start), workspace.centre(target))
+
+
+def plan(workspace=OPEN, start=0, target=255, seed=0, **changes):
+    return binary_genetic.plan(problem(workspace, start, target), np.random.default_rng(seed), **(SETTINGS | changes))
+
+
+def random_grid(seed):
+    occupied = np.random.default_rng(seed).random((16, 16)) < 0.3
+    occupied[0, 0] = occupied[-1, -1] = False
+    return Grid(occupied, 10.0, "unit")
+
+
+def reference(path, grid, samples):
+    """Length and number of occupied samples of a path, by numpy alone."""
+    points = curves.sample_matrix(path.curve, len(path.points), samples) @ path.points
+    column, row = np.floor(points / grid.cell + 1e-9).astype(int).T
+    return np.hypot(*np.diff(points, axis=0).T).sum(), grid.occupied[row, column].sum()
+
+
+@given(st.integers(0, 10_000), st.sampled_from(curves.CURVES))
+@settings(max_examples=40)
+def test_objective_is_length_plus_penalty_for_each_occupied_sample(seed, curve):
+    grid = random_grid(seed)
+    found = plan(grid, seed=seed, curve=curve, samples=SAMPLES[curve], generations=3)
+    length, bad = reference(found.path, grid, SAMPLES[curve])
+    assert found.objective == pytest.approx(length + 10 * bad, rel=1e-12)
+    assert found.extra["bad_samples"] == bad
+    assert found.claimed_feasible == (bad == 0)
+
+
+@pytest.mark.parametrize("curve", curves.CURVES)
+def test_stretches_kept_from_a_parent_change_nothing(curve, monkeypatch):
+    """The compiled search against its plain Python with every stretch measured anew."""
+    compiled = plan(random_grid(5), curve=curve, samples=SAMPLES[curve], population=6, generations=4)
+    monkeypatch.setattr(binary_genetic, "_same", lambda *_: False)
+    monkeypatch.setattr(binary_genetic, "_search", binary_genetic._search.py_func)
+    plain = plan(random_grid(5), curve=curve, samples=SAMPLES[curve], population=6, generations=4)
+    assert np.array_equal(compiled.history, plain.history)
+    assert np.array_equal(compiled.path.points, plain.path.points)
+
+
+def test_stretches_of_quadratic_pieces_depend_on_three_control_points():
+    found = binary_genetic.stretches(curves.sample_matrix("piecewise_quadratic", 8, 601))
+    assert found.tolist() == [[i, i + 2, 100 * i, 100 * i + 100] for i in range(6)]
+
+
+def test_stretches_cover_all_samples_where_pieces_do_not_divide_them():
+    found = binary_genetic.stretches(curves.sample_matrix("piecewise_quadratic", 8, 101))
+    assert found[0, 2] == 0
+    assert found[-1, 3] == 100
+    assert np.array_equal(found[1:, 2], found[:-1, 3])
+
+
+def test_history_never_rises_and_counts_the_first_generation():
+    found = plan(generations=25)
+    assert len(found.history) == 26
+    assert (np.diff(found.history) <= 0).all()
+    assert found.history[-1] == found.objective
+    assert found.evaluations == 20 * 26
+
+
+def test_same_seed_gives_the_same_bits():
+    one, other = plan(random_grid(1), seed=7), plan(random_grid(1), seed=7)
+    assert np.array_equal(one.history, other.history)
+    assert np.array_equal(one.path.points, other.path.points)
+
+
+def test_start_equal_to_target_is_answered_without_a_search():
+    found = plan(start=17, target=17)
+    assert found.objective == pytest.approx(0, abs=1e-9)
+    assert found.evaluations == 1
+    assert len(found.history) == 1
+    assert curves.length(found.path) == 0
+
+
+@pytest.mark.parametrize("curve", ["polyline", "bezier"])
+def test_no_free_gene_leaves_the_straight_line(curve):
+    found = plan(genes=0, curve=curve, samples=101)
+    assert found.objective == pytest.approx(150 * math.sqrt(2))
+    assert found.evaluations == 1
+
+
+def test_no_generation_leaves_the_best_of_the_first():
+    assert plan(generations=0).objective == plan(generations=5).history[0]
+
+
+def test_closed_wall_gives_a_path_that_is_said_to_collide():
+    found = plan(WALL, start=0, target=7, generations=40)
+    assert not found.claimed_feasible
+    assert found.objective > curves.length(found.path)
+    assert found.extra["bad_samples"] > 0
+
+
+def test_surplus_cells_of_a_narrow_grid_are_occupied():
+    narrow = Grid(np.zeros((3, 5), dtype=bool), 1.0, "unit")
+    found = plan(narrow, start=0, target=14, generations=30)
+    assert found.claimed_feasible
+    length, _ = reference(found.path, Grid(np.pad(narrow.occupied, ((0, 1), (0, 3)), constant_values=True), 1.0, "unit"), 601)
+    assert found.objective == pytest.approx(length)
+
+
+def test_one_penalty_a_path_makes_the_straight_line_through_a_wall_best():
+    found = plan(WALL, start=0, target=7, generations=60, population=60, penalty_for="path", penalty=1.0)
+    assert found.objective == pytest.approx(8.0)
+
+
+def test_polyline_measured_along_its_length_is_exact():
+    found = plan(random_grid(2), curve="polyline", samples=701, spacing="arc_length", generations=5)
+    assert found.objective - 10 * found.extra["bad_samples"] == pytest.approx(curves.length(found.path))
+
+
+def test_occupied_control_points_cost_what_the_setting_says():
+    grid = random_grid(3)
+    found = plan(grid, occupied_point_penalty=7.0, generations=0, population=2)
+    length, bad = reference(found.path, grid, 601)
+    column, row = (found.path.points / 10).astype(int).T
+    assert found.objective == pytest.approx(length + 10 * bad + 7 * grid.occupied[row, column].sum())
+
+
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        ({"population": 21}, "population: 21"),
+        ({"genes": 0}, "genes: 0"),
+        ({"curve": "piecewise_cubic", "genes": 1}, "genes: 1"),
+        ({"spacing": "arc_length"}, "spacing"),
+        ({"cut": "gene", "genes": 1}, "cut"),
+        ({"samples": 6}, "samples: 6"),
+    ],
+)
+def test_settings_that_do_not_fit_together_are_named(changes, named):
+    with pytest.raises(ValueError, match=named):
+        binary_genetic.check(SETTINGS | changes)

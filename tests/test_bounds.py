@@ -1,0 +1,352 @@
+"""Exact shortest paths: closed forms, published and reference lengths, and that the paths themselves are free."""
+
+import csv
+import itertools
+import json
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+import shapely
+
+from bezierplan.exact.bounds import Bound, centre_path, lattice_path, least_length, shortest_path
+from bezierplan.exact.checker import check
+from bezierplan.exact.region import region
+from bezierplan.problem import Problem
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.files import polygons_from_geojson
+from bezierplan.workspaces.grid import Grid, from_lines
+from bezierplan.workspaces.polygons import Polygons
+
+DATA = Path(__file__).parent / "data"
+MAPS = DATA / "maps"
+ROOT2 = math.sqrt(2)
+WORLD = (-10.0, 10.0, -10.0, 10.0)
+EQUAL = ((1.5, 4.5, 1.2), (4.0, 3.0, 1.2), (1.2, 1.5, 1.2))
+PUBLIC = ((1.5, 4.5, 1.5), (4.0, 3.0, 1.0), (1.2, 1.5, 0.8))
+
+
+def reference(quantity):
+    with (DATA / "reference_lengths.csv").open(newline="") as file:
+        return [row for row in csv.DictReader(file) if row["quantity"] == quantity]
+
+
+def imr_problem(name):
+    text = (MAPS / "imr" / f"{name}.geojson").read_text()
+    properties = json.loads(text)["properties"]
+    return Problem(name, polygons_from_geojson(text, "m"), tuple(properties["start"]), tuple(properties["target"]))
+
+
+def grid_map(file, cell=1.0):
+    return from_lines((MAPS / file).read_text().splitlines(), cell, "m")
+
+
+def around(discs, start, target, bounds=WORLD):
+    table = np.array(discs, dtype=float).reshape(-1, 3)
+    return Problem("", Circles(bounds, table[:, :2], table[:, 2], "m"), start, target)
+
+
+def among(obstacles, start, target, bounds=(0.0, 10.0, 0.0, 10.0)):
+    return Problem("", Polygons(bounds, tuple((np.array(ring, dtype=float),) for ring in obstacles), "m"), start, target)
+
+
+def on_cells(occupied, start, target, cell=1.0):
+    return Problem("", Grid(np.array(occupied, dtype=bool), cell, "m"), start, target)
+
+
+def pieces(bound):
+    return np.stack([bound.points[:-1], bound.points[1:]], axis=1)
+
+
+def assert_is_path(bound, problem, squeeze="open"):
+    """The polyline goes from start to target, has the bound's length (with arcs: at most 1e-6 more), and is free."""
+    np.testing.assert_allclose(bound.points[[0, -1]], [problem.start, problem.target], atol=1e-12)
+    drawn = np.hypot(*np.diff(bound.points, axis=0).T).sum()
+    excess = 1e-6 if isinstance(problem.workspace, Circles) else 0
+    assert -1e-9 <= drawn - bound.length <= excess + 1e-9
+    assert check(pieces(bound), region(problem.workspace), squeeze).feasible
+
+
+@pytest.mark.parametrize("row", reference("shortest_path"), ids=lambda row: row["map"])
+def test_shortest_paths_of_the_benchmark_maps(row):
+    problem = imr_problem(row["map"])
+    bound = shortest_path(problem)
+    assert bound.length == pytest.approx(float(row["value"]), abs=1e-5)
+    assert_is_path(bound, problem)
+
+
+@pytest.mark.parametrize("row", reference("shortest_path"), ids=lambda row: row["map"])
+def test_shortest_paths_of_the_benchmark_maps_by_another_method(row):
+    """All pairs of corners, judged by the pattern of the segment against the blocked region as a whole."""
+    problem = imr_problem(row["map"])
+    left, right, bottom, top = problem.workspace.bounds
+    obstacles = shapely.union_all([shapely.Polygon(rings[0], rings[1:]) for rings in problem.workspace.obstacles])
+    blocked = shapely.box(left - 1, bottom - 1, right + 1, top + 1) - (shapely.box(left, bottom, right, top) - obstacles)
+    corners = np.unique(shapely.get_coordinates(obstacles), axis=0)
+    inner = corners[((corners > (left, bottom)) & (corners < (right, top))).all(axis=1)]
+    nodes = np.concatenate([[problem.start, problem.target], inner])
+    pairs = np.array(list(itertools.combinations(range(len(nodes)), 2)))
+    shapely.prepare(blocked)
+    lines = shapely.linestrings(nodes[pairs])
+    maybe = shapely.crosses(blocked, lines) | shapely.within(lines, blocked)
+    free = pairs[~maybe]
+    free = free[~shapely.relate_pattern(blocked, shapely.linestrings(nodes[free]), "T********")]
+    lengths = np.full((len(nodes), len(nodes)), np.inf)
+    lengths[free[:, 0], free[:, 1]] = np.hypot(*(nodes[free[:, 1]] - nodes[free[:, 0]]).T)
+    lengths = np.minimum(lengths, lengths.T)
+    distance = lengths[0].copy()
+    for _ in nodes:
+        distance = np.minimum(distance, (distance[:, None] + lengths).min(axis=0))
+    assert shortest_path(problem).length == pytest.approx(distance[1], rel=1e-12)
+
+
+def occupied_by(polygons, side):
+    """Cells that an obstacle overlaps with positive area. The cell is shrunk, not the obstacle."""
+    _, width, _, height = polygons.bounds
+    x, y = np.meshgrid(np.arange(round(width / side)) * side, np.arange(round(height / side)) * side)
+    boxes = shapely.box(x + 1e-7, y + 1e-7, x + side - 1e-7, y + side - 1e-7)
+    obstacles = shapely.union_all([shapely.Polygon(rings[0], rings[1:]) for rings in polygons.obstacles])
+    shapely.prepare(obstacles)
+    return shapely.intersects(obstacles, boxes)
+
+
+@pytest.mark.parametrize("name", sorted({row["map"] for row in reference("grid_path")}))
+def test_lattice_paths_of_the_benchmark_maps(name):
+    problem = imr_problem(name)
+    rows = [row for row in reference("grid_path") if row["map"] == name]
+    for side in {row["cell_m"] for row in rows}:
+        h = float(side)
+        occupied = occupied_by(problem.workspace, h)
+        start, target = (Grid(occupied, h, "m").cell_of(*point) for point in (problem.start, problem.target))
+        for row in rows:
+            if row["cell_m"] == side:
+                weight = ROOT2 if row["diagonal_weight"] == "sqrt2" else float(row["diagonal_weight"])
+                bound = lattice_path(occupied, start, target, weight, "none")
+                assert bound.length * h == pytest.approx(float(row["value"]), abs=1e-5)
+
+
+SONG = [
+    (0, 15, 190.293864, 194.390889),
+    (15, 255, 202.374817, 207.024439),
+    (240, 255, 170.739758, 173.631357),
+    (0, 240, 224.086371, 231.126624),
+    (0, 255, 218.494430, 220.032506),
+    (15, 240, 220.848583, 224.361260),
+]
+
+
+@pytest.mark.parametrize(("first", "last", "any_angle", "through_centres"), SONG)
+def test_paths_of_the_workspace_of_song2016(first, last, any_angle, through_centres):
+    grid = grid_map("song2016.txt", cell=10.0)
+    problem = Problem("", grid, grid.centre(first), grid.centre(last))
+    assert shortest_path(problem).length == pytest.approx(any_angle, abs=1e-5)
+    assert centre_path(problem).length == pytest.approx(through_centres, abs=1e-5)
+    assert_is_path(shortest_path(problem), problem)
+    assert_is_path(centre_path(problem), problem)
+
+
+@pytest.mark.parametrize(
+    ("environment", "any_angle", "one", "none"),
+    [(1, 29.2080963, 31.2132034, 33.5563492), (2, 30.0618849, 32.3847763, 32.9705627)],
+)
+def test_paths_of_the_environments_of_ma2020(environment, any_angle, one, none):
+    grid = grid_map(f"ma2020/environment{environment}.txt")
+    assert shortest_path(Problem("", grid, (0.0, 0.0), (20.0, 20.0))).length == pytest.approx(any_angle, abs=1e-6)
+    for rule, length in {"free": one, "one": one, "none": none}.items():
+        # Half a diagonal from the map's corners to the centres of their cells.
+        assert lattice_path(grid.occupied, (0, 0), (19, 19), ROOT2, rule).length + ROOT2 == pytest.approx(length, abs=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("environment", "length"),
+    [("env1_initial", 26.268314), ("env1_modified", 28.946764), ("env2_initial", 35.548689), ("env2_modified", 32.194010)],
+)
+def test_centre_paths_of_the_environments_of_meledje(environment, length):
+    grid = grid_map(f"meledje/{environment}.txt")
+    problem = Problem("", grid, grid.centre(0), grid.centre(255))
+    assert centre_path(problem).length == pytest.approx(length, abs=1e-6)
+    assert_is_path(centre_path(problem), problem)
+    assert shortest_path(problem).length < length
+
+
+PINCH = np.zeros((4, 4), dtype=bool)
+PINCH[1, 1] = PINCH[2, 2] = True
+
+
+@pytest.mark.parametrize("cell", [1.0, 10.0])
+@pytest.mark.parametrize("mirrored", [False, True])
+@pytest.mark.parametrize(
+    ("start", "target", "is_open", "is_closed"),
+    [
+        ((1, 3), (3, 1), 2.828427, 4),
+        ((0.5, 3.5), (3.5, 0.5), 4.242641, 5.099020),
+        ((0.5, 2), (3.5, 2), 3, 3.920810),
+        ((2, 2), (3, 1), 1.414214, 1.414214),
+        ((1.5, 2.5), (2, 2), 0.707107, 0.707107),
+    ],
+)
+def test_a_pinch_open_and_closed(start, target, is_open, is_closed, mirrored, cell):
+    occupied = PINCH
+    if mirrored:
+        occupied = PINCH[:, ::-1]
+        start, target = ((4 - x, y) for x, y in (start, target))
+    start, target = (tuple(cell * value for value in point) for point in (start, target))
+    problem = on_cells(occupied, start, target, cell)
+    for squeeze, length in (("open", is_open), ("closed", is_closed)):
+        bound = shortest_path(problem, squeeze)
+        assert bound.length == pytest.approx(cell * length, abs=1e-5)
+        assert_is_path(bound, problem, squeeze)
+
+
+def test_a_pinch_is_the_only_way():
+    occupied = np.eye(5, dtype=bool)
+    problem = on_cells(occupied, (0.5, 4.5), (4.5, 0.5))
+    assert shortest_path(problem).length == pytest.approx(2 * math.hypot(1.5, 2.5))
+    assert shortest_path(problem, "closed").length == math.inf
+
+
+def test_a_start_that_is_on_no_lattice():
+    start, target = (math.pi / 10, math.e / 10), (3 + 1 / math.e, 3 + 1 / math.pi)
+    bound = shortest_path(on_cells(np.zeros((4, 4)), start, target))
+    assert bound.length == math.dist(start, target)
+    occupied = np.zeros((4, 4))
+    occupied[1, 2] = True
+    problem = on_cells(occupied, start, target)
+    bound = shortest_path(problem)
+    assert bound.length == pytest.approx(math.dist(start, (2, 2)) + math.dist((2, 2), target), rel=1e-15)
+    assert_is_path(bound, problem)
+
+
+@pytest.mark.parametrize(
+    ("discs", "start", "target", "length"),
+    [
+        (EQUAL, (0, 0), (4, 6), 7.7033905494),
+        (PUBLIC, (0, 0), (4, 6), 7.4897085262),
+        (((0, 0, 1),), (-2, 0), (2, 0), 2 * math.sqrt(3) + math.pi / 3),
+        (((0, 0, 1),), (-1, 0), (2, 0), 3.8264459099),
+        (((0, 0, 1),), (-1, 0), (1, 0), math.pi),
+        (((0, 0, 1),), (0, 1), (5, 1), 5),
+        (((0, 0.6, 1), (0, -0.6, 1)), (-3, 0), (3, 0), 6.8434828391),
+        (((0, 0.6, 1), (0, -0.6, 1)), (-0.8, 0), (3, 0), 5.6360388551),
+        (((0, 1, 1), (0, -1, 1)), (-3, 0), (3, 0), 6),
+        (((0, 0, 2), (0.5, 0, 1)), (-3, 0), (3, 0), 7.3910465799),
+        (((0, 0, 2), (1, 0, 1)), (-3, 0), (3, 0), 7.3910465799),
+        (((0, 0, 2), (0, 0, 2)), (-3, 0), (3, 0), 7.3910465799),
+        ((), (-3, 0), (3, 0), 6),
+    ],
+)
+def test_paths_around_circles(discs, start, target, length):
+    problem = around(discs, start, target)
+    bound = shortest_path(problem)
+    assert bound.length == pytest.approx(length, abs=1e-9)
+    assert_is_path(bound, problem)
+
+
+@pytest.mark.parametrize(("discs", "most"), [(EQUAL, 553), (PUBLIC, 405)], ids=["equal", "public"])
+def test_the_polyline_along_arcs_is_as_coarse_as_it_may_be(discs, most):
+    bound = shortest_path(around(discs, (0, 0), (4, 6)))
+    assert len(bound.points) <= most
+    assert 9.8e-7 <= np.hypot(*np.diff(bound.points, axis=0).T).sum() - bound.length <= 1e-6
+
+
+def test_a_polyline_keeps_clear_of_a_neighbouring_circle():
+    # Around the first circle, past another one in a distance of 1e-7.
+    problem = around(((0, 0, 1), (0, 2 + 1e-7, 1)), (-2, 0.5), (2, 0.4))
+    bound = shortest_path(problem)
+    assert bound.points[:, 1].max() >= 1
+    assert_is_path(bound, problem)
+
+
+@pytest.mark.parametrize(
+    "problem",
+    [
+        around(((0, 0, 1),), (0.5, 0), (3, 0)),
+        around(((0, 0, 1),), (-3, 0), (20, 0)),
+        around(((0, 0, 1), (0, 2, 1.5), (0, -2, 1.5)), (-3, 0), (3, 0), bounds=(-4.0, 4.0, -3.0, 3.0)),
+        on_cells([[False, True, False]], (0.5, 0.5), (2.5, 0.5)),
+        on_cells([[False, True, False]], (1.5, 0.5), (1.5, 0.5)),
+        on_cells([[False, False, False]], (0.5, 0.5), (3.5, 0.5)),
+        among([[(4, 0), (5, 0), (5, 10), (4, 10)]], (1, 1), (9, 9)),
+        among([[(4, 4), (6, 4), (6, 6), (4, 6)]], (5, 5), (9, 9)),
+    ],
+    ids=["in a disc", "outside", "circles across", "cell across", "in a cell", "off the grid", "wall across", "in a polygon"],
+)
+def test_no_path(problem):
+    bound = shortest_path(problem)
+    assert bound.length == math.inf
+    assert bound.points.shape == (0, 2)
+
+
+@pytest.mark.parametrize(
+    "problem",
+    [
+        around(((0, 0, 1),), (3, 0), (3, 0)),
+        around(((0, 0, 1),), (1, 0), (1, 0)),
+        on_cells([[False, True]], (0.5, 0.5), (0.5, 0.5)),
+        among([[(4, 4), (6, 4), (6, 6), (4, 6)]], (4, 4), (4, 4)),
+    ],
+    ids=["circles", "on a circle", "cells", "on a corner"],
+)
+def test_start_is_target(problem):
+    assert shortest_path(problem).length == 0
+    assert shortest_path(problem).points.tolist() == [list(problem.start), list(problem.target)]
+
+
+@pytest.mark.parametrize(
+    ("obstacles", "start", "target", "length"),
+    [
+        ([[(4, 4), (6, 4), (6, 6), (4, 6)]], (4, 4), (6, 6), 4),
+        ([[(4, 4), (6, 4), (6, 6), (4, 6)]], (4, 5), (6, 5), 4),
+        ([[(4, 4), (5, 5), (4, 6)], [(5, 5), (6, 4), (6, 6)]], (5, 2), (5, 8), 6),
+        ([[(4, 4), (5, 5), (4, 6)], [(5, 5), (6, 4), (6, 6)]], (4.9, 4), (4.9, 6), 2 * math.hypot(0.1, 1)),
+        ([[(0, 5), (5, 5), (5, 6), (0, 6)], [(5, 5), (5, 4), (10, 4), (10, 5)]], (4, 4), (6, 6), 2 * ROOT2),
+        ([[(4, 4), (5, 4), (5, 6), (4, 6)], [(5, 4), (6, 4), (6, 6), (5, 6)]], (5, 3), (5, 7), 2 * ROOT2 + 2),
+        ([[(4, 0), (5, 0), (5, 7), (4, 7)]], (3, 0), (6, 0), 1 + 2 * math.hypot(1, 7)),
+    ],
+    ids=["corner to corner", "wall to wall", "between tips", "turning between tips", "between regions", "shared edge", "on the border"],
+)
+def test_paths_among_polygons(obstacles, start, target, length):
+    problem = among(obstacles, start, target)
+    bound = shortest_path(problem)
+    assert bound.length == pytest.approx(length, rel=1e-12)
+    assert_is_path(bound, problem)
+
+
+@pytest.mark.parametrize(("rule", "length"), [("free", ROOT2), ("one", math.inf), ("none", math.inf)])
+def test_a_diagonal_between_two_occupied_cells(rule, length):
+    assert lattice_path(np.eye(2, dtype=bool)[::-1], (0, 0), (1, 1), ROOT2, rule).length == length
+
+
+@pytest.mark.parametrize(("rule", "length"), [("free", ROOT2), ("one", ROOT2), ("none", 2)])
+def test_a_diagonal_beside_an_occupied_cell(rule, length):
+    occupied = np.zeros((3, 2), dtype=bool)
+    occupied[1, 0] = True
+    bound = lattice_path(occupied, (0, 0), (1, 1), ROOT2, rule)
+    assert bound.length == length
+    assert bound.points[[0, -1]].tolist() == [[0.5, 0.5], [1.5, 1.5]]
+
+
+def test_a_lattice_path_to_an_occupied_cell_and_to_itself():
+    assert lattice_path(np.array([[False, True]]), (0, 0), (0, 1), 1.5, "free").length == math.inf
+    assert lattice_path(np.array([[False, True]]), (0, 0), (0, 0), 1.5, "free").length == 0
+
+
+def test_what_bounds_refuse():
+    empty = np.zeros((2, 2), dtype=bool)
+    with pytest.raises(ValueError, match=r"corner rule 'two'; known: free, one, none"):
+        lattice_path(empty, (0, 0), (1, 1), ROOT2, "two")
+    with pytest.raises(ValueError, match=r"target cell \(row 2, column 1\) is not on the grid of 2 x 2"):
+        lattice_path(empty, (0, 0), (2, 1), ROOT2, "free")
+    with pytest.raises(ValueError, match=r"start .* is not the centre of a cell"):
+        centre_path(on_cells(empty, (0.5, 1.0), (1.5, 1.5)))
+    with pytest.raises(ValueError, match=r"more than 5000"):
+        centre_path(on_cells(np.zeros((72, 72)), (0.5, 0.5), (1.5, 1.5)))
+
+
+def test_the_least_length_of_a_feasible_path():
+    straight = Bound(10.0, np.array([[0.0, 0.0], [10.0, 0.0]]))
+    assert least_length(straight) == pytest.approx(10 - 1e-8, abs=1e-14)
+    turning = Bound(2.0, np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [1.0, 1.0]]))
+    assert 2.0 - least_length(turning) == pytest.approx(2e-9 + 1e-8 * math.pi / 2, abs=1e-15)
+    assert least_length(Bound(math.inf, np.empty((0, 2)))) == math.inf

@@ -1,0 +1,308 @@
+"""The certified check: what touches is free, what enters is found, and where, how deep, how near."""
+
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from bezierplan.curves import bernstein
+from bezierplan.exact.checker import check
+from bezierplan.exact.region import region
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.files import polygons_from_geojson
+from bezierplan.workspaces.grid import Grid, from_lines
+from bezierplan.workspaces.polygons import Polygons
+
+MAPS = Path(__file__).parent / "data" / "maps"
+FREE = None
+
+
+def points_of(text):
+    """Points from text such as `(0,1)(2.5,3)`."""
+    return np.array([[float(x), float(y)] for x, y in re.findall(r"\(([^,]+),([^)]+)\)", text)])
+
+
+def bezier(text):
+    return points_of(text)[None]
+
+
+def polyline(points):
+    points = points_of(points) if isinstance(points, str) else np.asarray(points, dtype=float)
+    return np.stack([points[:-1], points[1:]], axis=1)
+
+
+def lowered(pieces, by):
+    return pieces - np.array([0.0, by])
+
+
+def circles(*discs, bounds=(-10.0, 10.0, -10.0, 10.0)):
+    table = np.array(discs, dtype=float).reshape(-1, 3)
+    return region(Circles(bounds, table[:, :2], table[:, 2], "m"))
+
+
+def cells(size, *occupied, cell=1.0):
+    """A square grid from the ranges (first column, first row, columns, rows) of its occupied cells."""
+    grid = np.zeros((size, size), dtype=bool)
+    for column, row, columns, rows in occupied:
+        grid[row : row + rows, column : column + columns] = True
+    return region(Grid(grid, cell, "m"))
+
+
+def polygons(*obstacles, bounds=(0.0, 10.0, 0.0, 10.0)):
+    """Polygons from text; an obstacle is one ring, or several separated by spaces: the outer one and its holes."""
+    return region(Polygons(bounds, tuple(tuple(points_of(ring) for ring in text.split()) for text in obstacles), "m"))
+
+
+UNIT_DISC = circles((0, 0, 1))
+DISC_FAR_OFF = circles((8, -8, 1))
+BLOCK = cells(6, (2, 2, 2, 1))
+BLOCK_AND_BORDER = cells(6, (2, 2, 2, 1), (3, 0, 1, 1))
+LARGE_BLOCK = cells(6, (1, 1, 3, 3))
+PINCH = cells(4, (1, 1, 1, 1), (2, 2, 1, 1))
+SQUARE = polygons("(4,4)(6,4)(6,6)(4,6)")
+ELL = polygons("(2,2)(8,2)(8,8)(6,8)(6,4)(2,4)")
+HOLLOW = polygons("(1,1)(9,1)(9,9)(1,9) (3,3)(7,3)(7,7)(3,7)")
+WALL_ON_BORDER = polygons("(4,0)(5,0)(5,7)(4,7)")
+TRIANGLES = polygons("(4,4)(5,5)(4,6)", "(5,5)(6,4)(6,6)")
+THIN_WALL = polygons("(4,5)(6,5)(6,5.000001)(4,5.000001)")
+NARROW_GAP = polygons("(4,4)(5,4)(5,6)(4,6)", "(5.0000001,4)(10,4)(10,6)(5.0000001,6)")
+SHARED_EDGE = polygons("(4,4)(5,4)(5,6)(4,6)", "(5,4)(10,4)(10,6)(5,6)")
+WAVE_ON_EDGE = np.column_stack([np.random.default_rng(0).uniform(0, 6, 13), np.full(13, 3.0)])[None]
+
+TOUCHING = {
+    "disc: tangent": (UNIT_DISC, bezier("(-3,1)(3,1)"), FREE),
+    "disc: tangent and back": (UNIT_DISC, bezier("(-3,1)(3,1)(-3,1)"), FREE),
+    "disc: one point on the circle": (UNIT_DISC, bezier("(1,0)(1,0)(1,0)(1,0)"), FREE),
+    "disc: secant 1e-8 deep": (UNIT_DISC, bezier("(-3,0.99999999)(3,0.99999999)"), 0.49998),
+    "disc: apex on it, curving away": (UNIT_DISC, bezier("(-1,2)(0,0)(1,2)"), FREE),
+    "disc: apex on it, bending round": (UNIT_DISC, bezier("(-2,.4)(0,1.6)(2,.4)"), FREE),
+    "disc: starts on it, radial": (UNIT_DISC, bezier("(1,0)(2,0)(3,1)"), FREE),
+    "disc: starts on it, tangential": (UNIT_DISC, bezier("(1,0)(1,2)(3,3)"), FREE),
+    "disc: one point inside": (UNIT_DISC, bezier("(.5,0)(.5,0)(.5,0)"), 0.0),
+    "disc: as small as the path's rounding": (circles((0, 0.02, 1e-4)), bezier("(-5,0)(0,.04)(5,0)"), 0.49999),
+    "border: touched from inside": (DISC_FAR_OFF, bezier("(-5,8)(0,12)(5,8)"), FREE),
+    "border: crossed by 5e-4": (DISC_FAR_OFF, bezier("(-5,8)(0,12.001)(5,8)"), 0.49209531),
+    "cells: along an edge": (BLOCK, bezier("(0,3)(6,3)"), FREE),
+    "cells: to and fro along an edge": (BLOCK, WAVE_ON_EDGE, FREE),
+    "cells: around along edges": (BLOCK, polyline("(0,0)(2,0)(2,3)(4,3)(4,2)(6,2)"), FREE),
+    "cells: past a corner": (BLOCK, bezier("(0,1)(4,5)"), FREE),
+    "cells: past a corner, 4.5e-9 lower": (BLOCK, lowered(bezier("(0,1)(4,5)"), 4.5e-9), 0.5),
+    "cells: through a seam": (BLOCK, bezier("(3,0)(3,6)"), 1 / 3),
+    "cells: beside a seam": (BLOCK, bezier("(2.9999999985,0)(2.9999999985,6)"), 1 / 3),
+    "cells: within a seam": (BLOCK, bezier("(3,2)(3,3)"), 0.0),
+    "cells: along the border under a cell": (BLOCK_AND_BORDER, bezier("(0,0)(6,0)"), 0.5),
+    "cells: through a block's vertices": (LARGE_BLOCK, bezier("(0,0)(5,5)"), 0.2),
+    "cells: out of the grid": (BLOCK, bezier("(1,1)(-2,1)"), 1 / 3),
+    "cells: far out of the grid": (BLOCK, bezier("(-5,1)(-5,2)"), 0.0),
+    "pinch: straight through": (PINCH, bezier("(1,3)(3,1)"), FREE),
+    "pinch: apex on it": (PINCH, bezier("(.5,3.5)(2,2)(3.5,.5)"), FREE),
+    "pinch: along grid lines": (PINCH, bezier("(0,2)(4,2)"), FREE),
+    "square: along a wall": (SQUARE, bezier("(0,6)(10,6)"), FREE),
+    "square: past a corner": (SQUARE, bezier("(2,4)(6,8)"), FREE),
+    "square: past a corner, 4.5e-9 lower": (SQUARE, lowered(bezier("(2,4)(6,8)"), 4.5e-9), 0.5),
+    "square: apex on a corner": (SQUARE, bezier("(3,7)(5,5)(7,7)"), FREE),
+    "square: along its diagonal": (SQUARE, bezier("(4,4)(6,6)"), 0.0),
+    "L: along a wall and on into it": (ELL, bezier("(2,4)(8,4)"), 2 / 3),
+    "L: from the inner corner into it": (ELL, bezier("(6,4)(8,2)"), 0.0),
+    "L: along both walls of the inner corner": (ELL, polyline("(2,4)(6,4)(6,8)"), FREE),
+    "hole: round its walls": (HOLLOW, polyline("(3,3)(7,3)(7,7)(3,7)(3,3)"), FREE),
+    "hole: from its corner to the outer one": (HOLLOW, bezier("(7,7)(9,9)"), 0.0),
+    "wall on the border: under it": (WALL_ON_BORDER, bezier("(0,0)(10,0)"), 0.4),
+    "wall on the border: over it": (WALL_ON_BORDER, polyline("(1,1)(4,7)(5,7)(9,1)"), FREE),
+    "triangles: between their tips": (TRIANGLES, bezier("(5,2)(5,8)"), FREE),
+    "thin wall: through it": (THIN_WALL, bezier("(5,2)(5,8)"), 0.5),
+    "thin wall: along its lower side": (THIN_WALL, bezier("(0,5)(10,5)"), FREE),
+    "thin wall: along its upper side": (THIN_WALL, bezier("(0,5.000001)(10,5.000001)"), FREE),
+    "thin wall: chord through it, curve past it": (THIN_WALL, polyline("(3,4)(4,5.000001)(6,5.000001)(7,4)"), FREE),
+    "gap of 1e-7: through it": (NARROW_GAP, bezier("(5.00000005,2)(5.00000005,8)"), FREE),
+    "shared edge: along it": (SHARED_EDGE, bezier("(5,2)(5,8)"), 1 / 3),
+}
+
+
+@pytest.mark.parametrize("case", TOUCHING)
+def test_touching_is_free_and_entering_is_not(case):
+    blocked, pieces, collision_at = TOUCHING[case]
+    found = check(pieces, blocked)
+    assert found.feasible == (collision_at is FREE)
+    if found.feasible:
+        assert math.isnan(found.collision_at)
+        assert found.depth == 0
+        assert found.clearance <= 6e-8
+        assert found.intervals <= 64 + len(pieces)
+    else:
+        assert found.collision_at == pytest.approx(collision_at, abs=1e-5)
+        assert found.depth > 1e-9
+        assert found.clearance == 0
+
+
+@pytest.mark.parametrize("bulge", [0.0, 1e-3])
+def test_an_apex_under_a_thin_wall_touches_it(bulge):
+    # The apex of the curve (3,4)(5,6)(7,4) is (5,5), on the wall's lower side.
+    found = check(bezier(f"(3,4)(5,{6 + bulge})(7,4)"), THIN_WALL)
+    assert found.feasible == (bulge == 0)
+
+
+@pytest.mark.parametrize(
+    ("pieces", "collision_at"),
+    [
+        (bezier("(1,3)(3,1)"), 0.5),
+        (bezier("(.5,3.5)(2,2)(3.5,.5)"), 0.5),
+        (bezier("(0,2)(4,2)"), 0.5),
+        (polyline("(1,3)(2,2)(3,1)"), 1.0),
+        (polyline("(1,3)(2,2)(2,2)(2,2)(3,1)"), 1.0),
+        (polyline("(1,3)(2,2)(1,3)"), FREE),
+        (polyline("(1,3)(2,2)"), FREE),
+        (polyline("(2,2)(3,1)"), FREE),
+        (polyline("(1,2)(2,2)(2,3)"), FREE),
+        (bezier("(.5,2.5)(2.5,1.5)(1.5,3.5)"), FREE),
+    ],
+    ids=[
+        "straight",
+        "apex",
+        "along lines",
+        "bend on it",
+        "rest on it",
+        "and back",
+        "end on it",
+        "start on it",
+        "round its corner",
+        "near it",
+    ],
+)
+def test_a_closed_pinch_may_be_touched_but_not_passed(pieces, collision_at):
+    assert check(pieces, PINCH).feasible
+    found = check(pieces, PINCH, squeeze="closed")
+    assert found.feasible == (collision_at is FREE)
+    if not found.feasible:
+        assert found.collision_at == pytest.approx(collision_at, abs=1e-6)
+        assert (found.depth, found.clearance) == (0, 0)
+
+
+def test_a_closed_pinch_in_a_grid_of_large_cells():
+    large = cells(4, (1, 2, 1, 1), (2, 1, 1, 1), cell=10.0)
+    assert check(10 * bezier("(1,1)(3,3)"), large).feasible
+    assert not check(10 * bezier("(1,1)(3,3)"), large, squeeze="closed").feasible
+    assert check(10 * polyline("(1,1)(2,2)(1.5,1.5)"), large, squeeze="closed").feasible
+
+
+def test_the_first_collision_is_the_first_along_the_path():
+    found = check(polyline("(-3,1)(3,1)(3,0)(-3,0)(-3,-3)(3,3)"), UNIT_DISC)
+    assert found.collision_at == pytest.approx(2 + 1 / 3, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("blocked", "pieces", "depth"),
+    [
+        (UNIT_DISC, bezier("(-3,.25)(3,.25)"), 0.75),
+        (UNIT_DISC, bezier("(-2,1)(0,0)(2,1)"), 0.5),
+        (DISC_FAR_OFF, bezier("(-5,8)(0,12.001)(5,8)"), 5e-4),
+        (DISC_FAR_OFF, bezier("(0,0)(13,14)"), 5.0),
+        (BLOCK, bezier("(0,2.25)(6,2.25)"), 0.25),
+        (LARGE_BLOCK, bezier("(0,0)(5,5)"), 1.5),
+        (SQUARE, bezier("(0,5.75)(10,5.75)"), 0.25),
+        (SQUARE, bezier("(0,7)(5,4)(10,7)"), 0.5),
+        (SHARED_EDGE, bezier("(5,2)(5,8)"), 1.0),
+    ],
+)
+def test_depth_is_the_largest_distance_to_free_space(blocked, pieces, depth):
+    found = check(pieces, blocked)
+    assert found.depth == pytest.approx(depth, rel=1e-6)
+    assert found.depth <= depth * (1 + 1e-9) <= (found.depth + found.tolerance) * (1 + 1e-9)
+
+
+@pytest.mark.parametrize(
+    ("blocked", "pieces", "clearance"),
+    [
+        (UNIT_DISC, bezier("(-3,1.25)(3,1.25)"), 0.25),
+        (UNIT_DISC, bezier("(-2,1.5)(0,2.5)(2,1.5)"), 1.0),
+        (circles(), bezier("(-5,0)(5,8)"), 2.0),
+        (BLOCK, bezier("(0.5,3.5)(5.5,3.5)"), 0.5),
+        (BLOCK, bezier("(1.5,4.5)(1.75,4)"), math.hypot(0.25, 1)),
+        (SQUARE, bezier("(1,7)(5,7)(9,7)"), 1.0),
+        (SQUARE, bezier("(3,9)(5,5)(7,9)"), 1.0),
+        (NARROW_GAP, bezier("(5.00000005,2)(5.00000005,8)"), 5e-8),
+        (polygons(), bezier("(3,3)(4,5)"), 3.0),
+    ],
+)
+def test_clearance_is_the_least_distance_to_the_blocked_region(blocked, pieces, clearance):
+    found = check(pieces, blocked)
+    assert found.feasible
+    assert found.clearance == pytest.approx(clearance, abs=found.tolerance)
+
+
+def test_no_free_space_at_all():
+    assert check(bezier("(5,5)(6,6)"), polygons("(0,0)(10,0)(10,10)(0,10)")).collision_at == 0
+    assert not check(bezier("(1,1)(2,2)"), cells(4, (0, 0, 4, 4))).feasible
+
+
+SAMPLES = 1000
+
+
+@pytest.mark.parametrize("kind", ["circles", "cells", "polygons"])
+def test_an_obstacle_between_two_samples_is_found(kind):
+    x = 10 * 500.5 / SAMPLES
+    thin = {
+        "circles": lambda: circles((x, 5, 1e-3), bounds=(0.0, 10.0, 0.0, 10.0)),
+        "cells": lambda: region(Grid(np.arange(5000)[None] == round(x * 500) - 1, 2e-3, "m")),
+        "polygons": lambda: polygons(f"({x - 1e-3},0)({x + 1e-3},0)({x + 1e-3},9)({x - 1e-3},9)"),
+    }[kind]()
+    y = 1e-3 if kind == "cells" else 5.0
+    pieces = bezier(f"(0,{y})(3,{y})(10,{y})")
+    samples = bernstein(2, np.linspace(0, 1, SAMPLES + 1)) @ pieces[0]
+    assert np.all(np.abs(samples[:, 0] - x) > 1e-3)
+    assert not check(pieces, thin).feasible
+
+
+@pytest.mark.parametrize("file", sorted((MAPS / "imr").glob("*.geojson")), ids=lambda file: file.stem)
+def test_a_stored_shortest_path_is_free(file):
+    text = file.read_text()
+    path = re.search(r'"shortest_path": (\[.*?\]\s*\])', text, re.DOTALL)
+    found = check(polyline(eval(path[1])), region(polygons_from_geojson(text, "m")))
+    assert found.feasible
+    assert found.intervals <= 64 + 40 * len(eval(path[1]))
+
+
+def test_lattice_paths_need_few_intervals():
+    grid = from_lines((MAPS / "song2016.txt").read_text().splitlines(), 10.0, "m")
+    blocked = region(grid)
+    steps = np.array([[0, 0], [0, 40], [10, 50], [20, 50], [40, 50]]) + 5.0
+    assert check(polyline(steps), blocked).feasible
+    assert check(polyline(steps), blocked).intervals <= 64
+    along_lines = np.array([[0, 0], [0, 60], [100, 60]], dtype=float)
+    assert check(polyline(along_lines), region(Grid(np.zeros((16, 16), dtype=bool), 10.0, "m"))).intervals == 2
+
+
+@pytest.mark.parametrize("contacts", [1, 3, 10])
+@pytest.mark.parametrize("degree", [2, 5, 11])
+def test_intervals_at_tangents(contacts, degree):
+    rng = np.random.default_rng(degree)
+    piece = rng.uniform(-10, 10, (degree + 1, 2))
+    fine = bernstein(degree, np.linspace(0, 1, 200_001)) @ piece
+    slope = degree * bernstein(degree - 1, np.linspace(0, 1, 200_001)) @ np.diff(piece, axis=0)
+    discs = []
+    for t in np.linspace(0, 200_000, contacts + 2).astype(int)[1:-1]:
+        normal = np.array([-slope[t, 1], slope[t, 0]]) / np.hypot(*slope[t])
+        centre = fine[t] + 1e-2 * normal
+        discs.append((*centre, np.hypot(*(fine - centre).T).min()))
+    blocked = circles(*discs, bounds=(-100.0, 100.0, -100.0, 100.0))
+    shrunk = blocked._replace(radii=blocked.radii - 1e-12)
+    found = check(piece[None], shrunk)
+    assert found.feasible
+    assert found.intervals <= 64 + 40 * contacts + 1
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 1.1e5])
+def test_unfit_coordinates_are_refused(value):
+    with pytest.raises(ValueError, match="not finite or beyond 100000"):
+        check(np.array([[[0.0, 0.0], [value, 1.0]]]), UNIT_DISC)
+
+
+def test_unfit_shapes_and_rules_are_refused():
+    with pytest.raises(ValueError, match="shape"):
+        check(np.zeros((3, 2)), UNIT_DISC)
+    with pytest.raises(ValueError, match="degree"):
+        check(np.zeros((1, 40, 2)), UNIT_DISC)
+    with pytest.raises(ValueError, match="squeeze"):
+        check(np.zeros((1, 2, 2)), PINCH, squeeze="shut")

@@ -1,0 +1,125 @@
+"""Curves: closed forms, worked examples, and properties that hold for every kind."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+from scipy.integrate import quad
+from scipy.interpolate import BSpline
+
+from bezierplan import curves
+from bezierplan.problem import Path
+
+coordinates = st.floats(-100, 100, allow_subnormal=False)
+
+
+@st.composite
+def paths(draw, kinds=curves.CURVES):
+    curve = draw(st.sampled_from(kinds))
+    count = draw(st.integers(curves.least_points(curve), 9))
+    return Path(curve, draw(hnp.arrays(float, (count, 2), elements=coordinates)))
+
+
+def sampled(path, samples=201):
+    return curves.sample_matrix(path.curve, len(path.points), samples) @ path.points
+
+
+@pytest.mark.parametrize(("curve", "degree"), [("polyline", 1), ("piecewise_quadratic", 2), ("piecewise_cubic", 3), ("bezier", 6)])
+def test_samples_are_those_of_a_clamped_uniform_b_spline(curve, degree):
+    points = np.random.default_rng(0).normal(size=(7, 2))
+    pieces = 7 - degree
+    knots = np.concatenate([np.zeros(degree), np.arange(pieces + 1), np.full(degree, pieces)])
+    expected = BSpline(knots, points, degree)(np.linspace(0, pieces, 101))
+    assert np.allclose(sampled(Path(curve, points), 101), expected, atol=1e-12)
+
+
+@given(paths())
+@settings(max_examples=50)
+def test_ends_are_exact_and_weights_are_a_partition_of_one(path):
+    assert np.array_equal(sampled(path)[[0, -1]], path.points[[0, -1]])
+    basis = curves.sample_matrix(path.curve, len(path.points), 201)
+    assert basis.min() >= 0
+    assert np.allclose(basis.sum(axis=1), 1)
+
+
+@given(paths())
+@settings(max_examples=50)
+def test_length_lies_between_straight_line_and_control_polygon(path):
+    polygon = np.hypot(*np.diff(path.points, axis=0).T).sum()
+    length = curves.length(path)
+    assert math.dist(path.points[0], path.points[-1]) <= length * (1 + 1e-9) + 1e-9
+    assert length <= polygon * (1 + 1e-9) + 1e-9
+
+
+@given(paths(), st.floats(0, 2 * math.pi), st.tuples(coordinates, coordinates))
+@settings(max_examples=50)
+def test_length_does_not_change_when_a_path_is_moved_or_reversed(path, angle, shift):
+    turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
+    moved = Path(path.curve, path.points @ turn + shift)
+    backwards = Path(path.curve, path.points[::-1].copy())
+    assert curves.length(moved) == pytest.approx(curves.length(path), rel=1e-9, abs=1e-9)
+    assert curves.length(backwards) == pytest.approx(curves.length(path), rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("points", "expected"),
+    [
+        ([(0, 0), (1, 2), (2, 0)], 2.957885715089),
+        ([(0, 0), (1, 1), (0, 1), (1, 0)], 2 * math.sqrt(2) - 1),
+        ([(0, 0), (1, 1), (0.001, 1), (1, 0)], 1.828299336702),
+        ([(0, 0), (3, 0), (1, 0)], 2.6),
+        ([(0, 0)] * 3 + [(1, 2)] * 3, math.sqrt(5)),
+        ([(1, 1)] * 4, 0),
+    ],
+    ids=["parabola", "cusp", "near cusp", "there and back", "repeated ends", "a point"],
+)
+def test_arc_length_is_exact(points, expected):
+    assert curves.length(Path("bezier", np.array(points, dtype=float))) == pytest.approx(expected, abs=1e-10)
+
+
+def test_arc_length_agrees_with_quadrature_in_high_degree():
+    points = np.random.default_rng(4).normal(size=(13, 2))
+    differences = 12 * np.diff(points, axis=0)
+    speed = lambda t: np.hypot(*(curves.bernstein(11, np.array([t])) @ differences)[0])  # noqa: E731
+    expected = sum(quad(speed, a, a + 0.05, epsabs=1e-13, epsrel=1e-13)[0] for a in np.arange(20) / 20)
+    assert curves.length(Path("bezier", points)) == pytest.approx(expected, rel=1e-10)
+
+
+def test_quadratic_pieces_join_at_midpoints_with_a_common_tangent():
+    points = np.array([[0, 0], [2, 4], [6, 4], [8, 0], [10, 2.0]])
+    pieces = curves.bezier_pieces(Path("piecewise_quadratic", points))
+    assert np.array_equal(pieces[:-1, 2], (points[1:3] + points[2:4]) / 2)
+    assert np.array_equal(pieces[:, 1], points[1:-1])
+    before, after = pieces[:-1, 2] - pieces[:-1, 1], pieces[1:, 1] - pieces[1:, 0]
+    assert np.allclose(before[:, 0] * after[:, 1], before[:, 1] * after[:, 0])
+
+
+def test_curvature_of_a_parabola_at_its_apex():
+    # y = 2 x (1 - x) has the curvature 4 at its apex.
+    kappa, _ = curves.curvature(Path("bezier", np.array([[0, 0], [0.5, 1], [1, 0]])), 101)
+    assert abs(kappa[50]) == pytest.approx(4)
+
+
+def test_curvature_is_left_out_where_the_curve_stands_still():
+    kappa, speed = curves.curvature(Path("bezier", np.array([[0, 0], [0, 0], [0, 0], [1, 2.0]])), 101)
+    assert np.isnan(kappa[0])
+    assert speed[0] == 0
+
+
+@pytest.mark.parametrize(("curve", "continuous"), [("bezier", True), ("piecewise_cubic", True), ("piecewise_quadratic", False)])
+def test_only_cubic_pieces_and_a_single_bezier_have_continuous_curvature(curve, continuous):
+    points = np.random.default_rng(1).normal(size=(8, 2))
+    assert (curves.curvature_jump(Path(curve, points)) < 1e-6) == continuous
+
+
+def test_curvature_jumps_without_limit_at_the_corner_of_a_polyline():
+    assert curves.curvature_jump(Path("polyline", np.array([[0, 0], [1, 0], [1, 1.0]]))) == math.inf
+
+
+@pytest.mark.parametrize("curve", curves.CURVES)
+def test_too_few_control_points_are_refused(curve):
+    with pytest.raises(ValueError, match="at least"):
+        curves.piece_matrix(curve, curves.least_points(curve) - 1)

@@ -1,0 +1,386 @@
+"""What holds for every workspace: the check agrees with dense sampling, and neither it nor a bound depends on how a problem is written."""
+
+import itertools
+import math
+from pathlib import Path as File
+
+import numpy as np
+import pytest
+import shapely
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+
+from bezierplan.curves import CURVES, bernstein, bezier_pieces, least_points
+from bezierplan.exact.bounds import centre_path, lattice_path, least_length, shortest_path
+from bezierplan.exact.checker import check
+from bezierplan.exact.region import region
+from bezierplan.problem import Path, Problem
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.files import polygons_from_geojson
+from bezierplan.workspaces.grid import Grid, from_lines
+from bezierplan.workspaces.polygons import Polygons
+
+MAPS = File(__file__).parent / "data" / "maps"
+KINDS = ("circles", "cells", "polygons")
+
+# Deeper than the first is never called free, not deeper than the second never colliding.
+CERTAINLY_DEEP = 4e-9
+CERTAINLY_FREE = 5e-10
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Against dense sampling
+
+
+class Judge:
+    """Depth and clearance of points of a workspace: shapely's distances to free and to blocked space; closed forms for circles."""
+
+    def __init__(self, workspace):
+        self.circles = workspace if isinstance(workspace, Circles) else None
+        left, right, bottom, top = workspace.bounds
+        border = shapely.box(left, bottom, right, top)
+        far = 10 * max(right - left, top - bottom)
+        outside = shapely.box(left - far, bottom - far, right + far, top + far) - border
+        if self.circles:
+            self.free, self.blocked = border, outside
+        else:
+            obstacles = shapely.union_all(shapes_of(workspace))
+            self.free = border - obstacles
+            self.blocked = shapely.union_all([obstacles, outside])
+        shapely.prepare([self.free, self.blocked])
+
+    def signed_distance(self, points):
+        """Distance to the blocked region, negative inside of it: (n,)."""
+        places = shapely.points(points)
+        signed = shapely.distance(self.blocked, places)
+        signed -= np.where(signed > 0, 0, shapely.distance(self.free, places))
+        if self.circles:
+            offsets = points[:, None] - self.circles.centres
+            signed = np.minimum(signed, (np.hypot(offsets[..., 0], offsets[..., 1]) - self.circles.radii).min(axis=1, initial=math.inf))
+        return signed
+
+
+def shapes_of(workspace):
+    if isinstance(workspace, Grid):
+        row, column = np.nonzero(workspace.occupied)
+        h = workspace.cell
+        return shapely.box(column * h, row * h, (column + 1) * h, (row + 1) * h)
+    return [shapely.Polygon(rings[0], rings[1:]) for rings in workspace.obstacles]
+
+
+def evaluate(pieces, at):
+    """Points (n, 2) of a path at piece numbers plus parameters (n,)."""
+    number = np.clip(np.floor(at).astype(int), 0, len(pieces) - 1)
+    return np.einsum("nk,nkd->nd", bernstein(pieces.shape[1] - 1, at - number), pieces[number])
+
+
+def least(function, pieces, samples, minima=4):
+    """Least value of a function of points along a path: over its joints and uniform samples, refined to 1e-7 around the least minima."""
+    at = np.union1d(np.linspace(0, len(pieces), samples), np.arange(len(pieces)))
+    values = function(evaluate(pieces, at))
+    padded = np.pad(values, 1, constant_values=math.inf)
+    local = np.flatnonzero((values <= padded[:-2]) & (values <= padded[2:]))
+    best = values.min()
+    centres = at[local[np.argsort(values[local])[:minima]]]
+    reach = len(pieces) / samples
+    for _ in range(3):
+        near = np.clip(centres[:, None] + reach * np.linspace(-1, 1, 61), 0, len(pieces))
+        found = function(evaluate(pieces, near.ravel())).reshape(near.shape)
+        best = min(best, found.min())
+        centres = near[np.arange(len(near)), found.argmin(axis=1)]
+        reach /= 30
+    return best
+
+
+def assert_check_is_right(workspace, pieces, blocked, judge):
+    samples = min(1200, max(100, 40 * pieces[:, :, 0].size))
+    found = check(pieces, blocked)
+    if found.feasible:
+        distance = least(judge.signed_distance, pieces, samples)
+        assert distance >= -CERTAINLY_DEEP
+        assert found.clearance - found.tolerance <= max(distance, 0) + 1e-12
+        assert found.clearance >= distance - 1e-6
+        return
+    around = np.clip(found.collision_at + np.linspace(-1e-7, 1e-7, 11), 0, len(pieces))
+    assert judge.signed_distance(evaluate(pieces, around)).min() < -CERTAINLY_FREE
+    at = np.linspace(0, len(pieces), samples)
+    depth = -judge.signed_distance(evaluate(pieces, at))
+    assert depth[at < found.collision_at].max(initial=0) <= CERTAINLY_DEEP
+    assert depth.max() <= found.depth + found.tolerance + 1e-11
+
+
+def random_path(rng, curve, extent):
+    """A random path in a square workspace; every other one is short. Bezier curves have degrees up to 11."""
+    count = int(rng.integers(least_points(curve), 13))
+    if rng.random() < 0.5:
+        low, high = extent
+        return Path(curve, rng.uniform(low, high, (count, 2)))
+    size = 0.1 * (extent[1] - extent[0])
+    return Path(curve, rng.uniform(*extent, 2) + np.cumsum(rng.normal(0, size / math.sqrt(count), (count, 2)), axis=0))
+
+
+def random_workspaces(kind, rng):
+    if kind == "circles":
+        return [Circles((-10.0, 10.0, -10.0, 10.0), rng.uniform(-9, 9, (n, 2)), rng.uniform(0.2, 2, n), "m") for n in (3, 8, 12)]
+    if kind == "cells":
+        song = from_lines((MAPS / "song2016.txt").read_text().splitlines(), 10.0, "m")
+        return [song, Grid(rng.random((12, 12)) < 0.25, 1.0, "m"), Grid(rng.random((20, 20)) < 0.1, 0.1, "m")]
+    complex2 = polygons_from_geojson((MAPS / "imr" / "complex2.geojson").read_text(), "m")
+    triangles = tuple((rng.uniform(1, 19, 2) + rng.uniform(-3, 3, (3, 2)),) for _ in range(8))
+    spiral = polygons_from_geojson((MAPS / "imr" / "square_spiral.geojson").read_text(), "m")
+    return [complex2, Polygons((0.0, 20.0, 0.0, 20.0), triangles, "m"), spiral]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("curve", CURVES)
+def test_random_paths_against_dense_sampling(curve, kind):
+    rng = np.random.default_rng([CURVES.index(curve), KINDS.index(kind)])
+    for workspace in random_workspaces(kind, rng):
+        blocked, judge = region(workspace), Judge(workspace)
+        for _ in range(85):
+            pieces = bezier_pieces(random_path(rng, curve, workspace.bounds[:2]))
+            assert_check_is_right(workspace, pieces, blocked, judge)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("curve", CURVES)
+def test_tangent_paths_against_dense_sampling(curve, kind):
+    """Paths moved until they are tangent to an obstacle are free, 4e-9 deeper they collide."""
+    rng = np.random.default_rng([7, CURVES.index(curve), KINDS.index(kind)])
+    for _ in range(40):
+        path = random_path(rng, curve, (-5.0, 5.0))
+        pieces = bezier_pieces(path)
+        if kind == "circles":
+            centre = rng.uniform(-8, 8, 2)
+
+            def function(points, centre=centre):
+                return np.hypot(*(points - centre).T)
+
+            radius = least(function, pieces, 400)
+            workspaces = [Circles((-99.0, 99.0, -99.0, 99.0), centre[None], np.array([radius + depth]), "m") for depth in (0, 4e-9)]
+        else:
+            angle = 0.0 if kind == "cells" else rng.uniform(-1, 1)
+            normal = np.array([-math.sin(angle), math.cos(angle)])
+            least_height = least(lambda points, normal=normal: points @ normal, pieces, 400)
+            pieces = pieces + (50 - least_height) * normal + 50 * np.array([math.cos(angle), math.sin(angle)])
+            workspaces = [half_blocked(kind, angle)] * 2
+        for workspace, depth in zip(workspaces, (0, 4.2e-9)):
+            moved = pieces if kind == "circles" else pieces - depth * normal
+            found = check(moved, region(workspace))
+            assert found.feasible == (depth == 0)
+            assert found.clearance <= 1e-9
+            assert found.intervals <= 64 + 40 * len(pieces) * (pieces.shape[1] - 1) + len(pieces)
+
+
+def half_blocked(kind, angle):
+    """A workspace blocked below the line through 50 times the normal of some angle."""
+    if kind == "cells":
+        return Grid(np.broadcast_to(np.arange(20)[:, None] < 5, (20, 20)), 10.0, "m")
+    along = np.array([math.cos(angle), math.sin(angle)])
+    normal = np.array([-along[1], along[0]])
+    ends = 50 * normal + np.array([[-400], [400]]) * along
+    return Polygons((-500.0, 500.0, -500.0, 500.0), ((np.concatenate([ends, ends[::-1] - 50 * normal]),),), "m")
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# However a problem is written
+
+SIZE = 6
+LATTICE = st.integers(0, 2 * SIZE).map(lambda value: value / 2)
+PLACE = st.tuples(LATTICE, LATTICE)
+
+
+@st.composite
+def circle_workspaces(draw):
+    table = draw(st.lists(st.tuples(LATTICE, LATTICE, st.sampled_from([0.25, 0.5, 1.0, 1.25])), max_size=5))
+    table = np.array(table, dtype=float).reshape(-1, 3)
+    return Circles((0.0, float(SIZE), 0.0, float(SIZE)), table[:, :2], table[:, 2], "m")
+
+
+def grid_workspaces():
+    return hnp.arrays(bool, (SIZE, SIZE), elements=st.sampled_from([False, False, True])).map(lambda occupied: Grid(occupied, 1.0, "m"))
+
+
+@st.composite
+def polygon_workspaces(draw):
+    """Triangles and rectangles on a lattice: corners, edges and diagonals coincide often."""
+    obstacles = []
+    for _ in range(draw(st.integers(0, 4))):
+        corners = np.array(draw(st.lists(PLACE, min_size=3, max_size=3)))
+        low, high = corners.min(axis=0), corners.max(axis=0)
+        if draw(st.booleans()):
+            corners = np.array([low, (high[0], low[1]), high, (low[0], high[1])])
+        if shapely.Polygon(corners).area > 0:
+            obstacles.append((corners,))
+    return Polygons((0.0, float(SIZE), 0.0, float(SIZE)), tuple(obstacles), "m")
+
+
+WORKSPACES = st.one_of(circle_workspaces(), grid_workspaces(), polygon_workspaces())
+PROBLEMS = st.builds(Problem, st.just(""), WORKSPACES, PLACE, PLACE)
+
+
+@st.composite
+def paths(draw):
+    curve = draw(st.sampled_from(CURVES))
+    return bezier_pieces(Path(curve, np.array(draw(st.lists(PLACE, min_size=least_points(curve), max_size=7)))))
+
+
+def mapped(workspace, flip):
+    """A workspace mirrored at its main diagonal, or at its vertical middle line."""
+    if isinstance(workspace, Grid):
+        return Grid(np.ascontiguousarray(workspace.occupied.T if flip == "diagonal" else workspace.occupied[:, ::-1]), workspace.cell, "m")
+    if isinstance(workspace, Circles):
+        return Circles(workspace.bounds, mapped_points(workspace.centres, flip), workspace.radii, "m")
+    rings = tuple(tuple(mapped_points(ring, flip) for ring in obstacle) for obstacle in workspace.obstacles)
+    return Polygons(workspace.bounds, rings, "m")
+
+
+def mapped_points(points, flip):
+    points = np.asarray(points, dtype=float)
+    return points[..., ::-1] if flip == "diagonal" else points * (-1, 1) + (SIZE, 0)
+
+
+def moved(workspace, by):
+    """A workspace of circles or polygons, shifted."""
+    left, right, bottom, top = workspace.bounds
+    bounds = (left + by[0], right + by[0], bottom + by[1], top + by[1])
+    if isinstance(workspace, Circles):
+        return Circles(bounds, workspace.centres + by, workspace.radii, "m")
+    return Polygons(bounds, tuple(tuple(ring + by for ring in obstacle) for obstacle in workspace.obstacles), "m")
+
+
+def pieces_along(bound):
+    return np.stack([bound.points[:-1], bound.points[1:]], axis=1)
+
+
+@settings(deadline=None, max_examples=150)
+@given(PROBLEMS, st.sampled_from(["open", "closed"]))
+def test_a_shortest_path_is_free_and_no_shorter_than_the_straight_line(problem, squeeze):
+    bound = shortest_path(problem, squeeze)
+    assume(bound.length < math.inf)
+    assert bound.length >= math.dist(problem.start, problem.target) * (1 - 1e-12)
+    assert least_length(bound) <= bound.length
+    assert check(pieces_along(bound), region(problem.workspace), squeeze).feasible
+
+
+@settings(deadline=None, max_examples=60)
+@given(PROBLEMS)
+def test_a_straight_line_is_the_shortest_path_if_it_is_free(problem):
+    line = np.array([[problem.start, problem.target]])
+    if check(line, region(problem.workspace)).feasible:
+        assert shortest_path(problem).length == pytest.approx(math.dist(problem.start, problem.target), rel=1e-12)
+    else:
+        assert shortest_path(problem).length > math.dist(problem.start, problem.target)
+
+
+@settings(deadline=None, max_examples=100)
+@given(PROBLEMS, paths(), st.sampled_from(["diagonal", "middle"]), st.sampled_from(["open", "closed"]))
+def test_mirroring(problem, pieces, flip, squeeze):
+    mirrored = Problem("", mapped(problem.workspace, flip), *(tuple(mapped_points(p, flip)) for p in (problem.start, problem.target)))
+    assert shortest_path(mirrored, squeeze).length == pytest.approx(shortest_path(problem, squeeze).length, rel=1e-9)
+    found = check(pieces, region(problem.workspace), squeeze)
+    assert_same_check(check(mapped_points(pieces, flip), region(mirrored.workspace), squeeze), found)
+
+
+@settings(deadline=None, max_examples=60)
+@given(st.builds(Problem, st.just(""), st.one_of(circle_workspaces(), polygon_workspaces()), PLACE, PLACE), paths())
+def test_shifting(problem, pieces):
+    by = np.array([16.0, -32.0])
+    shifted = Problem("", moved(problem.workspace, by), *(tuple(by + p) for p in (problem.start, problem.target)))
+    assert shortest_path(shifted).length == pytest.approx(shortest_path(problem).length, rel=1e-9)
+    assert_same_check(check(pieces + by, region(shifted.workspace)), check(pieces, region(problem.workspace)))
+
+
+def assert_same_check(a, b):
+    assert a.feasible == b.feasible
+    assert a.collision_at == pytest.approx(b.collision_at, abs=1e-6, nan_ok=True)
+    assert a.depth == pytest.approx(b.depth, abs=2e-6 * (1 + b.depth))
+    assert a.clearance == pytest.approx(b.clearance, abs=2e-9)
+
+
+@settings(deadline=None, max_examples=80)
+@given(grid_workspaces(), PLACE, PLACE, paths())
+def test_a_grid_is_its_cells_as_polygons(grid, start, target, pieces):
+    row, column = np.nonzero(grid.occupied)
+    squares = tuple((np.array([(x, y), (x + 1, y), (x + 1, y + 1), (x, y + 1)], dtype=float),) for x, y in zip(column, row))
+    squares = Polygons(grid.bounds, squares, "m")
+    assert shortest_path(Problem("", squares, start, target)).length == pytest.approx(
+        shortest_path(Problem("", grid, start, target)).length, rel=1e-12
+    )
+    assert_same_check(check(pieces, region(squares)), check(pieces, region(grid)))
+
+
+@settings(deadline=None, max_examples=80)
+@given(PROBLEMS, st.tuples(LATTICE, LATTICE))
+def test_a_larger_obstacle_makes_no_path_shorter(problem, place):
+    workspace = problem.workspace
+    if isinstance(workspace, Grid):
+        occupied = workspace.occupied.copy()
+        occupied[workspace.cell_of(*place)] = True
+        larger = Grid(occupied, 1.0, "m")
+    elif isinstance(workspace, Circles):
+        larger = Circles(workspace.bounds, np.vstack([workspace.centres, place]), np.append(workspace.radii, 0.75), "m")
+    else:
+        ring = np.clip(np.add(place, [(-1, -1), (1, -1), (0.5, 1.5)]), 0, SIZE)
+        larger = Polygons(workspace.bounds, (*workspace.obstacles, (ring,)), "m")
+    assert shortest_path(problem._replace(workspace=larger)).length >= shortest_path(problem).length * (1 - 1e-12)
+
+
+def elevated(piece, times):
+    """The same curve with a degree higher by `times`."""
+    for _ in range(times):
+        n = len(piece)
+        share = np.arange(n + 1)[:, None] / n
+        piece = share * np.vstack([piece[:1], piece]) + (1 - share) * np.vstack([piece, piece[-1:]])
+    return piece
+
+
+def split(piece, t):
+    """A piece cut in two at a parameter."""
+    left, right, level = [], [], piece
+    while len(level):
+        left.append(level[0])
+        right.append(level[-1])
+        level = (1 - t) * level[:-1] + t * level[1:]
+    return np.array([left, right[::-1]])
+
+
+@settings(deadline=None, max_examples=150)
+@given(WORKSPACES, paths(), st.integers(1, 3), st.floats(0.05, 0.95), st.sampled_from(["open", "closed"]))
+def test_the_verdict_does_not_depend_on_how_a_path_is_written(workspace, pieces, times, t, squeeze):
+    blocked = region(workspace)
+    found = check(pieces, blocked, squeeze)
+    higher = check(np.array([elevated(piece, times) for piece in pieces]), blocked, squeeze)
+    assert_same_check(higher, found)
+    halves = check(np.concatenate([split(piece, t) for piece in pieces]), blocked, squeeze)
+    assert halves.feasible == found.feasible
+    if not found.feasible:
+        piece, part = divmod(halves.collision_at, 2)
+        back = piece + (part * t if part < 1 else t + (part - 1) * (1 - t))
+        assert back == pytest.approx(found.collision_at, abs=1e-4)
+    reverse = check(pieces[::-1, ::-1], blocked, squeeze)
+    assert reverse.feasible == found.feasible
+    assert reverse.clearance == pytest.approx(found.clearance, abs=2e-9)
+
+
+@settings(deadline=None, max_examples=80)
+@given(
+    grid_workspaces(),
+    st.tuples(st.integers(0, SIZE - 1), st.integers(0, SIZE - 1)),
+    st.tuples(st.integers(0, SIZE - 1), st.integers(0, SIZE - 1)),
+)
+def test_lattice_centre_and_any_angle_paths(grid, start, target):
+    """Each serves more routes than the one before it, and all of them are free."""
+    ends = [tuple(value + 0.5 for value in cell[::-1]) for cell in (start, target)]
+    problem = Problem("", grid, *ends)
+    bounds = [lattice_path(grid.occupied, start, target, math.sqrt(2), rule) for rule in ("none", "one", "free")]
+    bounds += [centre_path(problem), shortest_path(problem)]
+    blocked = region(grid)
+    for bound in bounds:
+        if len(bound.points) > 1:
+            found = check(pieces_along(bound), blocked)
+            assert found.feasible
+            assert found.intervals <= 64 + len(bound.points)
+    lengths = [bound.length for bound in bounds]
+    assert all(later <= earlier * (1 + 1e-12) for earlier, later in itertools.pairwise(lengths))
+    assert shortest_path(problem, "closed").length >= lengths[-1] * (1 - 1e-12)

@@ -1,0 +1,64 @@
+"""Genetic operators: distributions against their formulas, and what no operator may do."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import stats
+
+from bezierplan.search.genetic import complement_bit, roulette, swap_tails
+
+BITS = 8
+chromosomes = st.lists(st.integers(0, 255), min_size=6, max_size=6).map(lambda genes: np.array(genes, dtype=np.int64))
+
+
+def bits_of(chromosome):
+    return "".join(f"{gene:08b}" for gene in chromosome)
+
+
+@given(chromosomes, chromosomes, st.integers(1, 6 * BITS - 1))
+@settings(max_examples=100)
+def test_crossover_swaps_exactly_the_bits_behind_the_cut(one, other, cut):
+    a, b = bits_of(one), bits_of(other)
+    swap_tails(one, other, cut, BITS)
+    assert bits_of(one) == a[:cut] + b[cut:]
+    assert bits_of(other) == b[:cut] + a[cut:]
+
+
+@given(chromosomes, st.integers(0, 6 * BITS - 1))
+@settings(max_examples=100)
+def test_mutation_complements_exactly_one_bit(chromosome, position):
+    before = bits_of(chromosome)
+    complement_bit(chromosome, position, BITS)
+    after = bits_of(chromosome)
+    assert [i for i in range(len(before)) if before[i] != after[i]] == [position]
+
+
+@given(chromosomes, chromosomes, st.integers(1, 6 * BITS - 1), st.integers(0, 6 * BITS - 1))
+@settings(max_examples=100)
+def test_no_operator_leaves_the_range_of_cell_numbers(one, other, cut, position):
+    swap_tails(one, other, cut, BITS)
+    complement_bit(one, position, BITS)
+    assert min(one.min(), other.min()) >= 0
+    assert max(one.max(), other.max()) <= 255
+
+
+def test_roulette_draws_in_proportion_to_fitness():
+    fitness = np.array([1.0, 2.0, 3.0, 4.0])
+    drawn = roulette(np.random.default_rng(0), fitness, 100_000)
+    assert stats.chisquare(np.bincount(drawn), 100_000 * fitness / fitness.sum()).pvalue > 1e-3
+
+
+@pytest.mark.parametrize("operator", [roulette, swap_tails, complement_bit])
+def test_kernels_agree_with_their_plain_python(operator):
+    arguments = {
+        roulette: lambda: (np.random.default_rng(3), np.array([0.5, 1.5, 0.1]), 20),
+        swap_tails: lambda: (np.array([1, 2, 3]), np.array([250, 251, 252]), 11, BITS),
+        complement_bit: lambda: (np.array([1, 2, 3]), 17, BITS),
+    }[operator]
+    compiled, plain = arguments(), arguments()
+    results = operator(*compiled), operator.py_func(*plain)
+    assert np.array_equal(*results) if operator is roulette else results == (None, None)
+    for one, other in zip(compiled, plain, strict=True):
+        if isinstance(one, np.ndarray):
+            assert np.array_equal(one, other)
