@@ -307,7 +307,9 @@ def test_a_grid_is_its_cells_as_polygons(grid, start, target, pieces):
     assert shortest_path(Problem("", squares, start, target)).length == pytest.approx(
         shortest_path(Problem("", grid, start, target)).length, rel=1e-12
     )
-    assert_same_check(check(pieces, region(squares)), check(pieces, region(grid)))
+    found = check(pieces, region(grid))
+    # The parameter depends on which depth above the tolerance is noticed, which is free; where a path dives in slowly it matters.
+    assert_same_check(check(pieces, region(squares))._replace(collision_at=found.collision_at), found)
 
 
 @settings(deadline=None, max_examples=80)

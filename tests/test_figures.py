@@ -175,8 +175,17 @@ def test_no_feasible_run_is_said(tmp_path):
     assert sum("no feasible run among 2" in text for text in words(figure)) == 3
 
 
+def test_absent_repeat_is_said(tmp_path):
+    figure = drawn(results(), [panels()[1] | {"pick": {"repeat": 7}}], 1, tmp_path)
+    assert any("no such run among 3" in text for text in words(figure))
+
+
+def test_counts_stay_whole_beside_panels_without_runs(tmp_path):
+    assert any("2 of 3 runs are feasible" in text for text in words(drawn(results(), panels(), 2, tmp_path)))
+
+
 def test_picked_run_that_is_not_feasible_is_marked(tmp_path):
-    figure = drawn(results(), [panels()[0] | {"pick": {"repeat": 2}}], 1, tmp_path)
+    figure = drawn(results(), [panels()[0] | {"pick": {"repeat": 2}}, panels()[4]], 2, tmp_path)
     assert any("smooth/2 (not feasible)" in text for text in words(figure))
 
 
@@ -186,6 +195,13 @@ def test_run_without_a_path_is_said(tmp_path):
     own = [panel | {"pick": {"repeat": 0}} for panel in panels()[:3:2]]
     figure = drawn(found, own, 2, tmp_path)
     assert sum("no path" in text for text in words(figure)) == 2
+
+
+def test_path_of_one_point_is_said(tmp_path):
+    found = results()
+    found.runs["path_points"] = [[5.0] * 10] * 3
+    figure = drawn(found, panels()[:3:2], 2, tmp_path)
+    assert any("the curve is a single point" in text for text in words(figure))
 
 
 @pytest.mark.parametrize("column", ["problem", "method"])

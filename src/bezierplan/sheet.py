@@ -131,10 +131,12 @@ def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, column
 
 
 def _title(panel: dict[str, Any], frame: pd.DataFrame, scene: Scene) -> str:
-    """A panel's title with the method whose runs it shows, if there is one."""
-    methods = frame["method"].unique() if "method" in frame else []
-    words = [panel.get("title"), *(scene.labels.get(method, method) for method in methods[:1] if len(methods) == 1 and pd.notna(method))]
-    return ", ".join(word for word in words if word)
+    """A panel's title with the method whose runs it shows, where it is one: it tells how the curve is read."""
+    words = [panel["title"]] if "title" in panel else []
+    methods = frame["method"].dropna().unique() if "method" in frame else []
+    if len(methods) == 1:
+        words.append(scene.labels.get(methods[0], methods[0]))
+    return ", ".join(words)
 
 
 def _write_notes(row: np.ndarray, notes: list[str]) -> None:
@@ -180,7 +182,7 @@ def _draw_legend(figure: Figure) -> float:
 
 
 def _lay_out(figure: Figure, grid: np.ndarray, legend: float) -> None:
-    """Place panels (rows, columns), all as wide as the sheet allows, and make the sheet as high as they and the legend then need.
+    """Place panels (rows, columns), all as wide as the sheet allows, a row's tops level, and fit the sheet's height to them.
 
     Two rounds, because the labels beside a panel depend on its size. legend: room for it, in inches.
     """
@@ -190,14 +192,16 @@ def _lay_out(figure: Figure, grid: np.ndarray, legend: float) -> None:
         bottom, top = margins[:, :, 2:].max(axis=1).T
         sheet_width = figure.get_figwidth()
         width = (sheet_width - (left + right).sum()) / len(left)
-        heights = np.array([max(width * _shape(axes) for axes in row) for row in grid])
-        sheet_height = legend + (bottom + heights + top).sum()
+        heights = width * np.array([[_shape(axes) for axes in row] for row in grid])
+        depths = np.cumsum(top + heights.max(axis=1) + bottom)
+        sheet_height = depths[-1] + legend
         figure.set_figheight(sheet_height)
-        x = np.cumsum(left) + np.cumsum(right) - right + width * np.arange(len(left))
-        y = sheet_height - np.cumsum(bottom + heights + top) + bottom
+        x = np.cumsum(left + width + right) - width - right
+        y = sheet_height - depths + bottom + heights.max(axis=1)
         for (row, column), axes in np.ndenumerate(grid):
-            share = [x[column] / sheet_width, y[row] / sheet_height, width / sheet_width, heights[row] / sheet_height]
-            axes.set_position(share)
+            height = heights[row, column]
+            corner = x[column] / sheet_width, (y[row] - height) / sheet_height
+            axes.set_position([*corner, width / sheet_width, height / sheet_height])
 
 
 def _margins(axes: Axes) -> tuple[float, float, float, float]:

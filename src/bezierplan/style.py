@@ -30,6 +30,7 @@ SETTINGS = {
     "hatch.linewidth": 0.4,
     "legend.frameon": False,
     "legend.handlelength": 2.2,
+    "legend.labelspacing": 0.6,
     "svg.fonttype": "none",  # words stay words: they can be searched, and read aloud
     "svg.hashsalt": "bezierplan",  # equal drawings get equal identifiers
 }

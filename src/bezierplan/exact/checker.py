@@ -85,7 +85,7 @@ def check(pieces: np.ndarray, region: Region, squeeze: Literal["open", "closed"]
             return Check(False, squeezed_at, 0.0, 0.0, 0.0, intervals)
     if collision_at < math.inf:
         depth = _largest_depth(pieces, region, collision_at)
-        return Check(False, collision_at, depth, 0.0, DEPTH_TOLERANCE * depth, intervals)
+        return Check(False, collision_at, depth, 0.0, max(DEPTH_TOLERANCE * depth, _ROUNDING), intervals)
     if isinstance(region, CircleRegion):
         clearance = _least_clearance(pieces, region.edges, region.centres, region.radii)
     else:
@@ -176,7 +176,19 @@ def _distance_to_segment(x: float, y: float, ax: float, ay: float, bx: float, by
     share = 0.0
     if square > 0.0:
         share = min(1.0, max(0.0, ((x - ax) * dx + (y - ay) * dy) / square))
-    return math.hypot(x - ax - share * dx, y - ay - share * dy)
+    dx = x - ax - share * dx
+    dy = y - ay - share * dy
+    return math.sqrt(dx * dx + dy * dy)
+
+
+@njit(cache=True)
+def _bulge(points: np.ndarray) -> float:
+    """Largest distance of a control point from the chord."""
+    largest = 0.0
+    for i in range(1, len(points) - 1):
+        distance = _distance_to_segment(points[i, 0], points[i, 1], points[0, 0], points[0, 1], points[-1, 0], points[-1, 1])
+        largest = max(largest, distance)
+    return largest
 
 
 # ---------------------------------------------------------------------------------------------------------------------
@@ -290,16 +302,13 @@ def _distance_to_edges(x: float, y: float, edges: np.ndarray) -> float:
 
 
 def _depth_bound_by_edges(points, region):
-    """A point of a hull is no farther from an edge than some control point, and no deeper than it is far from an edge."""
+    """No blocked point is deeper than it is far from an edge, which on a chord is greatest at one of its ends."""
     least = math.inf
     for ax, ay, bx, by in region.edges:
-        farthest = 0.0
-        for x, y in points:
-            farthest = max(farthest, _distance_to_segment(x, y, ax, ay, bx, by))
-            if farthest >= least:
-                break
-        least = min(least, farthest)
-    return least
+        first = _distance_to_segment(points[0, 0], points[0, 1], ax, ay, bx, by)
+        if first < least:
+            least = min(least, max(first, _distance_to_segment(points[-1, 0], points[-1, 1], ax, ay, bx, by)))
+    return least + _bulge(points)
 
 
 # ---------------------------------------------------------------------------------------------------------------------
@@ -542,15 +551,17 @@ def _largest_depth(pieces: np.ndarray, region: Region, collision_at: float) -> f
     largest = 0.0
     for piece in range(max(0, math.ceil(collision_at) - 1), len(pieces)):
         stack[0] = pieces[piece]
+        for x, y in (pieces[piece, 0], pieces[piece, -1]):
+            largest = max(largest, _depth(x, y, region))
         top = 0
         while top >= 0:
             points = stack[top]
-            largest = max(largest, _depth(points[0, 0], points[0, 1], region), _depth(points[-1, 0], points[-1, 1], region))
             enough = largest + max(DEPTH_TOLERANCE * largest, _ROUNDING)
             if _size(points) <= _ROUNDING or _depth_bound(points, region) <= enough or _is_free(points, region):
                 top -= 1
             else:
                 _halve(points, stack[top + 1])
+                largest = max(largest, _depth(points[0, 0], points[0, 1], region))
                 top += 1
     return largest
 
@@ -617,16 +628,6 @@ def _clearance_bound(points: np.ndarray, bulge: float, obstacle: int, edges: np.
     if bulge > 0.0:
         from_chord = max(from_chord, _least_distance_to_centre(points, x, y))
     return max(0.0, from_chord - radii[disc])
-
-
-@njit(cache=True)
-def _bulge(points: np.ndarray) -> float:
-    """Largest distance of a control point from the chord."""
-    largest = 0.0
-    for i in range(1, len(points) - 1):
-        distance = _distance_to_segment(points[i, 0], points[i, 1], points[0, 0], points[0, 1], points[-1, 0], points[-1, 1])
-        largest = max(largest, distance)
-    return largest
 
 
 @njit(cache=True)

@@ -46,10 +46,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     axes.grid(visible=True)
     if not math.isnan(row["limit"]):
         axes.axhline(row["limit"], label=f"published limit: {row['limit']:g} 1/{unit}", zorder=3, **style.PUBLISHED)
-    if frame["t"].isna().all():
-        return run_note(frame) + ("" if pd.isna(row["run"]) else "\nno path")
+    if frame["value"].isna().all():
+        return run_note(frame, "no path" if frame["t"].isna().all() else "the curve is a single point")
     axes.plot(frame["t"], frame["value"], label="path", **style.RUN_SHOWN)
-    return f"{run_note(frame)}\n{_mark_highest(axes, frame, unit)}"
+    return run_note(frame, _mark_highest(axes, frame, unit))
 
 
 def _mark_highest(axes: Axes, frame: pd.DataFrame, unit: str) -> str:

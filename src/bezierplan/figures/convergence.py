@@ -42,7 +42,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     if frame["objective"].notna().any():
         axes.plot(generation, frame["objective"], label="run shown", **style.RUN_SHOWN)
     axes.set_xlim(0, max(1, generation.max()))
+    axes.xaxis.get_major_locator().set_params(integer=True)
     axes.set_xlabel("generation (-)")
     axes.set_ylabel(f"objective ({scene.unit})")
     axes.grid(visible=True)
-    return f"{run_note(frame)}\n{feasible_note(frame)}"
+    return run_note(frame, feasible_note(frame))

@@ -16,22 +16,23 @@ from bezierplan.problem import Path
 # About as many straight steps are drawn for a curve; the ends of its pieces are always among them.
 _STEPS = 600
 
+# In the order of the legend.
 _LOOK = {
-    "bound": {**style.BOUND, "label": "shortest path possible", "zorder": 4},
-    "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull of the control points", "zorder": 2},
+    "path": {**style.RUN_SHOWN, "label": "path", "zorder": 3},
     "control": {
         "color": style.BLUE,
         "linewidth": 0.7,
         "linestyle": (0, (4, 2)),
         "marker": "o",
         "markersize": 4.5,
-        "markerfacecolor": "#FFFFFF",
+        "markerfacecolor": style.FREE,
         "label": "control points and polygon",
         "zorder": 5,
     },
-    "path": {**style.RUN_SHOWN, "label": "path", "zorder": 3},
-    "start": {"color": style.BLACK, "linestyle": "", "marker": "s", "markersize": 7.5, "label": "start", "zorder": 4.5},
-    "target": {"color": style.BLACK, "linestyle": "", "marker": "*", "markersize": 13, "label": "target", "zorder": 4.5},
+    "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull of the control points", "zorder": 2},
+    "bound": {**style.BOUND, "label": "shortest path possible", "zorder": 4},
+    "start": {"color": style.BLACK, "linestyle": "", "marker": "s", "markersize": 7, "label": "start", "zorder": 4.5},
+    "target": {"color": style.BLACK, "linestyle": "", "marker": "*", "markersize": 12, "label": "target", "zorder": 4.5},
 }
 
 
@@ -54,12 +55,18 @@ def picked(results: Results, pick: dict[str, Any]) -> tuple[pd.Series | None, di
     return run, names | {"run": run["id"], "curve": run["path_curve"], "length": run["length"], "feasible": bool(run["feasible"])}
 
 
-def run_note(frame: pd.DataFrame) -> str:
-    """Which run a panel shows, from the columns that `picked` names; or that there is none."""
+def run_note(frame: pd.DataFrame, *more: str) -> str:
+    """Which run a panel shows, from the columns that `picked` names, and more lines about it; or only that there is none."""
     row = frame.iloc[0]
     if pd.isna(row["run"]):
-        return f"no feasible run among {row['runs']}"
-    return f"run {row['run']}" + ("" if row["feasible"] else " (not feasible)")
+        return f"no {'such' if row['feasible_runs'] else 'feasible'} run among {row['runs']:g}"
+    return "\n".join([f"run {row['run']}" + ("" if row["feasible"] else " (not feasible)"), *more])
+
+
+def feasible_note(frame: pd.DataFrame) -> str:
+    """How many of a panel's runs are feasible, from the columns that `picked` names."""
+    row = frame.iloc[0]
+    return f"{row['feasible_runs']:g} of {row['runs']:g} runs are feasible"
 
 
 def data(results: Results, *, pick: dict[str, Any]) -> pd.DataFrame:
@@ -96,18 +103,12 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     workspace = scene.problems[panel["experiment"]][row["problem"]].workspace
     workspaces.shade(axes, workspaces.parts(workspace))
     workspaces.scale(axes, workspace.unit)
-    for part, points in frame.groupby("part"):
-        axes.plot(points["x"], points["y"], clip_on=False, **_LOOK[part])
-    if pd.isna(row["run"]):
-        return run_note(frame)
-    if "control" not in set(frame["part"]):
-        return f"{run_note(frame)}\nno path"
-    control = frame.loc[frame["part"] == "control", ["x", "y"]]
-    distinct = f"{len(control.drop_duplicates())} of {len(control)} control points distinct"
-    return f"{run_note(frame)}\nlength {row['length']:.1f} {workspace.unit}, {distinct}\n{feasible_note(frame)}"
-
-
-def feasible_note(frame: pd.DataFrame) -> str:
-    """How many of a panel's runs are feasible, from the columns that `picked` names."""
-    row = frame.iloc[0]
-    return f"{row['feasible_runs']} of {row['runs']} runs are feasible"
+    drawn = {part: frame.loc[frame["part"] == part, ["x", "y"]] for part in _LOOK}
+    for part, points in drawn.items():
+        if not points.empty:
+            axes.plot(points["x"], points["y"], clip_on=False, **_LOOK[part])
+    control = drawn["control"]
+    if control.empty:
+        return run_note(frame, "no path")
+    length = f"length {row['length']:.1f} {workspace.unit}"
+    return run_note(frame, f"{length}, {len(control.drop_duplicates())} of {len(control)} control points distinct", feasible_note(frame))

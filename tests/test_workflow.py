@@ -1,0 +1,261 @@
+"""The workflow itself, on a copy of the tree with a small song2016: what an edit re-runs, and that results depend on names alone."""
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections import Counter
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+TREE = ("Snakefile", "workflow", "src", "config", "profiles", "Makefile", "environment.txt", "environment-build.txt")
+METHODS = ("nonsmooth", "smooth", "smooth_cubic", "smooth_single")
+EXPERIMENTS = "config/studies/song2016/experiments.yaml"
+SMALL = {
+    "population: 200": "population: 10",
+    "generations: 100": "generations: 5",
+    "repeats: {smoke: 2, full: 100, extended: 1000}": "repeats: {smoke: 2, full: 4, extended: 8}",
+    "chunk: {smoke: 2, full: 50, extended: 250}": "chunk: {smoke: 2, full: 2, extended: 4}",
+}
+
+
+def edit(file, old, new):
+    text = file.read_text()
+    assert old in text
+    file.write_text(text.replace(old, new, 1))
+
+
+def snakemake(tree, *words, check=True):
+    """Run snakemake in a tree, without the default profile; returns what it printed."""
+    command = [sys.executable, "-m", "snakemake", "--workflow-profile", "none", "--cores", "2", *words]
+    done = subprocess.run(command, cwd=tree, capture_output=True, text=True, check=False)
+    if check:
+        assert done.returncode == 0, done.stderr
+    return done.stdout + done.stderr
+
+
+def digests(tree):
+    """Digest of each run table of the tree's results at full scale, by name."""
+    command = [sys.executable, "-m", "bezierplan", "digest", "results/full"]
+    environment = os.environ | {"PYTHONPATH": str(tree / "src")}
+    printed = subprocess.run(command, cwd=tree, env=environment, capture_output=True, text=True, check=True).stdout
+    return {name: digest for digest, name in map(str.split, printed.splitlines())}
+
+
+def planned(tree, *words):
+    """Jobs of a dry run: how many of each rule, and the names of the artefacts and methods among them."""
+    printed = snakemake(tree, "--dry-run", *words)
+    jobs = re.findall(r"^rule (\w+):\n(.*?)(?=^rule |\Z)", printed, flags=re.M | re.S)
+    names = Counter()
+    for rule, body in jobs:
+        wildcards = dict(re.findall(r"(\w+)=([\w.]+)", "".join(re.findall(r"wildcards: (.*)", body))))
+        name = wildcards.get("figure") or wildcards.get("table") or wildcards.get("method")
+        if rule not in ("default", "all"):
+            names[f"{rule} {name}" if name else rule] += 1
+    return dict(names)
+
+
+def runs(number, methods=METHODS):
+    return {f"runs {method}": number for method in methods}
+
+
+ARTEFACTS_OF_RUNS = {"table table1": 1, "figure figure3": 1, "figure figure4": 1, "figure figure5": 1}
+ALL_ARTEFACTS = ARTEFACTS_OF_RUNS | {"figure figure1": 1, "figure figure2": 1}
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """A tree in which everything was made, kept as a snapshot."""
+    tree = tmp_path_factory.mktemp("workflow") / "tree"
+    tree.mkdir()
+    for name in TREE:
+        source = ROOT / name
+        copy = shutil.copytree if source.is_dir() else shutil.copy2
+        copy(source, tree / name)
+    (tree / ".venv").symlink_to(ROOT / ".venv")
+    for old, new in SMALL.items():
+        edit(tree / EXPERIMENTS, old, new)
+    snakemake(tree)
+    return shutil.copytree(tree, tree.parent / "snapshot", symlinks=True)
+
+
+@pytest.fixture
+def tree(finished):
+    """The finished tree, to be edited. It lies in the same place for every test, so that compiled kernels are found again."""
+    place = finished.parent / "tree"
+    shutil.rmtree(place, ignore_errors=True)
+    return Path(shutil.copytree(finished, place, symlinks=True))
+
+
+def test_nothing_is_left_to_do(tree):
+    assert planned(tree) == {}
+
+
+EDITS = {
+    "code of a planner": (
+        "src/bezierplan/planners/binary_genetic.py",
+        "history[generation] = best_objective",
+        "history[generation] = best_objective + 0",
+        runs(2) | ARTEFACTS_OF_RUNS,
+    ),
+    "code of an operator": (
+        "src/bezierplan/search/genetic.py",
+        "wheel = np.cumsum(fitness)",
+        "wheel = np.cumsum(fitness + 0)",
+        runs(2) | ARTEFACTS_OF_RUNS,
+    ),
+    "a comment": ("src/bezierplan/search/genetic.py", "# A draw next to 1", "# Hence a draw next to 1", {}),
+    "a metric": ("src/bezierplan/metrics.py", "FINE_SAMPLES = 4001", "FINE_SAMPLES = 4002", {"table table1": 1}),
+    "a kind of figure": ("src/bezierplan/figures/convergence.py", "return", "0\n    return", {"figure figure4": 1}),
+    "a setting of one method": (EXPERIMENTS, "samples: 701", "samples: 1401", runs(2, ["nonsmooth"]) | {"table table1": 1}),
+    "a setting of all methods": (EXPERIMENTS, "penalty: 10.0", "penalty: 11.0", runs(2) | ARTEFACTS_OF_RUNS),
+    "a published number": ("config/studies/song2016/published/table1.csv", "225.4982", "225.5982", {"table table1": 1}),
+    "a map": (
+        "config/studies/song2016/workspaces/figure2.txt",
+        "....##....######\n",
+        "....##.....#####\n",
+        {"problems": 1, "bounds": 1, "figure figure2": 1} | runs(2) | ARTEFACTS_OF_RUNS,
+    ),
+    "the seed rule": (EXPERIMENTS, "    repeats: {smoke", "    seeds: shared\n    repeats: {smoke", runs(2) | ARTEFACTS_OF_RUNS),
+    "more repeats": (EXPERIMENTS, "full: 4,", "full: 6,", runs(1) | ARTEFACTS_OF_RUNS),
+    "fewer repeats": (EXPERIMENTS, "full: 4,", "full: 3,", ARTEFACTS_OF_RUNS),
+    "a label": ("config/studies/song2016/artefacts.yaml", "0_15: 0 to 15", "0_15: from 0 to 15", ALL_ARTEFACTS),
+}
+
+
+@pytest.mark.parametrize("name", EDITS)
+def test_edit_reruns_exactly_what_it_changes(name, tree):
+    file, old, new, expected = EDITS[name]
+    edit(tree / file, old, new)
+    assert planned(tree) == expected
+
+
+def test_new_planner_reruns_nothing(tree):
+    shutil.copy(tree / "src/bezierplan/planners/binary_genetic.py", tree / "src/bezierplan/planners/another.py")
+    assert planned(tree) == {}
+
+
+def test_deleted_figure_alone_is_made_again(tree):
+    (tree / "results/full/song2016/figures/figure4.svg").unlink()
+    assert planned(tree) == {"figure figure4": 1}
+
+
+def test_single_figure_needs_only_its_own_methods(tree):
+    shutil.rmtree(tree / "results")
+    expected = {"problems": 1, "bounds": 1, "figure figure4": 1, **runs(2, ["smooth", "smooth_single"])}
+    assert {name: number for name, number in planned(tree, "song2016_figure4").items() if "song2016" not in name} == expected
+
+
+def test_figure_made_again_has_equal_bytes(tree):
+    folder = tree / "results/full/song2016/figures"
+    before = {file.name: file.read_bytes() for file in folder.iterdir()}
+    shutil.rmtree(folder)
+    snakemake(tree)
+    assert {file.name: file.read_bytes() for file in folder.iterdir()} == before
+
+
+def test_one_core_and_another_order_give_the_same_content(finished, tree):
+    shutil.rmtree(tree / "results")
+    files = [f"results/full/song2016/runs/routes/{method}/{chunk}.parquet" for method in reversed(METHODS) for chunk in (1, 0)]
+    snakemake(tree, "--cores", "1", *files)
+    assert digests(tree) == digests(finished)
+
+
+def test_another_chunk_size_gives_the_same_content(finished, tree):
+    shutil.rmtree(tree / "results")
+    edit(tree / EXPERIMENTS, "full: 2,", "full: 4,")
+    snakemake(tree, *(f"results/full/song2016/runs/routes/{method}/0.parquet" for method in METHODS))
+    assert digests(tree) == digests(finished)
+
+
+def processes_in(folder):
+    """Ids of the processes that work in a folder."""
+    found = []
+    for entry in Path("/proc").glob("[0-9]*"):
+        try:
+            if Path(os.readlink(entry / "cwd")) == folder:
+                found.append(int(entry.name))
+        except OSError:
+            pass
+    return found
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="jobs end with a killed workflow on Linux only")
+def test_killed_workflow_leaves_no_job_and_make_goes_on_from_there(finished, tree):
+    shutil.rmtree(tree / "results")
+    command = [sys.executable, "-m", "snakemake"]
+    killed = subprocess.Popen(command, cwd=tree, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 120
+    while not list(tree.glob("results/full/song2016/runs/*/*/*.parquet")):
+        assert time.monotonic() < deadline
+        assert killed.poll() is None
+        time.sleep(0.05)
+    killed.send_signal(signal.SIGKILL)
+    killed.wait()
+    time.sleep(0.5)
+    assert processes_in(tree) == []
+    assert len(list(tree.glob("results/full/song2016/runs/*/*/?.parquet"))) < 8
+    subprocess.run(["make", "reproduce"], cwd=tree, check=True, capture_output=True)
+    assert digests(tree) == digests(finished)
+
+
+RUN_ONCE = """
+import numba
+import numpy as np
+from bezierplan.planners import binary_genetic
+from bezierplan.problem import Problem
+from bezierplan.workspaces.grid import Grid
+grid = Grid(np.zeros((16, 16), dtype=bool), 10.0, "unit")
+settings = dict(curve="polyline", genes=6, samples=71, spacing="parameter", population=10, generations=20, crossover_probability=0.5,
+                cut="bit", mutation_probability=0.1, mutation="one_bit", elitism=1, penalty=10.0, penalty_for="each_sample",
+                occupied_point_penalty=0.0)
+print(binary_genetic.plan(Problem("p", grid, (5.0, 5.0), (155.0, 155.0)), np.random.default_rng(0), **settings).history.tolist())
+"""
+
+
+def test_edited_operator_is_never_served_from_an_old_cache(tree):
+    """numba is imported first: a cache folder that is set later must count all the same."""
+
+    def run_once():
+        environment = os.environ | {"PYTHONPATH": str(tree / "src")}
+        environment.pop("NUMBA_CACHE_DIR", None)
+        return subprocess.run(
+            [sys.executable, "-c", RUN_ONCE], cwd=tree, env=environment, capture_output=True, text=True, check=True
+        ).stdout
+
+    before = run_once()
+    assert run_once() == before
+    edit(tree / "src/bezierplan/search/genetic.py", "gene = cut // bits", "gene = (cut // bits + 1) % len(one)")
+    after = run_once()
+    shutil.rmtree(tree / ".cache")
+    assert run_once() == after != before
+
+
+def test_fault_stops_before_any_job_with_one_line(tree):
+    shutil.rmtree(tree / "results")
+    edit(
+        tree / EXPERIMENTS,
+        "population: 200" if "population: 200" in (tree / EXPERIMENTS).read_text() else "population: 10",
+        "population: 11",
+    )
+    done = subprocess.run([sys.executable, "-m", "snakemake"], cwd=tree, capture_output=True, text=True, check=False)
+    told = [line for line in (done.stdout + done.stderr).splitlines() if line and "profile" not in line]
+    assert done.returncode != 0
+    assert len(told) == 1
+    assert "experiments.yaml: methods: nonsmooth: settings: population: 11" in told[0]
+    assert not (tree / "results").exists()
+
+
+def test_every_artefact_is_a_named_target(tree):
+    targets = snakemake(tree, "--list-target-rules").split()
+    assert {"all", "smoke", "extended", "song2016", "song2016_table1", *(f"song2016_figure{n}" for n in range(1, 6))} <= set(targets)
+
+
+def test_report_shows_every_artefact_with_its_caption(tree):
+    snakemake(tree, "--report", "report.zip")
+    assert (tree / "report.zip").stat().st_size > 100_000
