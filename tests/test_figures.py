@@ -1,5 +1,6 @@
 """Figures: what is drawn stands in the table beside them, and can be read in print."""
 
+import inspect
 import subprocess
 import sys
 from pathlib import Path as File
@@ -7,12 +8,14 @@ from pathlib import Path as File
 import numpy as np
 import pandas as pd
 import pytest
+import yaml
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from bezierplan import curves, sheet, style
+from bezierplan import curves, figures, sheet, style
 from bezierplan.analysis.results import Results
+from bezierplan.checked import SCHEMAS
 from bezierplan.figures import along_path, convergence, paths, workspace
 from bezierplan.problem import Path, Problem, Workspace
 from bezierplan.workspaces.circles import Circles
@@ -266,11 +269,20 @@ def test_equal_data_gives_equal_bytes_in_another_process(tmp_path):
     assert "generation (-)" in (here / "figure.svg").read_text(), "words of a figure stay words"
 
 
-def test_options_of_a_kind_are_its_arguments():
-    assert {"workspace", "paths", "convergence", "along_path"} <= set(sheet.known_kinds())
-    assert list(sheet.panel_options("workspace")) == ["numbers", "embed"]
-    assert sheet.required_options("workspace") == []
-    assert list(sheet.panel_options("along_path")) == ["pick", "quantity", "limit"]
-    assert sheet.required_options("along_path") == ["pick", "quantity"]
-    with pytest.raises(ModuleNotFoundError):
-        sheet.kind_module("no_such_kind")
+def described_options(kind):
+    """Options of a kind by the schema: all, and those that a panel must have."""
+    schema = yaml.safe_load((SCHEMAS / "artefacts.schema.yaml").read_text())["$defs"]["panel"]
+    assert kind in schema["properties"]["kind"]["enum"]
+    for rule in schema["allOf"]:
+        condition = rule["if"]["properties"]["kind"]
+        if kind in condition.get("enum", [condition.get("const")]):
+            return set(rule["then"]["properties"]) - set(sheet.PANEL_KEYS), set(rule["then"]["required"]) - set(sheet.PANEL_KEYS)
+    return None
+
+
+@pytest.mark.parametrize("kind", sorted(file.stem for file in File(figures.__file__).parent.glob("[!_]*.py")))
+def test_schema_gives_the_options_of_a_kind(kind):
+    parameters = inspect.signature(sheet.kind_module(kind).data).parameters.values()
+    options = {parameter.name: parameter.default for parameter in parameters if parameter.kind is inspect.Parameter.KEYWORD_ONLY}
+    needed = {name for name, default in options.items() if default is inspect.Parameter.empty}
+    assert described_options(kind) == (set(options), needed)

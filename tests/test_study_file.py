@@ -118,7 +118,12 @@ FAULTS = {
     "unknown metric": (ARTEFACTS, "metric: objective", "metric: objectiv", "metric: objectiv: unknown; did you mean objective?"),
     "unknown statistic": (ARTEFACTS, "statistic: median", "statistic: medain", "statistic: medain: unknown; did you mean median?"),
     "unknown kind of figure": (ARTEFACTS, "kind: paths", "kind: path", "kind: path: unknown; did you mean paths?"),
-    "unknown option of a figure": (ARTEFACTS, "quantity: curvature, limit", "quantity: curvature, limits", "limits: unknown key; did you mean limit?"),
+    "unknown option of a figure": (
+        ARTEFACTS,
+        "quantity: curvature, limit",
+        "quantity: curvature, limits",
+        "limits: unknown key; did you mean limit?",
+    ),
     "unknown value of an option": (ARTEFACTS, "numbers: all", "numbers: most", "numbers: most: unknown; known: all, free, none"),
     "unknown column in where": (
         ARTEFACTS,

@@ -6,16 +6,14 @@ A kind of panel is a module of `bezierplan.figures` with two functions:
     draw(axes, frame, scene, panel) -> str          draws the rows of its panel, labels its artists for the legend, computes no
                                                     statistics; returns the note printed below the panel's title
 
-The keyword-only arguments of `data` are the options that a panel may have; those without a default value it must have.
+The keyword-only arguments of `data` are the options that a panel may have; those without a default value it must have. They stand in
+schemas/artefacts.schema.yaml as well, where a study's panels are checked.
 """
 
 import importlib
-import inspect
 import math
 import re
 import string
-import typing
-from pathlib import Path as File
 from types import ModuleType
 from typing import Any, NamedTuple
 
@@ -46,30 +44,9 @@ class Scene(NamedTuple):
     unit: str
 
 
-def known_kinds() -> list[str]:
-    """Names of the kinds of panel."""
-    return sorted(file.stem for file in (File(__file__).parent / "figures").glob("*.py") if file.stem != "__init__")
-
-
 def kind_module(name: str) -> ModuleType:
     """The module of a kind of panel. Raises ModuleNotFoundError if there is none."""
     return importlib.import_module(f"bezierplan.figures.{name}")
-
-
-def panel_options(kind: str) -> dict[str, Any]:
-    """Options of a kind of panel: name -> annotation, in the order of its signature."""
-    hints = typing.get_type_hints(kind_module(kind).data, include_extras=True)
-    return {parameter.name: hints[parameter.name] for parameter in _option_parameters(kind)}
-
-
-def required_options(kind: str) -> list[str]:
-    """Options that every panel of a kind must have."""
-    return [parameter.name for parameter in _option_parameters(kind) if parameter.default is inspect.Parameter.empty]
-
-
-def _option_parameters(kind: str) -> list[inspect.Parameter]:
-    parameters = inspect.signature(kind_module(kind).data).parameters.values()
-    return [parameter for parameter in parameters if parameter.kind is inspect.Parameter.KEYWORD_ONLY]
 
 
 def data(panels: list[dict[str, Any]], results: dict[str, Results], workspaces: dict[str, Workspace]) -> pd.DataFrame:

@@ -365,8 +365,9 @@ def _visible_among_polygons(nodes: np.ndarray, before: np.ndarray, after: np.nda
         for j in range(i + 1, len(nodes)):
             if not (_is_taut(nodes, i, j, before, after) and _is_taut(nodes, j, i, before, after)):
                 continue
-            segment[0, 0] = nodes[i]
-            segment[0, 1] = nodes[j]
+            for axis in range(2):
+                segment[0, 0, axis] = nodes[i, axis]
+                segment[0, 1, axis] = nodes[j, axis]
             visible[i, j] = not _crosses(nodes[i], nodes[j], region.edges) and first_collision(segment, region)[0] == math.inf
     return visible
 

@@ -108,11 +108,20 @@ def _refuse_unfit(pieces: np.ndarray, squeeze: str) -> None:
 
 
 @njit(cache=True)
+def _copy(points: np.ndarray, place: np.ndarray) -> None:
+    """Copy control points one by one. Assigning whole arrays does the same, but takes seconds to compile."""
+    for i in range(len(points)):
+        place[i, 0] = points[i, 0]
+        place[i, 1] = points[i, 1]
+
+
+@njit(cache=True)
 def _halve(points: np.ndarray, left: np.ndarray) -> None:
     """Replace a piece by its right half and write its left half (de Casteljau's construction)."""
     n = len(points) - 1
     for level in range(n + 1):
-        left[level] = points[0]
+        left[level, 0] = points[0, 0]
+        left[level, 1] = points[0, 1]
         for i in range(n - level):
             points[i, 0] = 0.5 * (points[i, 0] + points[i + 1, 0])
             points[i, 1] = 0.5 * (points[i, 1] + points[i + 1, 1])
@@ -519,7 +528,7 @@ def first_collision(pieces: np.ndarray, region: Region) -> tuple[float, int]:
     width = np.empty(_STACK)
     intervals = 0
     for piece in range(len(pieces)):
-        stack[0] = pieces[piece]
+        _copy(pieces[piece], stack[0])
         begin[0] = 0.0
         width[0] = 1.0
         top = 0
@@ -550,7 +559,7 @@ def _largest_depth(pieces: np.ndarray, region: Region, collision_at: float) -> f
     stack = np.empty((_STACK, pieces.shape[1], 2))
     largest = 0.0
     for piece in range(max(0, math.ceil(collision_at) - 1), len(pieces)):
-        stack[0] = pieces[piece]
+        _copy(pieces[piece], stack[0])
         for x, y in (pieces[piece, 0], pieces[piece, -1]):
             largest = max(largest, _depth(x, y, region))
         top = 0
@@ -578,7 +587,7 @@ def _least_clearance(pieces: np.ndarray, edges: np.ndarray, centres: np.ndarray,
     obstacles = np.arange(len(edges) + len(radii))
     least = math.inf
     for piece in range(len(pieces)):
-        stack[0] = pieces[piece]
+        _copy(pieces[piece], stack[0])
         considered[0] = len(obstacles)
         for x, y in (pieces[piece, 0], pieces[piece, -1]):
             least = min(least, _clearance_of_point(x, y, obstacles, edges, centres, radii))
@@ -673,7 +682,7 @@ def _squeezes_through(pieces: np.ndarray, x: float, y: float, slope: float, radi
     nearest = math.inf
     nearest_at = 0.0
     for piece in range(len(pieces)):
-        stack[0] = pieces[piece]
+        _copy(pieces[piece], stack[0])
         begin[0] = 0.0
         width[0] = 1.0
         top = 0
