@@ -2,6 +2,8 @@
 
 import math
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -306,3 +308,18 @@ def test_unfit_shapes_and_rules_are_refused():
         check(np.zeros((1, 40, 2)), UNIT_DISC)
     with pytest.raises(ValueError, match="squeeze"):
         check(np.zeros((1, 2, 2)), PINCH, squeeze="shut")
+
+
+@pytest.mark.parametrize("blocked", ["Grid(np.eye(3, dtype=bool), 1.0, 'm')", "Circles((0, 9, 0, 9), np.ones((1, 2)), np.ones(1), 'm')"])
+def test_grids_and_circles_are_checked_without_heavy_libraries(blocked):
+    lines = [
+        "import sys, numpy as np",
+        "from bezierplan.workspaces.circles import Circles",
+        "from bezierplan.workspaces.grid import Grid",
+        "from bezierplan.exact.checker import check",
+        "from bezierplan.exact.region import region",
+        f"check(np.zeros((1, 2, 2)), region({blocked}))",
+        "print(*{'shapely', 'scipy.sparse', 'pandas'} & set(sys.modules))",
+    ]
+    done = subprocess.run([sys.executable, "-c", "\n".join(lines)], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == ""

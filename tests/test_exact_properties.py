@@ -328,6 +328,26 @@ def test_a_larger_obstacle_makes_no_path_shorter(problem, place):
     assert shortest_path(problem._replace(workspace=larger)).length >= shortest_path(problem).length * (1 - 1e-12)
 
 
+def regular(circle, corners, shape):
+    """A regular polygon inside a circle, or around it."""
+    x, y, radius = circle
+    angles = np.arange(corners) * math.tau / corners
+    reach = radius if shape == "inside" else radius / math.cos(math.pi / corners)
+    return np.array([x, y]) + reach * np.column_stack([np.cos(angles), np.sin(angles)])
+
+
+@settings(deadline=None, max_examples=40)
+@given(circle_workspaces(), PLACE, PLACE)
+def test_circles_lie_between_polygons_inside_and_around_them(circles, start, target):
+    table = np.column_stack([circles.centres, circles.radii])
+    lengths = []
+    for shape in ("inside", "around"):
+        rings = tuple((regular(circle, 60, shape),) for circle in table)
+        lengths.append(shortest_path(Problem("", Polygons(circles.bounds, rings, "m"), start, target)).length)
+    length = shortest_path(Problem("", circles, start, target)).length
+    assert lengths[0] * (1 - 1e-9) <= length <= lengths[1] * (1 + 1e-9)
+
+
 def elevated(piece, times):
     """The same curve with a degree higher by `times`."""
     for _ in range(times):

@@ -42,6 +42,8 @@ def results(feasible: tuple[bool, ...] = (True, True, False), curve: str = "piec
             "objective": 60.0 - repeat,
             "length": curves.length(Path(curve, points)),
             "feasible": feasible[repeat],
+            "collision_at": np.nan if feasible[repeat] else 1.5,
+            "bound": 45.0,
             "history": [90.0, 70.0, 60.0 - repeat][: 2 if repeat == len(feasible) - 1 else 3],
             "path_curve": curve,
             "path_points": points.ravel().tolist(),

@@ -60,7 +60,7 @@ def published(plain: float = 10.0) -> pd.DataFrame:
 
 
 def compare(ours: Results, plain: float = 10.0, spec: dict = SPEC) -> pd.DataFrame:
-    return comparison.compare(ours, spec, published(plain), {"faster": "fast"}, "study/table1")
+    return comparison.compare(ours, spec, published(plain), {"faster": "fast"}, [], "study/table1")
 
 
 def row(table: pd.DataFrame, *key: str) -> pd.Series:
@@ -238,7 +238,7 @@ def test_published_file(tmp_path):
 
 
 def test_table_without_published_numbers():
-    table = comparison.compare(results(), SPEC, comparison.read_published(None, SPEC), {}, "study/extra")
+    table = comparison.compare(results(), SPEC, comparison.read_published(None, SPEC), {}, [], "study/extra")
     assert len(table) == 8
     assert table[["n_published", "value_published", "quantile_published", "reproduced"]].isna().all(axis=None)
     assert table["value_ours"].notna().all()

@@ -14,11 +14,13 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 TREE = ("Snakefile", "workflow", "src", "config", "profiles", "Makefile", "environment.txt", "environment-build.txt")
-METHODS = ("nonsmooth", "smooth", "smooth_cubic", "smooth_single")
+GENETIC = ("nonsmooth", "smooth", "smooth_cubic", "smooth_single", "random_search")
+METHODS = (*GENETIC, "shortest_path", "straight_line")
 EXPERIMENTS = "config/studies/song2016/experiments.yaml"
 SMALL = {
     "population: 200": "population: 10",
     "generations: 100": "generations: 5",
+    "population: 20200": "population: 60",
     "repeats: {smoke: 2, full: 100, extended: 1000}": "repeats: {smoke: 2, full: 4, extended: 8}",
     "chunk: {smoke: 2, full: 50, extended: 250}": "chunk: {smoke: 2, full: 2, extended: 4}",
 }
@@ -64,7 +66,8 @@ def runs(number, methods=METHODS):
     return {f"runs {method}": number for method in methods}
 
 
-ARTEFACTS_OF_RUNS = {"table table1": 1, "figure figure3": 1, "figure figure4": 1, "figure figure5": 1}
+TABLES = {"table table1": 1, "table feasibility": 1}
+ARTEFACTS_OF_RUNS = TABLES | {"figure figure3": 1, "figure figure4": 1, "figure figure5": 1}
 ALL_ARTEFACTS = ARTEFACTS_OF_RUNS | {"figure figure1": 1, "figure figure2": 1}
 
 
@@ -101,19 +104,19 @@ EDITS = {
         "src/bezierplan/planners/binary_genetic.py",
         "history[generation] = best_objective",
         "history[generation] = best_objective + 0",
-        runs(2) | ARTEFACTS_OF_RUNS,
+        runs(2, GENETIC) | ARTEFACTS_OF_RUNS,
     ),
     "code of an operator": (
         "src/bezierplan/search/genetic.py",
         "wheel = np.cumsum(fitness)",
         "wheel = np.cumsum(fitness + 0)",
-        runs(2) | ARTEFACTS_OF_RUNS,
+        runs(2, GENETIC) | ARTEFACTS_OF_RUNS,
     ),
     "a comment": ("src/bezierplan/search/genetic.py", "# A draw next to 1", "# Hence a draw next to 1", {}),
-    "a metric": ("src/bezierplan/metrics.py", "FINE_SAMPLES = 4001", "FINE_SAMPLES = 4002", {"table table1": 1}),
+    "a metric": ("src/bezierplan/metrics.py", "FINE_SAMPLES = 4001", "FINE_SAMPLES = 4002", TABLES),
     "a kind of figure": ("src/bezierplan/figures/convergence.py", "return", "0\n    return", {"figure figure4": 1}),
-    "a setting of one method": (EXPERIMENTS, "samples: 701", "samples: 1401", runs(2, ["nonsmooth"]) | {"table table1": 1}),
-    "a setting of all methods": (EXPERIMENTS, "penalty: 10.0", "penalty: 11.0", runs(2) | ARTEFACTS_OF_RUNS),
+    "a setting of one method": (EXPERIMENTS, "samples: 701", "samples: 1401", runs(2, ["nonsmooth"]) | TABLES),
+    "a setting of all methods": (EXPERIMENTS, "penalty: 10.0", "penalty: 11.0", runs(2, GENETIC) | ARTEFACTS_OF_RUNS),
     "a published number": ("config/studies/song2016/published/table1.csv", "225.4982", "225.5982", {"table table1": 1}),
     "a map": (
         "config/studies/song2016/workspaces/figure2.txt",

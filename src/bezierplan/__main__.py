@@ -1,4 +1,4 @@
-"""The command line: `python -m bezierplan list` and `python -m bezierplan digest FOLDER`."""
+"""The command line: `python -m bezierplan list`, `replay RUN` and `digest FOLDER`."""
 
 import argparse
 import sys
@@ -15,6 +15,9 @@ def main(words: list[str]) -> None:
     digester = commands.add_parser("digest", help="one hash a run table, over sorted rows without times: what `same content` means")
     digester.add_argument("folder", type=Path, help="a folder of results, such as results/full")
     digester.set_defaults(do=lambda given: print_digests(given.folder))
+    replayer = commands.add_parser("replay", help="one run again, bit-equal, with its picture")
+    replayer.add_argument("run", help="its name: study/experiment/condition/method/repeat")
+    replayer.set_defaults(do=lambda given: replay_run(given.run))
     given = parser.parse_args(words)
     try:
         given.do(given)
@@ -40,6 +43,23 @@ def list_studies(names: list[str] | None) -> None:
             size = f"{len(experiment['problems'])} problems, {len(experiment['methods'])} methods"
             repeats = ", ".join(f"{number} ({scale})" for scale, number in experiment["repeats"].items())
             print(f"  {'experiment':12}{name:20} {size}, repeats {repeats}")
+
+
+def replay_run(name: str) -> None:
+    """Make a run again, print what it came to and whether it equals the stored one, and save its picture below results/replay."""
+    from bezierplan import replay, study_file
+
+    studies = study_file.load(study_file.read_config({}))
+    made = replay.replay(name, studies)
+    run = made.runs.iloc[0]
+    shown = ("objective", "length", "bound", "claimed_feasible", "feasible", "collision_at", "collision_depth", "clearance", "evaluations")
+    for column in shown:
+        print(f"{column:18}{run[column]}")
+    for file, stored in replay.stored_runs(name, Path("results")).items():
+        print(f"{'stored in':18}{file}: {'equal' if replay.equal(run, stored) else 'NOT EQUAL'}")
+    picture = Path("results/replay") / f"{name}.svg"
+    replay.draw(made, studies[run["study"]], picture)
+    print(f"{'picture':18}{picture}")
 
 
 def print_digests(folder: Path) -> None:

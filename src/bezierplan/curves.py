@@ -96,6 +96,13 @@ def sample_matrix(curve: str, points: int, samples: int) -> np.ndarray:
     return basis
 
 
+def point_at(path: Path, at: float) -> np.ndarray:
+    """The point (2,) of a path at a piece's number plus the parameter in the piece, in the path's unit."""
+    pieces = bezier_pieces(path)
+    piece = min(int(at), len(pieces) - 1)
+    return bernstein(pieces.shape[1] - 1, np.array([at - piece]))[0] @ pieces[piece]
+
+
 @njit(cache=True)
 def _speed(differences: np.ndarray, t: float) -> float:
     """|B'(t)| of a piece from its control points' differences (degree, 2), by Horner's rule in Bernstein form."""

@@ -63,6 +63,11 @@ def unit(name: str, workspace_unit: str) -> str:
     return re.sub(r"\bu\b", workspace_unit, METRICS[name].unit)
 
 
+def _disagrees(claimed: bool, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Whether (n,) the planner's own test says this and the checker's the opposite."""
+    return ((runs["claimed_feasible"] == claimed) & (runs["feasible"] != claimed)).to_numpy()
+
+
 def _held_history(runs: pd.DataFrame) -> np.ndarray:
     """Best objective so far by generation: (runs, most generations + 1). Runs that stopped early hold their last value."""
     lengths = runs["history"].map(len).to_numpy()
@@ -161,7 +166,9 @@ METRICS: dict[str, Metric] = {
     "length": Metric("u", "exact arc length", True),
     "claimed_feasible": Metric("-", "the planner's own test of the path", False),
     "feasible": Metric("-", "the certified checker's test of the path", False),
-    "collision_depth": Metric("u", "depth of the first certified collision", False),
+    "falsely_claimed": Metric("-", "free by the planner's own test, colliding by the checker's", False, partial(_disagrees, True)),
+    "wrongly_rejected": Metric("-", "free by the checker's test, not by the planner's own", False, partial(_disagrees, False)),
+    "collision_depth": Metric("u", "largest depth of the path in obstacles or beyond the border", False),
     "clearance": Metric("u", "least distance to the obstacles", False),
     "evaluations": Metric("-", "paths whose objective the planner asked for", False),
     "generations": Metric("-", "generations really done", False),

@@ -2,7 +2,7 @@
 
 Columns of a problem file: problem, workspace (its name), start_x, start_y, target_x, target_y (units), drawn (the workspace itself, as
 JSON: `workspaces.files.to_json`). Columns of a file of bounds: problem, straight_line, bound (units; infinite without a free path),
-bound_path (the shortest path, flat as x0, y0, x1, y1, ...).
+least_length (what the checker's tolerance leaves of it), bound_path (the shortest path, flat as x0, y0, x1, y1, ...).
 """
 
 import math
@@ -86,8 +86,8 @@ def read(file: str) -> dict[str, Problem]:
     }
 
 
-def write_bounds(problems: dict[str, Problem], file: str) -> None:
-    """Write the straight line and the exact shortest path of each problem."""
+def bounds_of(problems: dict[str, Problem]) -> pa.Table:
+    """The straight line and the exact shortest path of each problem, one row each."""
     from bezierplan.exact import bounds
 
     rows = []
@@ -98,7 +98,8 @@ def write_bounds(problems: dict[str, Problem], file: str) -> None:
                 "problem": name,
                 "straight_line": math.dist(problem.start, problem.target),
                 "bound": bound.length,
+                "least_length": bounds.least_length(bound),
                 "bound_path": bound.points.ravel().tolist(),
             }
         )
-    parquet.write_table(pa.Table.from_pylist(rows), file)
+    return pa.Table.from_pylist(rows)

@@ -3,6 +3,7 @@
 import hashlib
 import json
 from pathlib import Path
+from typing import Any
 
 import pyarrow.parquet as parquet
 
@@ -19,10 +20,15 @@ def run_tables(folder: Path) -> dict[str, list[Path]]:
     return tables
 
 
+def row_text(row: dict[str, Any]) -> str:
+    """A row of a run table as text: columns by name, numbers with all their digits."""
+    return json.dumps(row, sort_keys=True, default=lambda value: value.tolist())
+
+
 def table_digest(files: list[Path]) -> str:
-    """A hash over the rows of chunk files, sorted by id, each row once. Numbers count with all their digits, columns by name.
+    """A hash over the rows of chunk files, sorted by id, each row once.
 
     Neither the order of the files nor how the repeats are cut into chunks matters.
     """
-    rows = {json.dumps(row, sort_keys=True) for file in files for row in parquet.read_table(file).to_pylist()}
+    rows = {row_text(row) for file in files for row in parquet.read_table(file).to_pylist()}
     return hashlib.sha256("\n".join(sorted(rows)).encode()).hexdigest()[:16]

@@ -17,12 +17,16 @@ SCALES = ("smoke", "full", "extended")
 
 @dataclass(frozen=True)
 class Study:
-    """A study as its files say it. key: its name; folder: where it lies; the others: experiments.yaml and artefacts.yaml."""
+    """A study as its files say it. key: its name; folder: where it lies; the others: experiments.yaml and artefacts.yaml.
+
+    methods: controls as well; controls: their names.
+    """
 
     key: str
     folder: Path
     title: str
     methods: dict[str, dict]
+    controls: frozenset[str]
     settings: dict[str, Any]
     workspaces: dict[str, dict]
     problems: dict[str, dict]
@@ -41,6 +45,18 @@ class Study:
         """The planner of a method: a name, or the path of a file as seen from here."""
         planner = self.methods[method]["planner"]
         return relative(self.folder / planner) if planner.endswith(".py") else planner
+
+    def methods_of(self, experiment: str) -> list[str]:
+        """Methods of an experiment, and behind them the controls that serve all its workspaces."""
+        content = self.experiments[experiment]
+        kinds = {self.workspaces[self.problems[problem]["workspace"]]["kind"] for problem in content["problems"]}
+        return content["methods"] + [name for name in self.methods if name in self.controls and self._serves(name, kinds, content)]
+
+    def _serves(self, control: str, kinds: set[str], experiment: dict) -> bool:
+        """Whether a control can join: its planner serves these kinds of workspace, and has no setting that the experiment varies."""
+        module = planner_module(self.planner(control))
+        varied = set(experiment.get("vary", {})) & set(planner_settings(module))
+        return kinds <= set(getattr(module, "workspaces", kinds)) and not varied
 
     def maps(self, workspaces: Iterable[str]) -> list[str]:
         """Map files of workspaces as seen from here, each once."""
@@ -100,6 +116,7 @@ def table_job(study: Study, table: str, scale: str) -> dict:
         "spec": spec,
         "labels": study.labels,
         "variants": {name: study.methods[name]["variant_of"] for name in experiment["methods"] if "variant_of" in study.methods[name]},
+        "controls": [name for name in study.methods_of(spec["experiment"]) if name in study.controls],
         "repeats": experiment["repeats"][scale],
         "unit": _unit(study, spec["experiment"]),
     }
@@ -134,9 +151,9 @@ def experiments_of(study: Study, artefact: str) -> list[str]:
 
 def methods_of(study: Study, artefact: str, experiment: str) -> list[str]:
     """Methods of an experiment whose runs an artefact needs: of a table all (the comparison shows them), of a figure those it selects."""
-    methods = study.experiments[experiment]["methods"]
     if artefact in study.tables:
-        return methods
+        return study.methods_of(experiment)
+    methods = study.experiments[experiment]["methods"]
     needed = set()
     for panel in study.figures[artefact]["panels"]:
         if panel.get("experiment") == experiment:
@@ -164,8 +181,8 @@ def smoke(studies: dict[str, Study]) -> tuple[list[tuple[str, str]], list[tuple[
                     planners.update(study.planner(method) for method in methods_of(study, artefact, experiment))
     methods = []
     for key, study in studies.items():
-        for experiment, content in study.experiments.items():
-            for method in content["methods"]:
+        for experiment in study.experiments:
+            for method in study.methods_of(experiment):
                 if study.planner(method) not in planners:
                     planners.add(study.planner(method))
                     methods.append((key, experiment, method))
@@ -177,7 +194,7 @@ def caption(study: Study, artefact: str, scale: str) -> str:
     sentences = [(study.tables.get(artefact) or study.figures[artefact])["title"]]
     for experiment in experiments_of(study, artefact):
         content = study.experiments[experiment]
-        methods = methods_of(study, artefact, experiment)
+        methods = [method for method in methods_of(study, artefact, experiment) if method not in study.controls]
         settings = {method: study.resolved(method) for method in methods}
         shared = {name: value for name, value in settings[methods[0]].items() if all(own.get(name) == value for own in settings.values())}
         for method, own in settings.items():

@@ -54,8 +54,14 @@ def load(folders: list[Path]) -> dict[str, Study]:
 def _read(folder: Path) -> Study:
     experiments = checked.read(_shown(folder / "experiments.yaml"), "experiments")
     artefacts = checked.read(_shown(folder / "artefacts.yaml"), "artefacts") if (folder / "artefacts.yaml").is_file() else {}
+    controls = experiments.pop("controls", {})
+    for name in controls:
+        if name in experiments["methods"]:
+            raise Fault(f"{relative(folder / 'experiments.yaml')}: controls: {name}: a method has this name already")
+    experiments["methods"] |= controls
     return Study(
         key=folder.resolve().name,
+        controls=frozenset(controls),
         folder=folder,
         labels=artefacts.get("labels", {}),
         tables=artefacts.get("tables", {}),
@@ -143,7 +149,7 @@ def _check_experiment(study: Study, experiment: dict, place: str) -> None:
     for problem in experiment["problems"]:
         _known(problem, study.problems, f"{place}: problems")
     for method in experiment["methods"]:
-        _known(method, study.methods, f"{place}: methods")
+        _known(method, study.methods.keys() - study.controls, f"{place}: methods")
         module = planner_module(study.planner(method))
         for problem in experiment["problems"]:
             kind = study.workspaces[study.problems[problem]["workspace"]]["kind"]
@@ -160,7 +166,7 @@ def _check_experiment(study: Study, experiment: dict, place: str) -> None:
 
 def _columns(study: Study, experiment: str) -> set[str]:
     """Columns of the runs table of an experiment that a selection may name."""
-    methods = study.experiments[experiment]["methods"]
+    methods = study.methods_of(experiment)
     return {"straight_line", "bound", *RUN_COLUMNS, *(setting for name in methods for setting in study.resolved(name))}
 
 
@@ -169,7 +175,7 @@ def _check_where(study: Study, experiment: str, where: dict, place: str) -> None
         _known(column, _columns(study, experiment), place)
         for value in wanted if isinstance(wanted, list) else [wanted]:
             if column == "method":
-                _known(value, study.experiments[experiment]["methods"], f"{place}: method")
+                _known(value, study.methods_of(experiment), f"{place}: method")
             if column == "problem":
                 _known(value, study.experiments[experiment]["problems"], f"{place}: problem")
 
@@ -213,7 +219,7 @@ def _check_published(study: Study, experiment: str, file: Path, place: str) -> N
                 if not _is_number(row[column]) and (needed or row[column]):
                     raise Fault(f"{where}: {column}: {row[column]!r}; expected a number")
             if "method" in row:
-                _known(row["method"], study.experiments[experiment]["methods"], f"{where}: method")
+                _known(row["method"], study.methods_of(experiment), f"{where}: method")
             if "problem" in row:
                 _known(row["problem"], study.experiments[experiment]["problems"], f"{where}: problem")
 

@@ -3,6 +3,8 @@
 from bezierplan import log
 
 with log.job(snakemake.log[0]):
+    import pyarrow.parquet as parquet
+
     from bezierplan import problems
 
-    problems.write_bounds(problems.read(snakemake.input[0]), snakemake.output[0])
+    parquet.write_table(problems.bounds_of(problems.read(snakemake.input[0])), snakemake.output[0])

@@ -45,16 +45,18 @@ def read_published(file: str | None, spec: dict) -> pd.DataFrame:
     return pd.read_csv(file, keep_default_na=False, na_values=[""])
 
 
-def compare(results: Results, spec: dict, published: pd.DataFrame, variant_of: dict[str, str], name: str) -> pd.DataFrame:
+def compare(
+    results: Results, spec: dict, published: pd.DataFrame, variant_of: dict[str, str], controls: list[str], name: str
+) -> pd.DataFrame:
     """The published numbers of a table beside ours, in the order of the table; the columns are described above.
 
     spec: as for `tables.pivot`. published: as from `read_published`. variant_of: method -> the method whose published numbers it is
-    compared with; variants of the table's methods get rows, whether or not the table shows them. name: `study/table`, from which each row's
-    random draws follow.
+    compared with. controls: methods without a published number. Variants of the table's methods and controls get rows, whether or not
+    the table shows them. name: `study/table`, from which each row's random draws follow.
     """
     given = published.columns[: published.columns.get_loc("metric")].to_list()
     keys = given + [key for key in tables.keys(spec) if key not in given]
-    spec = _with_variants(spec, variant_of) if "method" in keys else spec
+    spec = _with_variants(spec, variant_of, controls) if "method" in keys else spec
     both = _side_by_side(tables.cells(results, spec, keys), published, given, variant_of)
     order = tables.in_order(both, spec, list(results.problems)).sort_values([*keys, "value", "metric", "statistic"]).index
     both = both.loc[order].reset_index(drop=True)
@@ -83,14 +85,14 @@ def _side_by_side(ours: pd.DataFrame, published: pd.DataFrame, given: list[str],
     return both.assign(statistic=[printed.get(quantity, quantity[1]) for quantity in zip(both["metric"], both["statistic"])])
 
 
-def _with_variants(spec: dict, variant_of: dict[str, str]) -> dict:
-    """The table's description with the variants of its methods selected as well, behind them."""
+def _with_variants(spec: dict, variant_of: dict[str, str], controls: list[str]) -> dict:
+    """The table's description with the variants of its methods and the controls selected as well, behind them."""
     where = spec.get("where", {})
     if "method" not in where:
         return spec
     methods = where["method"] if isinstance(where["method"], list) else [where["method"]]
     variants = [variant for variant, method in variant_of.items() if method in methods and variant not in methods]
-    return spec | {"where": where | {"method": methods + variants}}
+    return spec | {"where": where | {"method": methods + variants + controls}}
 
 
 def _described(row: pd.Series, keys: list[str], name: str) -> dict[str, Any]:

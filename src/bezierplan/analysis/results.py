@@ -15,7 +15,7 @@ class Results(NamedTuple):
     """Runs, problems and bounds of an experiment.
 
     runs: one row a run, columns as in `running.run_chunk`, with `straight_line` and `bound` of its problem. problems: by name.
-    bounds: one row a problem, its name as index, columns as in `problems.write_bounds`.
+    bounds: one row a problem, its name as index, columns as in `problems.bounds_of`.
     """
 
     runs: pd.DataFrame
@@ -26,12 +26,23 @@ class Results(NamedTuple):
 def read(runs: list[str], repeats: int, problems: str, bounds: str) -> Results:
     """The results in chunk files of runs, cut at a number of repeats, with the problems and bounds of their experiment.
 
-    Chunks run whole, so a file may hold more repeats than are asked for.
+    Chunks run whole, so a file may hold more repeats than are asked for. Raises ValueError, naming the run, if a feasible path is shorter
+    than the shortest path: then the checker or the bound is wrong.
     """
     table = pd.concat([parquet.read_table(file).to_pandas() for file in runs], ignore_index=True)
-    limits = parquet.read_table(bounds).to_pandas().set_index("problem")
-    table = table[table["repeat"] < repeats].join(limits[["straight_line", "bound"]], on="problem")
-    return Results(table.reset_index(drop=True), problem_files.read(problems), limits)
+    table = table[table["repeat"] < repeats].reset_index(drop=True)
+    return joined(table, problem_files.read(problems), parquet.read_table(bounds).to_pandas())
+
+
+def joined(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFrame) -> Results:
+    """Runs with the bounds of their problems, as from `problems.bounds_of`. Raises ValueError as `read` does."""
+    bounds = bounds.set_index("problem")
+    runs = runs.join(bounds[["straight_line", "bound"]], on="problem")
+    impossible = runs["feasible"] & (runs["length"] < runs["problem"].map(bounds["least_length"]))
+    if impossible.any():
+        run = runs[impossible].iloc[0]
+        raise ValueError(f"run {run['id']} is said to be feasible, but its length {run['length']!r} lies below the bound {run['bound']!r}")
+    return Results(runs, problems, bounds)
 
 
 def read_all(runs: list[str], repeats: dict[str, int], problems: list[str], bounds: list[str]) -> dict[str, Results]:

@@ -5,7 +5,7 @@ They read the same region as the certified check, and the paths that they give a
 
 import math
 from fractions import Fraction
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -15,11 +15,17 @@ from bezierplan.exact.region import CircleRegion, GridRegion, PolygonRegion, occ
 from bezierplan.problem import Problem
 from bezierplan.workspaces.grid import Grid
 
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
 # A graph has an entry for every pair of nodes; more nodes than this would need gigabytes.
 MOST_NODES = 5000
 
 # Start and target are put on a lattice of at most this many points a cell, so that visibility is decided with whole numbers.
 _FINEST_LATTICE = 2**20
+
+# Products of two coordinates of the lattice must fit in 64 bits.
+_LARGEST_WHOLE = 2**30
 
 # A value this near to a fraction with a small denominator, in cells, is meant as that fraction.
 _SAME_FRACTION = 1e-12
@@ -57,27 +63,29 @@ def least_length(bound: Bound) -> float:
     Such a path may be a few 1e-9 deep and cuts its bends by that; the allowance is a relative 1e-9 and 1e-8 a radian of turning. Obstacles
     that are sharper than a right angle and gaps below 1e-7 can allow more.
     """
-    if len(bound.points) < 3:
-        return bound.length * (1 - 1e-9)
     step = np.diff(bound.points, axis=0)
-    step = step[np.any(step != 0, axis=1)]
+    step = step[np.hypot(step[:, 0], step[:, 1]) > TOLERANCE]
     heading = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))
-    return bound.length * (1 - 1e-9) - 1e-8 * np.abs(np.diff(heading)).sum()
+    return bound.length * (1 - 1e-9) - 1e-8 * float(np.abs(np.diff(heading)).sum())
 
 
 def shortest_path(problem: Problem, squeeze: Literal["open", "closed"] = "open") -> Bound:
     """The shortest path from start to target; no path if one of them is blocked.
 
-    squeeze: whether it may pass between two occupied cells that meet only by a corner; matters on grids only. On a grid the visibility of
-    start and target is decided where they lie on a lattice of at most 2**20 points a cell; lengths are those of the points themselves.
-    Raises ValueError if the visibility graph has more than `MOST_NODES` nodes.
+    squeeze: whether it may pass between two occupied cells that meet only by a corner; matters on grids only.
+
+    On a grid the visibility of start and target is decided for the nearest points of a lattice: coordinates that are no fractions of a cell
+    with a common denominator of at most 2**20 are off by up to 5e-7 cells there. Lengths are those of the points themselves. Around circles
+    the length is a sum of closed forms, and the polyline is up to `POLYLINE_EXCESS` longer.
+
+    Raises ValueError for an unknown squeeze rule, and for a grid or polygons with more than `MOST_NODES` corners.
     """
     blocked = region(problem.workspace)
     for point in (problem.start, problem.target):
-        if not check(np.array([[point, point]]), blocked).feasible:
+        if not check(np.array([[point, point]]), blocked, squeeze).feasible:
             return _no_path()
     if isinstance(blocked, GridRegion):
-        return _shortest_on_grid(problem, squeeze)
+        return _shortest_on_grid(problem, blocked, squeeze)
     if isinstance(blocked, CircleRegion):
         return _shortest_around_circles(problem, blocked)
     return _shortest_among_polygons(problem, blocked)
@@ -136,25 +144,23 @@ def lattice_path(
     if occupied[start] or occupied[target]:
         return _no_path()
 
-    number = np.arange(rows * columns).reshape(rows, columns)
-    lower, upper, left, right = np.s_[:-1], np.s_[1:], np.s_[:-1], np.s_[1:]
-    everything = np.s_[:]
-    steps = []
-    for a, b in (((everything, left), (everything, right)), ((lower, everything), (upper, everything))):
-        steps.append((number[a], number[b], ~occupied[a] & ~occupied[b], 1.0))
-    for a, b, beside in (
-        ((lower, left), (upper, right), ((lower, right), (upper, left))),
-        ((lower, right), (upper, left), ((lower, left), (upper, right))),
-    ):
-        passable = occupied[beside[0]].astype(int) + occupied[beside[1]] <= allowed[corner_rule]
-        steps.append((number[a], number[b], ~occupied[a] & ~occupied[b] & passable, diagonal_weight))
-    tail = np.concatenate([a[free] for a, _, free, _ in steps])
-    head = np.concatenate([b[free] for _, b, free, _ in steps])
-    weight = np.concatenate([np.full(free.sum(), length) for _, _, free, length in steps])
-    graph = coo_array((weight, (tail, head)), shape=(rows * columns, rows * columns)).tocsr()
-    length, cells = _dijkstra(graph, int(number[start]), int(number[target]))
-    row, column = np.divmod(cells, columns)
-    return Bound(length, np.column_stack([column + 0.5, row + 0.5]))
+    cells = walled(occupied)
+    number = np.arange(cells.size).reshape(cells.shape)
+    row, column = np.nonzero(~cells)
+    tails, heads, weights = [], [], []
+    for up, right, weight in ((0, 1, 1.0), (1, 0, 1.0), (1, 1, diagonal_weight), (1, -1, diagonal_weight)):
+        # The two cells beside a step; of a step along an axis these are the cells that it leaves and enters.
+        beside = cells[row, column + right].astype(int) + cells[row + up, column]
+        passable = ~cells[row + up, column + right] & (beside <= allowed[corner_rule])
+        tails.append(number[row, column][passable])
+        heads.append(number[row + up, column + right][passable])
+        weights.append(np.full(passable.sum(), weight))
+    edges = (np.concatenate(weights), (np.concatenate(tails), np.concatenate(heads)))
+    graph = coo_array(edges, shape=(cells.size, cells.size)).tocsr()
+    ends = (int(number[row + 1, column + 1]) for row, column in (start, target))
+    length, nodes = _dijkstra(graph, *ends)
+    row, column = np.divmod(nodes, cells.shape[1])
+    return Bound(length, np.column_stack([column - 0.5, row - 0.5]))
 
 
 def _no_path() -> Bound:
@@ -166,7 +172,7 @@ def _refuse_large(nodes: int) -> None:
         raise ValueError(f"the visibility graph has {nodes} nodes, more than {MOST_NODES}; use a coarser or a smaller workspace")
 
 
-def _dijkstra(graph, start: int, target: int) -> tuple[float, np.ndarray]:
+def _dijkstra(graph: "csr_array", start: int, target: int) -> tuple[float, np.ndarray]:
     """Length of a shortest path in a sparse graph, whose edges go both ways, and the nodes along it; none without a path."""
     from scipy.sparse.csgraph import dijkstra
 
@@ -199,23 +205,22 @@ def _shortest_in_graph(points: np.ndarray, visible: np.ndarray) -> Bound:
 # Grids: visibility between corners, in whole numbers
 
 
-def _shortest_on_grid(problem: Problem, squeeze: str) -> Bound:
+def _shortest_on_grid(problem: Problem, blocked: GridRegion, squeeze: str) -> Bound:
     """The visibility graph of start, target and the corners at which a shortest path can turn.
 
     Those are the vertices with exactly one occupied cell around them, and pinches. A pinch that is closed is two nodes, one a free
     quadrant, each with directions of its own quadrant only.
     """
-    grid = problem.workspace
-    cells = walled(grid.occupied)
+    cells = np.ascontiguousarray(blocked.blocked[::2, ::2])
     corners, slopes, quadrants = _grid_corners(cells, squeeze == "closed")
     ends = np.array([problem.start, problem.target], dtype=float)
-    scale = _lattice(ends / grid.cell)
-    lattice = np.concatenate([np.rint(ends / grid.cell * scale).astype(np.int64), corners * scale])
+    scale = _lattice(ends / blocked.cell, min(_FINEST_LATTICE, _LARGEST_WHOLE // max(cells.shape)))
+    lattice = np.concatenate([np.rint(ends / blocked.cell * scale).astype(np.int64), corners * scale])
     _refuse_large(len(lattice))
     slopes = np.concatenate([[0, 0], slopes])
     quadrants = np.concatenate([np.zeros((2, 2), dtype=np.int64), quadrants])
     visible = _visible_on_grid(lattice, slopes, quadrants, cells, scale, squeeze == "closed")
-    return _shortest_in_graph(np.concatenate([ends, corners * grid.cell]), visible)
+    return _shortest_in_graph(np.concatenate([ends, corners * blocked.cell]), visible)
 
 
 def _grid_corners(cells: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -244,12 +249,12 @@ def _grid_corners(cells: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarr
     return corners, slopes, quadrants
 
 
-def _lattice(points: np.ndarray) -> int:
-    """The least number of lattice points a cell that makes all coordinates whole; the largest allowed if that is not enough."""
-    fractions = [Fraction(value).limit_denominator(_FINEST_LATTICE) for value in points.ravel().tolist()]
+def _lattice(points: np.ndarray, finest: int) -> int:
+    """The least number of lattice points a cell that makes all coordinates whole; `finest` if that is not enough."""
+    fractions = [Fraction(value).limit_denominator(finest) for value in points.ravel().tolist()]
     scale = math.lcm(*(fraction.denominator for fraction in fractions))
     exact = all(abs(value - fraction) <= _SAME_FRACTION for value, fraction in zip(points.ravel(), fractions))
-    return scale if exact and scale <= _FINEST_LATTICE else _FINEST_LATTICE
+    return scale if exact and scale <= finest else finest
 
 
 @njit(cache=True)
@@ -432,31 +437,36 @@ def _shortest_around_circles(problem: Problem, blocked: CircleRegion) -> Bound:
 
     centres, radii = _outer_circles(blocked)
     tangents = _tangents(problem, centres, radii)
-    _refuse_large(len(tangents.points))
-    points = np.array(tangents.points)
-    pairs = np.array(tangents.pairs).reshape(-1, 2)
+    points, on_circle = np.array(tangents.points), np.array(tangents.circles)
+    pairs = np.array(tangents.pairs)
     pairs = pairs[_straight_is_free(points[pairs[:, 0]], points[pairs[:, 1]], centres, radii, blocked.bounds)]
-    straight = np.hypot(*(points[pairs[:, 1]] - points[pairs[:, 0]]).T)
-    arcs, sweeps = _free_arcs(tangents, centres, radii, blocked.bounds)
+    arcs, angles = _free_arcs(tangents, centres, radii, blocked.bounds)
 
     tail, head = np.concatenate([pairs, arcs]).T
-    sweep = np.concatenate([np.zeros(len(pairs)), sweeps])
-    on_circle = np.array(tangents.circles)[arcs[:, 0]]
-    lengths = np.concatenate([straight, radii[on_circle] * sweeps])
-    # Sparse matrices add duplicate entries; of two edges between the same nodes only the shorter one is kept.
-    order = np.lexsort([lengths, np.maximum(tail, head), np.minimum(tail, head)])
-    low, high = np.minimum(tail, head)[order], np.maximum(tail, head)[order]
-    order = order[np.concatenate([[True], (np.diff(low) != 0) | (np.diff(high) != 0)])[: len(order)]]
-    tail, head, sweep, lengths = tail[order], head[order], sweep[order], lengths[order]
-    graph = coo_array((np.maximum(lengths, _NO_LENGTH), (tail, head)), shape=(len(points), len(points))).tocsr()
+    sweep = np.concatenate([np.zeros(len(pairs)), angles])
+    straight = np.hypot(*(points[pairs[:, 1]] - points[pairs[:, 0]]).T)
+    length = np.concatenate([straight, radii[on_circle[arcs[:, 0]]] * angles])
+    kept = _shortest_between(tail, head, length)
+    tail, head, sweep, length = tail[kept], head[kept], sweep[kept], length[kept]
+    graph = coo_array((np.maximum(length, _NO_LENGTH), (tail, head)), shape=(len(points), len(points))).tocsr()
     _, nodes = _dijkstra(graph, 0, 1)
     if not len(nodes):
         return _no_path()
-    number = {pair: edge for edge, pair in enumerate(zip(tail.tolist(), head.tolist()))}
+
+    edge_of = {pair: edge for edge, pair in enumerate(zip(tail.tolist(), head.tolist()))}
     steps = list(zip(nodes[:-1].tolist(), nodes[1:].tolist()))
-    sweeps = [sweep[number[a, b]] if (a, b) in number else -sweep[number[b, a]] for a, b in steps]
-    length = math.fsum(lengths[number.get((a, b), number.get((b, a)))] for a, b in steps)
-    return Bound(length, _circumscribed(points[nodes], np.array(tangents.circles)[nodes], sweeps, centres, radii, blocked))
+    used = [edge_of.get((a, b), edge_of.get((b, a))) for a, b in steps]
+    # An arc is stored counterclockwise.
+    sweeps = [sweep[edge] if tail[edge] == a else -sweep[edge] for edge, (a, _) in zip(used, steps)]
+    return Bound(math.fsum(length[used]), _circumscribed(points[nodes], on_circle[nodes], sweeps, centres, radii, blocked))
+
+
+def _shortest_between(tail: np.ndarray, head: np.ndarray, length: np.ndarray) -> np.ndarray:
+    """Numbers of the edges that are the shortest between their two nodes. Of the others sparse matrices would make sums."""
+    low, high = np.minimum(tail, head), np.maximum(tail, head)
+    order = np.lexsort([length, high, low])
+    first = (np.diff(low[order], prepend=-1) != 0) | (np.diff(high[order], prepend=-1) != 0)
+    return order[first]
 
 
 def _outer_circles(blocked: CircleRegion) -> tuple[np.ndarray, np.ndarray]:

@@ -17,15 +17,20 @@ from numba.extending import overload
 
 from bezierplan.exact.region import CircleRegion, GridRegion, PolygonRegion, Region
 
+# Depth in units above which a point is certainly blocked.
 TOLERANCE = 1e-9
+
+# Proven error of the clearance in units, and of the depth relative to it.
 CLEARANCE_TOLERANCE = 1e-9
 DEPTH_TOLERANCE = 1e-6
 
 # Smaller than this, differences of coordinates are rounding.
 _ROUNDING = 1e-12
 
-# Coordinates beyond this would bring the rounding of halved control points near the tolerance. They also are far outside of any border.
+# Coordinates beyond this would bring the rounding of halved control points near the tolerance.
 LARGEST_COORDINATE = 1e5
+
+# How far the cells around a grid reach, which stand for its outside: beyond every coordinate.
 _FAR = 4 * LARGEST_COORDINATE
 
 # Halving reaches the tolerance from the largest coordinate in some fifty levels; a level needs one place on the stack.
@@ -71,8 +76,11 @@ class Check(NamedTuple):
 def check(pieces: np.ndarray, region: Region, squeeze: Literal["open", "closed"] = "open") -> Check:
     """Check a path of Bezier pieces (pieces, degree + 1, 2), in the region's unit, each beginning where the last one ends.
 
-    squeeze: whether a path may pass between two occupied cells that meet only by a corner; touching the corner is always allowed. A path
-    deeper than 4e-9 is never called free, one no deeper than 1e-9 never colliding; between them either answer may come.
+    squeeze: whether a path may pass between two occupied cells that meet only by a corner; touching the corner is always allowed. It
+    matters on grids only.
+
+    A path deeper than 4e-9 is never called free, one no deeper than 1e-9 never colliding; between them either answer may come. In the tip
+    of a notch between polygons that is sharper than 60 degrees, 2e-9 over the sine of half its angle stands for 4e-9.
 
     Raises ValueError for coordinates that are not finite or beyond 1e5, for a degree above 32, and for an unknown squeeze rule.
     """

@@ -31,6 +31,7 @@ _LOOK = {
     },
     "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull of the control points", "zorder": 2},
     "bound": {**style.BOUND, "label": "shortest path possible", "zorder": 4},
+    "collision": {"color": style.BLACK, "linestyle": "", "marker": "X", "markersize": 8, "label": "first collision", "zorder": 6},
     "start": {"color": style.BLACK, "linestyle": "", "marker": "s", "markersize": 7, "label": "start", "zorder": 4.5},
     "target": {"color": style.BLACK, "linestyle": "", "marker": "*", "markersize": 12, "label": "target", "zorder": 4.5},
 }
@@ -72,8 +73,8 @@ def feasible_note(frame: pd.DataFrame) -> str:
 def data(results: Results, *, pick: dict[str, Any]) -> pd.DataFrame:
     """What is drawn of a run: one row a point, in the order in which points are joined.
 
-    Columns: those of `picked`; part (start, target, bound, hull, control, path), x, y (in the workspace's unit). Without a run to
-    show, start and target only.
+    Columns: those of `picked`; part (start, target, bound, hull, control, path, and collision, the first one of a path that has one), x, y
+    (in the workspace's unit). Without a run to show, start and target only.
 
     pick: the run, as in `analysis.results.pick`. Raises ValueError unless all runs are of one problem and one method.
     """
@@ -85,6 +86,8 @@ def data(results: Results, *, pick: dict[str, Any]) -> pd.DataFrame:
         hull = shapely.MultiPoint(path.points).convex_hull
         drawn["bound"] = np.reshape(results.bounds.loc[problem.name, "bound_path"], (-1, 2))
         drawn |= {"hull": shapely.get_coordinates(hull), "control": path.points, "path": _steps(path)}
+        if not run["feasible"]:
+            drawn["collision"] = [curves.point_at(path, run["collision_at"])]
     points = [pd.DataFrame(np.asarray(xy, dtype=float), columns=["x", "y"]).assign(part=part) for part, xy in drawn.items()]
     frame = pd.concat(points, ignore_index=True).assign(**names)
     return frame[[*names, "part", "x", "y"]]

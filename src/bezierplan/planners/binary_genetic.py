@@ -255,18 +255,21 @@ def _measure(cells, occupied, basis, stretch, x, y):
 def _measure_by_arc_length(cells, occupied, samples):
     """Length in cells of a polyline through cell centres and the number of its occupied samples, which are equally spaced along it."""
     columns = occupied.shape[1]
-    x, y = cells % columns + 0.5, cells // columns + 0.5
-    edges = np.sqrt(np.diff(x) ** 2 + np.diff(y) ** 2)
-    length = edges.sum()
+    points = len(cells)
+    x, y, passed = np.empty(points), np.empty(points), np.zeros(points)
+    for p in range(points):
+        x[p], y[p] = cells[p] % columns + 0.5, cells[p] // columns + 0.5
+        if p:
+            passed[p] = passed[p - 1] + np.sqrt((x[p] - x[p - 1]) ** 2 + (y[p] - y[p - 1]) ** 2)
     bad = 0
-    edge, passed = 0, 0.0
+    p = 0
     for s in range(1, samples):
-        along = length * s / (samples - 1)
-        while edge < len(edges) - 1 and along > passed + edges[edge]:
-            passed += edges[edge]
-            edge += 1
-        share = min((along - passed) / edges[edge], 1.0) if edges[edge] > 0 else 1.0
-        row = y[edge] + share * (y[edge + 1] - y[edge])
-        column = x[edge] + share * (x[edge + 1] - x[edge])
+        along = passed[-1] * s / (samples - 1)
+        while p < points - 2 and along > passed[p + 1]:
+            p += 1
+        edge = passed[p + 1] - passed[p]
+        share = min((along - passed[p]) / edge, 1.0) if edge > 0 else 1.0
+        row = y[p] + share * (y[p + 1] - y[p])
+        column = x[p] + share * (x[p + 1] - x[p])
         bad += occupied[int(row + ON_LINE), int(column + ON_LINE)]
-    return length, bad
+    return passed[-1], bad

@@ -1,0 +1,14 @@
+"""A control: the straight line from start to target, whatever lies between them."""
+
+import math
+
+import numpy as np
+
+from bezierplan.problem import Path, Plan, Problem
+
+
+def plan(problem: Problem, rng: np.random.Generator) -> Plan:
+    """The straight line; its objective is its length, in units. It looks at no obstacle and takes every path for free."""
+    length = math.dist(problem.start, problem.target)
+    path = Path("polyline", np.array([problem.start, problem.target]))
+    return Plan(path, length, claimed_feasible=True, evaluations=1, history=np.array([length]), stop="direct", extra={})

@@ -1,0 +1,75 @@
+"""One run again, from its name alone: bit-equal, and with its picture."""
+
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+import pyarrow.parquet as parquet
+
+from bezierplan import problems, running, sheet
+from bezierplan.analysis import results
+from bezierplan.checked import Fault, closest
+from bezierplan.exact.region import region
+from bezierplan.run_digest import row_text
+from bezierplan.study import Study, job, problems_job
+
+
+def replay(name: str, studies: dict[str, Study]) -> results.Results:
+    """The run of a name `study/experiment/condition/method/repeat`, made again: one row, with its problem and bound.
+
+    Raises Fault, saying which part of the name is unknown.
+    """
+    parts = name.split("/")
+    if len(parts) != 5:
+        raise Fault(f"{name}: not the name of a run; expected study/experiment/condition/method/repeat")
+    key, experiment, condition_name, method, repeat = parts
+    study = _named(key, studies, f"{name}: study")
+    _named(experiment, study.experiments, f"{name}: experiment")
+    _named(method, dict.fromkeys(study.methods_of(experiment)), f"{name}: method")
+    # Scale and chunk matter to neither the seed nor the settings of a run.
+    described = job(study, experiment, method, "full", 0)
+    conditions = {each.name: each for each in running.conditions(list(described["problems"]), described["vary"])}
+    condition = _named(condition_name, conditions, f"{name}: condition")
+    if not repeat.isdecimal():
+        raise Fault(f"{name}: repeat: {repeat}; expected a whole number")
+
+    made, _ = problems.build_all(problems_job(study, experiment), study.folder)
+    problem = {condition.problem: made[condition.problem]}
+    plan = running.run(described, condition, int(repeat), made[condition.problem])
+    row = running.row(described, condition, int(repeat), plan, region(made[condition.problem].workspace))
+    return results.joined(pd.DataFrame([row]), problem, problems.bounds_of(problem).to_pandas())
+
+
+def _named(name: str, known: dict[str, Any], place: str) -> Any:
+    if name not in known:
+        raise Fault(f"{place}: {name}: unknown{closest(name, known)}")
+    return known[name]
+
+
+def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:
+    """The rows of that name in run tables below a folder, by file."""
+    study, experiment, _, method, _ = name.split("/")
+    found = {}
+    for file in sorted(folder.glob(f"*/{study}/runs/{experiment}/{method}/*.parquet")):
+        if not file.name.endswith(".times.parquet"):
+            for row in parquet.read_table(file, filters=[("id", "=", name)]).to_pylist():
+                found[file] = row
+    return found
+
+
+def equal(run: pd.Series, stored: dict[str, Any]) -> bool:
+    """Whether a run made again has the content of a stored row, to the last bit."""
+    return row_text(run[list(stored)].to_dict()) == row_text(stored)
+
+
+def draw(made: results.Results, study: Study, file: Path) -> None:
+    """Save the picture of a run made again: its path, control points, first collision if any, and the shortest path; svg, png and csv."""
+    run = made.runs.iloc[0]
+    panel = {"kind": "paths", "experiment": run["experiment"], "pick": {"repeat": int(run["repeat"])}}
+    unit = made.problems[run["problem"]].workspace.unit
+    scene = sheet.Scene({run["experiment"]: made.problems}, {}, study.labels, unit)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    frame = sheet.data([panel], {run["experiment"]: made}, {})
+    sheet.write_data(frame, str(file.with_suffix(".csv")))
+    figure = sheet.draw([panel], sheet.read_data(str(file.with_suffix(".csv"))), scene, 1)
+    sheet.save(figure, str(file.with_suffix(".svg")), str(file.with_suffix(".png")))
