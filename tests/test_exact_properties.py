@@ -11,7 +11,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from bezierplan.curves import CURVES, bernstein, bezier_pieces, least_points
+from bezierplan.curves import bernstein, bezier_pieces, least_points
 from bezierplan.exact.bounds import centre_path, lattice_path, least_length, shortest_path
 from bezierplan.exact.checker import check
 from bezierplan.exact.region import region
@@ -23,6 +23,9 @@ from bezierplan.workspaces.polygons import Polygons
 
 MAPS = File(__file__).parent / "data" / "maps"
 KINDS = ("circles", "cells", "polygons")
+
+# Curves of every degree; the other kinds of curves are cubic pieces as well.
+CURVES = ("polyline", "piecewise_quadratic", "piecewise_cubic", "bezier")
 
 # Deeper than the first is never called free, not deeper than the second never colliding.
 CERTAINLY_DEEP = 4e-9
@@ -53,7 +56,8 @@ class Judge:
         """Distance to the blocked region, negative inside of it: (n,)."""
         places = shapely.points(points)
         signed = shapely.distance(self.blocked, places)
-        signed -= np.where(signed > 0, 0, shapely.distance(self.free, places))
+        # shapely gives no number for the distance to free space if there is none.
+        signed -= np.where(signed > 0, 0, np.nan_to_num(shapely.distance(self.free, places), nan=math.inf))
         if self.circles:
             offsets = points[:, None] - self.circles.centres
             signed = np.minimum(signed, (np.hypot(offsets[..., 0], offsets[..., 1]) - self.circles.radii).min(axis=1, initial=math.inf))
@@ -223,6 +227,13 @@ PROBLEMS = st.builds(Problem, st.just(""), WORKSPACES, PLACE, PLACE)
 def paths(draw):
     curve = draw(st.sampled_from(CURVES))
     return bezier_pieces(Path(curve, np.array(draw(st.lists(PLACE, min_size=least_points(curve), max_size=7)))))
+
+
+@settings(deadline=None, max_examples=300)
+@given(WORKSPACES, paths())
+def test_touching_paths_against_dense_sampling(workspace, pieces):
+    """On a lattice paths begin, end, turn and run on the boundaries of obstacles all the time."""
+    assert_check_is_right(workspace, pieces, region(workspace), Judge(workspace))
 
 
 def mapped(workspace, flip):

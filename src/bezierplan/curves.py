@@ -3,6 +3,10 @@
 Four kinds are clamped uniform B-splines of n control points and differ in degree only: `polyline` (1), `piecewise_quadratic` (2),
 `piecewise_cubic` (3), and `bezier` (n - 1, which has one piece). A piece of a B-spline is a Bezier curve whose control points are values of
 the spline's blossom (its polar form).
+
+Two kinds pass through their points. `spline` is the cubic spline through all of them at uniform parameters, with not-a-knot ends. `ferguson`
+is a chain of cubic Hermite pieces (tharwat2018's reference 33); its control points are pairs of a point and the tangent in it, the derivative
+by a piece's own parameter: P0, T0, V, TV, ..., P1, T1.
 """
 
 import math
@@ -14,7 +18,8 @@ from numba import njit
 from bezierplan.problem import Path
 
 _DEGREE = {"polyline": 1, "piecewise_quadratic": 2, "piecewise_cubic": 3, "bezier": None}
-CURVES = tuple(_DEGREE)
+B_SPLINES = tuple(_DEGREE)
+CURVES = (*B_SPLINES, "spline", "ferguson")
 
 # Below this share of the curve's highest speed a point counts as standing still: repeated control points do that, and curvature is not
 # defined there.
@@ -26,7 +31,14 @@ _NODES_16, _WEIGHTS_16 = np.polynomial.legendre.leggauss(16)
 
 def least_points(curve: str) -> int:
     """Fewest control points that a curve kind can have, start and target included."""
-    return max(2, (_DEGREE[curve] or 1) + 1)
+    if curve == "ferguson":
+        return 4
+    return max(2, (_DEGREE.get(curve) or 1) + 1)
+
+
+def ends(curve: str) -> tuple[int, int]:
+    """Which control points are start and target; the last one of a `ferguson` curve is a tangent."""
+    return (0, -2) if curve == "ferguson" else (0, -1)
 
 
 def _blossom(knots: np.ndarray, span: int, arguments: np.ndarray) -> np.ndarray:
@@ -46,13 +58,23 @@ def _blossom(knots: np.ndarray, span: int, arguments: np.ndarray) -> np.ndarray:
 def piece_matrix(curve: str, points: int) -> np.ndarray:
     """The linear map from control points to Bezier pieces: (pieces, degree + 1, points). Read-only.
 
-    Raises ValueError for an unknown kind and for too few control points.
+    Raises ValueError for an unknown kind, for too few control points, and for an odd number of those of a `ferguson` curve.
     """
-    if curve not in _DEGREE:
+    if curve not in CURVES:
         raise ValueError(f"unknown curve {curve!r}; known: {', '.join(CURVES)}")
     if points < least_points(curve):
         raise ValueError(f"a curve of kind {curve} needs at least {least_points(curve)} control points, not {points}")
-    degree = _DEGREE[curve] or points - 1
+    if curve == "ferguson":
+        matrix = _ferguson_pieces(points)
+    elif curve == "spline":
+        matrix = _spline_pieces(points)
+    else:
+        matrix = _b_spline_pieces(_DEGREE[curve] or points - 1, points)
+    matrix.setflags(write=False)
+    return matrix
+
+
+def _b_spline_pieces(degree: int, points: int) -> np.ndarray:
     pieces = points - degree
     knots = np.concatenate([np.zeros(degree), np.arange(pieces + 1.0), np.full(degree, float(pieces))])
     matrix = np.zeros((pieces, degree + 1, points))
@@ -60,8 +82,28 @@ def piece_matrix(curve: str, points: int) -> np.ndarray:
         for k in range(degree + 1):
             arguments = np.array([piece] * (degree - k) + [piece + 1.0] * k)
             matrix[piece, k, piece : piece + degree + 1] = _blossom(knots, piece + degree, arguments)
-    matrix.setflags(write=False)
     return matrix
+
+
+def _spline_pieces(points: int) -> np.ndarray:
+    from scipy.interpolate import CubicSpline
+
+    # Two and three points leave the line and the parabola through them.
+    at = np.arange(float(points))
+    slopes = CubicSpline(at, np.eye(points), bc_type="not-a-knot")(at, nu=1)
+    return _hermite_pieces(np.eye(points), slopes)
+
+
+def _ferguson_pieces(points: int) -> np.ndarray:
+    if points % 2:
+        raise ValueError(f"a curve of kind ferguson needs an even number of control points, not {points}")
+    rows = np.eye(points)
+    return _hermite_pieces(rows[::2], rows[1::2])
+
+
+def _hermite_pieces(values: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+    """Cubic pieces between consecutive values (n, points) with the slopes (n, points) in them, by the parameter of a piece."""
+    return np.stack([values[:-1], values[:-1] + slopes[:-1] / 3, values[1:] - slopes[1:] / 3, values[1:]], axis=1)
 
 
 def bezier_pieces(path: Path) -> np.ndarray:

@@ -8,12 +8,10 @@ least_length (what the checker's tolerance leaves of it), bound_path (the shorte
 import math
 from pathlib import Path
 
-import numpy as np
 import pyarrow as pa
 import pyarrow.parquet as parquet
 
-from bezierplan.exact import checker
-from bezierplan.exact.region import region
+from bezierplan.exact.region import blocks, region
 from bezierplan.problem import Problem, Workspace
 from bezierplan.workspaces import files
 from bezierplan.workspaces.grid import Grid
@@ -44,7 +42,7 @@ def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, floa
         raise ValueError(
             f"{key}: {value}: outside the workspace; expected x from {x_low:g} to {x_high:g} and y from {y_low:g} to {y_high:g}"
         )
-    if not checker.check(np.array([[point, point]]), region(workspace)).feasible:
+    if blocks(region(workspace), point):
         raise ValueError(f"{key}: {value}: in an obstacle; expected a free place of the workspace")
     return point
 

@@ -465,36 +465,35 @@ def _is_free_in_polygons(points, region):
 def _passes_chain(points, region, touched, first, along_x, along_y, across_low, across_high) -> int:
     """Number of edges of a chain of touched edges if a hull passes it on the free side, else 0.
 
-    Where the blocked region is reflex at the chain's corners, the hull must lie on the free side of all of its lines. Where it is convex,
-    one of them is enough, or any line between hull and chain; the one along the hull is tried. A chain with both is not decided.
+    It does if it lies on the free side of all lines of the chain. Where the blocked region is convex at the chain's corners, one of them is
+    enough, or any line between hull and chain, with free space on the hull's side; the one along the hull is tried.
     """
     reach = 2.0 * TOLERANCE
     length = 0
     beside_all = True
     beside_one = False
-    only_convex = only_reflex = True
-    chain_low = math.inf
-    chain_high = -math.inf
+    only_convex = True
+    chain_low = facing_low = math.inf
+    chain_high = facing_high = -math.inf
     e = first
     while touched[e]:
         if length > 0:
-            convex = region.convex[region.preceding[e]]
-            only_convex &= convex
-            only_reflex &= not convex
+            only_convex &= region.convex[region.preceding[e]]
         length += 1
         low, _ = _sides_of_edge(points, region.edges[e], region.normals[e])
         beside_all &= low >= -reach
         beside_one |= low >= -reach
+        facing = along_x * region.normals[e, 1] - along_y * region.normals[e, 0]
+        facing_low = min(facing_low, facing)
+        facing_high = max(facing_high, facing)
         for k in (0, 2):
             across = along_x * (region.edges[e, k + 1] - points[0, 1]) - along_y * (region.edges[e, k] - points[0, 0])
             chain_low = min(chain_low, across)
             chain_high = max(chain_high, across)
         e = region.following[e]
-    if only_reflex and beside_all:
-        return length
-    if only_convex and (beside_one or across_high <= chain_low + reach or across_low >= chain_high - reach):
-        return length
-    return 0
+    above = across_low >= chain_high - reach and facing_high > 0.0
+    below = across_high <= chain_low + reach and facing_low < 0.0
+    return length if beside_all or (only_convex and (beside_one or above or below)) else 0
 
 
 @overload(_is_blocked)

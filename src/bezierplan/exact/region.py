@@ -76,6 +76,33 @@ def region(workspace: Workspace) -> Region:
     return _polygon_region(workspace)
 
 
+def blocks(region: Region, point: tuple[float, float], tolerance: float = 1e-9) -> bool:
+    """Whether a point, in units, lies in the blocked region, deeper than a tolerance. For single points: it needs no compiled code."""
+    if isinstance(region, GridRegion):
+        column, row = (_element(value / region.cell, tolerance) for value in point)
+        inside = 0 <= row < region.blocked.shape[0] and 0 <= column < region.blocked.shape[1]
+        return not inside or bool(region.blocked[row, column])
+    x, y = point
+    if isinstance(region, CircleRegion):
+        left, right, bottom, top = region.bounds
+        deepest = max(left - x, x - right, bottom - y, y - top)
+        return max(deepest, *(region.radii - np.hypot(x - region.centres[:, 0], y - region.centres[:, 1]))) > tolerance
+    begin, end = region.edges[:, :2], region.edges[:, 2:]
+    along = end - begin
+    share = np.clip(((point - begin) * along).sum(axis=1) / (along**2).sum(axis=1), 0, 1)
+    nearest = np.hypot(*(begin + share[:, None] * along - point).T).min(initial=np.inf)
+    # Free space is bounded, so a ray from a free point leaves it: it crosses the boundary an odd number of times.
+    across = (begin[:, 1] > y) != (end[:, 1] > y)
+    crossing = begin[across, 0] + (y - begin[across, 1]) * along[across, 0] / along[across, 1]
+    return nearest > tolerance and int((crossing > x).sum()) % 2 == 0
+
+
+def _element(coordinate: float, tolerance: float) -> int:
+    """Index in the doubled grid of a coordinate in cells: of a grid line if it lies on one, else of a cell."""
+    line = round(coordinate)
+    return 2 * line + 1 if abs(coordinate - line) <= tolerance else 2 * int(np.floor(coordinate)) + 2
+
+
 def border_edges(bounds: tuple[float, float, float, float]) -> np.ndarray:
     """The four edges (4, 4) of a border, as x, y, x, y."""
     left, right, bottom, top = bounds

@@ -1,0 +1,261 @@
+"""From a check of a claim to its comparisons: which runs stand against which, and the published numbers of the same cells."""
+
+import itertools
+from collections.abc import Iterator
+from pathlib import PurePath
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from bezierplan import metrics
+from bezierplan.analysis import claim_tests
+from bezierplan.analysis.claim_published import listed, printed
+from bezierplan.analysis.claim_tests import Comparison
+from bezierplan.analysis.results import Results, pick, select
+from bezierplan.checked import Fault
+
+REST = "rest"
+# What one unit of a comparison has one value of; several, and their runs would be mixed without a word.
+_FACTORS = ["experiment", "condition", "method"]
+
+
+class Material(NamedTuple):
+    """What the claims of a study are judged on, everything by name.
+
+    results: of each experiment that was run. published: files of published numbers, named without `.csv`. artefacts: descriptions of tables
+    and figures as in artefacts.yaml. variant_of: method -> the method whose published numbers count.
+    paired: of each experiment, do runs of equal repeats share a start or a drawn workspace? repeats: how many repeats the paper has of
+    each, which counts where the printed numbers do not say.
+    """
+
+    results: dict[str, Results]
+    published: dict[str, pd.DataFrame]
+    artefacts: dict[str, dict]
+    variant_of: dict[str, str]
+    paired: dict[str, bool]
+    repeats: dict[str, int]
+
+
+class Untestable(Exception):
+    """Why a check cannot be judged."""
+
+
+def unit_of(metric: str, experiments: list[str], material: Material) -> str:
+    """The unit of a metric in experiments, whose problems share one unit of length."""
+    problems = material.results[experiments[0]].problems
+    return metrics.unit(metric, next(iter(problems.values())).workspace.unit)
+
+
+def with_rest(check: dict, claim: dict, material: Material) -> dict:
+    """The check with `rest` replaced by the groups of the claim's artefact that the check does not name."""
+    named = _named_groups(check)
+    if REST not in named:
+        return check
+    rest = [group for group in _groups_of_artefact(check, claim, material) if group not in named]
+    replaced = {
+        key: [group for name in check[key] for group in (rest if name == REST else [name])] for key in ("groups", "than") if key in check
+    }
+    if "order" in check:
+        replaced["order"] = [[group for name in tier for group in (rest if name == REST else [name])] for tier in check["order"]]
+    return check | replaced
+
+
+def _named_groups(check: dict) -> list:
+    tiers = [check.get("groups", []), check.get("than", []), *check.get("pairs", []), *check.get("order", [])]
+    return list(itertools.chain.from_iterable(tiers))
+
+
+def _parts_of_artefact(check: dict, claim: dict, material: Material) -> list[dict]:
+    """The tables, and panels of figures, that show a claim's artefacts with runs of the check's experiments."""
+    parts = []
+    for name in listed(claim.get("artefact", [])):
+        artefact = material.artefacts.get(name, {})
+        parts += [part for part in artefact.get("panels", [artefact]) if part.get("experiment") in listed(check["experiment"])]
+    return parts
+
+
+def _groups_of_artefact(check: dict, claim: dict, material: Material) -> list:
+    """Groups that an artefact shows, each once, in its order; all groups of the experiment where it does not choose."""
+    across = check.get("across", "method")
+    groups = []
+    for part in _parts_of_artefact(check, claim, material) or [{}]:
+        if across in part.get("where", {}):
+            groups += listed(part["where"][across])
+        else:
+            runs = [material.results[name].runs for name in listed(check["experiment"]) if name in material.results]
+            groups += sorted({group for table in runs for group in table[across].dropna()})
+    return list(dict.fromkeys(groups))
+
+
+def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison]:
+    """The comparisons of a check without `rest`, in an order that does not depend on that of the runs.
+
+    Raises Untestable if its experiment was not run or no run satisfies its `where`; Fault if runs of several conditions would be mixed.
+    """
+    runs = _measured_runs(check, claim, material)
+    if runs.empty:
+        raise Untestable("no run is of the conditions that the claim names")
+    column, unit = _cell_column(check), check.get("unit", "repeat")
+    every, pool = check.get("every", []), check.get("pool", [])
+    tables = _published_tables(check, claim, material)
+    keys = ["experiment", *every, *pool, *([column] if column else []), *(key for _, table in tables for key in table if key in runs)]
+    keys = list(dict.fromkeys(key for key in keys if key != "value"))
+    runs = runs[list(dict.fromkeys([*keys, *_FACTORS, unit, "value"]))]
+    _refuse_mixtures(check, claim, runs, column)
+    # Published numbers are found by the places of the runs, each once.
+    places = dict(_split(runs[keys].drop_duplicates(), every))
+    found = []
+    for place, rows in _split(runs, every):
+        unit_tables = {name: _unit_table(part, unit, column) for name, part in _split(rows, pool)}
+        for name, cells in _cells(check, rows):
+            strata = {key: claim_tests.event(check, table.reindex(columns=cells).to_numpy()) for key, table in unit_tables.items()}
+            cell_places = [
+                [part if column is None else part[part[column] == cell] for cell in cells] for _, part in _split(places[place], pool)
+            ]
+            numbers, number_of_runs = printed(check, cell_places, tables, material.variant_of)
+            found.append(
+                Comparison(
+                    place=place,
+                    name=name,
+                    cells=tuple(cells),
+                    strata=strata,
+                    printed=numbers,
+                    paper_units=number_of_runs or material.repeats.get(listed(check["experiment"])[0]),
+                    boolean=_is_boolean(check, material),
+                    paired=check.get("paired", _shares_draws(check, material)),
+                    note=_note(check, rows, column, cells),
+                )
+            )
+    return found
+
+
+def _measured_runs(check: dict, claim: dict, material: Material) -> pd.DataFrame:
+    """The runs of a check's conditions with the column `value`: not a number where a run does not count.
+
+    A condition on an outcome, such as `feasible: true`, leaves the other runs in, without a value: a place where none satisfies it stays.
+    """
+    where = check.get("where", {})
+    conditions = {column: wanted for column, wanted in where.items() if column not in metrics.METRICS}
+    outcomes = {column: wanted for column, wanted in where.items() if column in metrics.METRICS}
+    measured = []
+    for name in listed(check["experiment"]):
+        if name not in material.results:
+            raise Untestable(f"the experiment {name} was not run")
+        runs, problems, _ = material.results[name]
+        if check["metric"] == "rank":
+            # A rank is one among the rows of the artefact, whichever of them the check goes on to compare.
+            for part in _parts_of_artefact(check, claim, material)[:1]:
+                runs = select(runs, part.get("where", {}))
+        else:
+            runs = select(runs, conditions)
+        counting = _picked(runs, check["pick"]) if "pick" in check else runs
+        values = metrics.values(counting, check["metric"], problems).fillna(_failure(check))
+        values = values.loc[select(counting, outcomes).index].reindex(runs.index)
+        measured.append(select(runs.assign(value=values), conditions))
+    return pd.concat(measured, ignore_index=True)
+
+
+def _picked(runs: pd.DataFrame, which: dict) -> pd.DataFrame:
+    """One run of each condition and method that has a feasible one."""
+    chosen = [pick(group, which) for _, group in runs.groupby(["experiment", "condition", "method"])]
+    return runs.loc[[run.name for run in chosen if run is not None]]
+
+
+def _failure(check: dict) -> float:
+    """The value of a run that has none: dropped, worse than any, or one for which the event is false."""
+    match check.get("failures", "drop"):
+        case "last":
+            return np.inf
+        case "count":
+            above = "above" in check.get("event", {}) or "at_least" in check.get("event", {})
+            return -np.inf if above else np.inf
+    return np.nan
+
+
+def _cell_column(check: dict) -> str | None:
+    """The column whose values are the cells; None for a share, which has one cell."""
+    if check["test"] == "share":
+        return None
+    return check["x"] if check["test"] == "trend" else check.get("across", "method")
+
+
+def _refuse_mixtures(check: dict, claim: dict, runs: pd.DataFrame, column: str | None) -> None:
+    keys = [*check.get("every", []), *check.get("pool", []), *([column] if column else [])]
+    unit = check.get("unit", "repeat")
+    mixed = runs.groupby([*keys, unit], dropna=False)[_FACTORS].nunique().max() > 1
+    for factor in mixed.index[mixed]:
+        what = f"claim {claim['id']}: {check['test']} of {check['metric']}"
+        raise Fault(f"{what}: several values of {factor} are neither told apart nor pooled")
+
+
+def _split(rows: pd.DataFrame, columns: list[str]) -> Iterator[tuple[str, pd.DataFrame]]:
+    """The rows of each combination of values of the columns, with its name, sorted."""
+    if not columns:
+        yield "", rows
+        return
+    for values, part in rows.groupby(columns, dropna=False):
+        yield ", ".join(f"{column}={value}" for column, value in zip(columns, values)), part
+
+
+def _unit_table(rows: pd.DataFrame, unit: str, column: str | None) -> pd.DataFrame:
+    """The mean value of each unit (row) in each cell (column); a failed run that counts as such makes its unit one."""
+    if column is None:
+        return rows.groupby(unit)["value"].mean().to_frame("")
+    return rows.groupby([unit, column])["value"].mean().unstack(column)
+
+
+def _cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
+    """The cells of each comparison, with its name."""
+    match check["test"]:
+        case "lower" | "equal_within":
+            pairs = check["pairs"] if "pairs" in check else itertools.product(check["groups"], check["than"])
+        case "ordered":
+            tiers = itertools.pairwise(check["order"])
+            pairs = itertools.chain.from_iterable(itertools.product(better, worse) for better, worse in tiers)
+        case "trend":
+            yield f"{check['x']} {check['direction']}", sorted(rows[check["x"]].dropna().unique())
+            return
+        case "share":
+            words = [word for limit in check.get("event", {}).items() for word in limit]
+            yield " ".join(map(str, [*words, "in", *([check["direction"]] if "direction" in check else []), check["threshold"]])), [""]
+            return
+        case "difference":
+            yield ", ".join(map(str, check["groups"])), check["groups"]
+            return
+    relation = "as" if check["test"] == "equal_within" else f"{check['direction']} than"
+    for pair in pairs:
+        yield f"{pair[0]} {relation} {pair[1]}", list(pair)
+
+
+def _is_boolean(check: dict, material: Material) -> bool:
+    """Is the metric a column of truths, and not averaged over the runs of a unit?"""
+    runs = material.results[listed(check["experiment"])[0]].runs
+    return check.get("unit", "repeat") == "repeat" and check["metric"] in runs and pd.api.types.is_bool_dtype(runs[check["metric"]])
+
+
+def _shares_draws(check: dict, material: Material) -> bool:
+    """Do units of the same number share a drawn workspace or a start?"""
+    return "unit" in check or all(material.paired.get(name, False) for name in listed(check["experiment"]))
+
+
+def _note(check: dict, rows: pd.DataFrame, column: str | None, cells: list) -> str:
+    """Says so where two groups are compared on their successes and succeed in different shares of the runs (Fisher's exact test)."""
+    if len(cells) != 2 or check.get("failures", "drop") != "drop" or not metrics.METRICS[check["metric"]].feasible_only:
+        return ""
+    from scipy import stats
+
+    values = [rows.loc[rows[column] == cell, "value"] for cell in cells]
+    counts = [[int(each.notna().sum()), int(each.isna().sum())] for each in values]
+    return "compared on common successes" if stats.fisher_exact(counts).pvalue < claim_tests.ALPHA else ""
+
+
+def _published_tables(check: dict, claim: dict, material: Material) -> list[tuple[str, pd.DataFrame]]:
+    """Experiment and published numbers of each table of the check's experiments, those of the claim's artefacts first."""
+    own = listed(claim.get("artefact", []))
+    tables = []
+    for name in [*own, *(name for name in material.artefacts if name not in own)]:
+        artefact = material.artefacts.get(name, {})
+        if "published" in artefact and artefact["experiment"] in listed(check["experiment"]):
+            tables.append((artefact["experiment"], material.published[PurePath(artefact["published"]).stem]))
+    return tables

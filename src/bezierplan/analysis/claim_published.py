@@ -1,0 +1,127 @@
+"""Published numbers that claims are judged on: of the same cells as our comparisons, and among themselves."""
+
+import math
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from bezierplan.analysis import claim_tests
+from bezierplan.analysis.claim_tests import Finding
+
+# Statistics that may stand for a check which names none, the first that is printed of every cell.
+_ANY_STATISTIC = ("mean", "median", "unstated", "share", "count", "min", "max")
+# Columns of published files that tell no cells apart.
+_NOT_KEYS = ("value", "n", "unit")
+
+
+def listed(value: Any) -> list:
+    """A value, or a list of values, as a list."""
+    return value if isinstance(value, list) else [value]
+
+
+def printed(
+    check: dict, places: list[list[pd.DataFrame]], tables: list[tuple[str, pd.DataFrame]], variant_of: dict[str, str]
+) -> tuple[np.ndarray, int | None]:
+    """Printed numbers of cells (k,), averaged over conditions, and how many runs they are of, None if that is not printed.
+
+    places: of each condition, of each cell, the columns that tell runs apart, once for all its runs. tables: experiment and published
+    numbers; the first that has a cell serves. variant_of: method -> the method whose published numbers count.
+
+    All of one statistic: the check's own or an unstated one; where it names none, the first of `_ANY_STATISTIC` that is printed of every
+    cell. Not a number where a cell is not printed, or where two cells would have the same row (the paper does not tell them apart).
+    """
+    cells = len(places[0])
+    nothing = np.full(cells, np.nan), None
+    found = [_rows_of_cell(cell, check["metric"], tables, variant_of) for condition in places for cell in condition]
+    rows = [(id(table), row) for table, numbers in found for row in numbers.index]
+    if len(set(rows)) < len(rows):
+        return nothing
+    named = check.get("statistic", "rank")
+    for statistic in _ANY_STATISTIC if named == "rank" else (named, "unstated"):
+        same = [numbers[numbers["statistic"] == statistic] for _, numbers in found]
+        if all(len(row) == 1 for row in same):
+            together = pd.concat(same)
+            values = together["value"] / together["n"] if statistic == "count" else together["value"]
+            runs = together["n"].dropna()
+            numbers = values.to_numpy(dtype=float).reshape(-1, cells).mean(axis=0)
+            return claim_tests.event(check, numbers), int(runs.min()) if len(runs) else None
+    return nothing
+
+
+def _rows_of_cell(
+    cell: pd.DataFrame, metric: str, tables: list[tuple[str, pd.DataFrame]], variant_of: dict[str, str]
+) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """The first published table that has the metric of a cell, with its rows; no rows if none has, or if the cell is several rows of it."""
+    nothing = pd.DataFrame(columns=["statistic"])
+    for experiment, table in tables:
+        keys = table.columns[: table.columns.get_loc("metric")].to_list()
+        if set(cell["experiment"]) != {experiment} or not set(keys) <= set(cell.columns):
+            continue
+        rows = cell[keys].drop_duplicates()
+        if len(rows) != 1:
+            continue
+        numbers = table[table["metric"] == metric]
+        for key, value in rows.iloc[0].items():
+            numbers = numbers[numbers[key] == (variant_of.get(value, value) if key == "method" else value)]
+        if not numbers.empty:
+            return table, numbers
+    return nothing, nothing
+
+
+def arithmetic(check: dict, published: dict[str, pd.DataFrame]) -> list[tuple[str, Finding]]:
+    """Do printed numbers fit each other? One finding for each cell of the first selector, with the cell's name.
+
+    `difference`: the second less the first; `increase_percent`: of the second over the first; `equal`: the first alone. Cells of several
+    selectors belong together where the columns that no selector names are equal; a lone cell belongs to every other. What is computed may
+    differ from what is printed by half a unit of the last printed digit. Not a number where a cell is empty or missing.
+    """
+    selectors = [*check["of"], *([check["equals"]] if isinstance(check["equals"], dict) else [])]
+    named = {column for selector in selectors for column in selector}
+    cells = _selected(published, selectors[0])
+    columns = ["value"]
+    for number, selector in enumerate(selectors[1:], start=1):
+        others = _selected(published, selector)
+        columns.append(f"value{number}")
+        common = [column for column in cells.columns.intersection(others.columns) if column not in {*named, *_NOT_KEYS}]
+        others = others.rename(columns={"value": columns[-1]})
+        if len(cells) == len(others) == 1:
+            cells = cells.assign(**{columns[-1]: others[columns[-1]].iloc[0]})
+        else:
+            cells = cells.merge(others[[*common, columns[-1]]], how="left", on=common)
+    keys = [column for column in cells.columns if column not in {*named, *_NOT_KEYS, *columns}]
+    names = [", ".join(f"{key}={row[key]}" for key in keys if not pd.isna(row[key])) for _, row in cells.iterrows()]
+    return [(name, _computed(check, row)) for name, row in zip(names, cells[columns].to_numpy(dtype=float).tolist())]
+
+
+def _selected(published: dict[str, pd.DataFrame], selector: dict) -> pd.DataFrame:
+    """The rows of one or several published files that a selector names."""
+    rows = pd.concat([published[name] for name in listed(selector["table"])], ignore_index=True)
+    for column, wanted in selector.items():
+        if column != "table":
+            rows = rows[rows[column].isin(listed(wanted))]
+    return rows
+
+
+def _computed(check: dict, numbers: list[float]) -> Finding:
+    """One comparison of printed numbers: those of `of`, and that of `equals` if it is one."""
+    if any(map(math.isnan, numbers)):
+        return Finding(mark="?", reason="a printed cell is empty")
+    wanted = numbers.pop() if isinstance(check["equals"], dict) else float(check["equals"])
+    match check["form"]:
+        case "difference":
+            computed = numbers[1] - numbers[0]
+        case "increase_percent":
+            computed = 100 * (numbers[1] / numbers[0] - 1) if numbers[0] else math.nan
+        case "equal":
+            computed = numbers[0]
+    # Of two printed numbers the one with more digits, because a last zero is not read.
+    digits = max(map(_decimals, [wanted, computed] if check["form"] == "equal" else [wanted]))
+    fits = abs(computed - wanted) <= 0.5 * 10.0**-digits * (1 + 1e-9)
+    return Finding(computed, "printed", wanted, mark="+" if fits else "-")
+
+
+def _decimals(number: float) -> int:
+    """Digits behind the point of the shortest decimal that is this number."""
+    text = np.format_float_positional(number, trim="-")
+    return len(text.partition(".")[2])

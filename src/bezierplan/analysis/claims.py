@@ -1,0 +1,432 @@
+"""Sentences of a paper, judged on runs and on the paper's own numbers.
+
+A claim is a list of checks; config/README.md says how they are written, `claim_tests` which test each kind is. Every check gives one or
+several comparisons, every comparison a mark:
+
+| mark | meaning |
+| --- | --- |
+| + | the sentence holds here: p < 0.05, and the effect points as claimed |
+| - | the contrary does |
+| 0 | neither, and an effect as large as the margin would have been found with a power of 0.8 or more |
+| ? | neither, and it would not; or there is too little to test |
+
+All comparisons of the deciding checks of a claim, in one variant, are a family for Holm's correction. Where all comparisons have to hold, a
++ needs p alone (an intersection-union test needs no correction) and a - the corrected p; where any may hold it is the other way round. The
+marks give the verdict:
+
+| verdict | all have to hold | any may hold |
+| --- | --- | --- |
+| supported | every mark + | at least one + |
+| in part | a +, and a - or 0 | |
+| contradicted | no +, and a - | every mark - |
+| no effect | every mark 0 | no + and no ?, not all - |
+| undecided | otherwise: a ? stands in the way | likewise |
+| untestable | the reason is given | likewise |
+
+Columns of claims.csv, one row a claim and variant:
+
+| column | meaning |
+| --- | --- |
+| study, id, place, statement | of the claim |
+| variant | values that take the place of the deciding ones; of the deciding row, those themselves |
+| decides | is this the deciding variant? |
+| verdict | as above |
+| holds | how many comparisons of the deciding checks are + |
+| published | how many of them hold in the printed numbers, by value alone, of those that are printed |
+| effect ... p_holm | of the comparison that decides: the worst -, else that with the largest p; the columns as below |
+| chance | share of experiments of the paper's size, drawn from our runs, in which the claim holds by values alone |
+| size | our effect beside the printed one: alike (that lies in our interval), smaller, larger, opposite |
+| artefact | what shows it |
+| timed | judged on CPU times, which differ from machine to machine |
+| reason | why it is untestable or undecided, and what else a reader should know |
+
+Columns of claim_checks.csv, one row a comparison:
+
+| column | meaning |
+| --- | --- |
+| study, id, variant, timed | as above |
+| check | number of the check within the claim, from 1 |
+| decides | false for checks that are only reported |
+| test, metric, statistic, unit | of the check; unit of the metric |
+| condition, comparison | where, and what is compared |
+| mark | as above |
+| effect, effect_size_name, effect_size | of means, or of the statistic; what is computed from both groups (`claim_tests`) |
+| low95, high95 | interval of the effect |
+| p, p_holm | two-sided; corrected, empty for reported checks and where no p decides |
+| n | units: pairs, or those of the smallest group |
+| margin, least_detectable | the smallest effect that matters; that which a power of 0.8 goes with |
+| rho, r_squared | of trends: Spearman's rho and R squared of the conditions' means over x |
+| effect_published, published | the effect in the printed numbers, and does the sentence hold in them? |
+"""
+
+import itertools
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from bezierplan import metrics
+from bezierplan.analysis import claim_comparisons, claim_published, claim_tests
+from bezierplan.analysis.claim_comparisons import Material, Untestable
+from bezierplan.analysis.claim_published import listed
+from bezierplan.analysis.claim_tests import ALPHA, Comparison, Finding
+from bezierplan.analysis.results import Results
+from bezierplan.checked import Fault, closest
+
+CLAIM_COLUMNS = [
+    *("study", "id", "variant", "decides", "place", "statement", "verdict", "holds", "published"),
+    *("effect", "effect_size_name", "effect_size", "low95", "high95", "n", "p", "p_holm"),
+    *("chance", "size", "artefact", "timed", "reason"),
+]
+CHECK_COLUMNS = [
+    *("study", "id", "variant", "check", "decides", "test", "metric", "statistic", "unit", "condition", "comparison", "mark"),
+    *("effect", "effect_size_name", "effect_size", "low95", "high95", "n", "p", "p_holm", "margin", "least_detectable"),
+    *("rho", "r_squared", "effect_published", "published", "timed", "reason"),
+]
+VERDICTS = ("supported", "in part", "contradicted", "no effect", "undecided", "untestable")
+
+# What a function in `studies/` answers: a mark, the effect, its 95 % interval or None, and how many units it saw.
+Answer = tuple[str, float, tuple[float, float] | None, int]
+# It gets the check, the results by experiment, and the published numbers by file.
+Function = Callable[[dict, dict[str, Results], dict[str, pd.DataFrame]], Answer]
+
+
+class _Judged(NamedTuple):
+    """One comparison; `comparison` is None where no runs are compared. decides: False for a reported check."""
+
+    number: int
+    check: dict
+    decides: bool
+    condition: str
+    name: str
+    comparison: Comparison | None
+    finding: Finding
+    mark: str = "?"
+    p_holm: float = math.nan
+
+
+def judge(
+    claims: Sequence[dict],
+    results: dict[str, Results],
+    published: dict[str, pd.DataFrame],
+    artefacts: dict[str, dict],
+    study: str,
+    functions: dict[str, Function],
+    *,
+    variant_of: dict[str, str],
+    paired: dict[str, bool],
+    repeats: dict[str, int],
+) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """The claims of a study as tables with `CLAIM_COLUMNS` and `CHECK_COLUMNS`, described above.
+
+    claims: as in claims.yaml. study: its name; all random draws follow from names. functions: by name, of the study's file in `studies/`.
+    The others as in `claim_comparisons.Material`. Nothing depends on the order of the runs. Raises Fault for a claim that mixes runs of
+    several conditions, or names an unknown function.
+    """
+    material = Material(results, published, artefacts, variant_of, paired, repeats)
+    claim_rows, check_rows = [], []
+    for claim in claims:
+        first, *_ = assignments = variants(claim)
+        for assignment in assignments:
+            row, details = _judge_variant(claim, first, assignment, study, material, functions)
+            claim_rows.append(row | {"decides": assignment is first})
+            check_rows += details
+    return pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype({"n": "Int64"}), pd.DataFrame(check_rows, columns=CHECK_COLUMNS)
+
+
+# Variants.
+
+
+def variants(claim: dict) -> list[dict[str, Any]]:
+    """Every combination of the values of a claim's variants, column -> value; the first one decides."""
+    columns = claim.get("variants", {})
+    return [dict(zip(columns, values)) for values in itertools.product(*columns.values())]
+
+
+def in_variant(checks: list[dict], first: dict[str, Any], assignment: dict[str, Any]) -> list[dict]:
+    """The checks with the values of an assignment in the place of the first ones, wherever a check names those.
+
+    A list takes the place of a list, member by member. A column of which no check names the first value is one more condition of `where`.
+    """
+    for column, chosen in assignment.items():
+        pairs = dict(zip(listed(first[column]), listed(chosen), strict=True))
+        if any(_names(check, column) & set(pairs) for check in checks):
+            checks = [_exchanged(check, column, pairs) for check in checks]
+        else:
+            checks = [check | {"where": check.get("where", {}) | {column: chosen}} for check in checks]
+    return checks
+
+
+def _places(check: dict, column: str) -> list[str]:
+    """The keys of a check that hold values of a column."""
+    if column in ("metric", "experiment"):
+        return [column]
+    return ["groups", "than", "pairs", "order"] if column == check.get("across", "method") else []
+
+
+def _names(check: dict, column: str) -> set:
+    """The values of a column that a check names."""
+    given = [check[key] for key in _places(check, column) if key in check] + [check.get("where", {}).get(column, [])]
+    return set(_flat(given))
+
+
+def _flat(values: Any) -> list:
+    return [value for each in values for value in _flat(each)] if isinstance(values, list) else [values]
+
+
+def _exchanged(check: dict, column: str, pairs: dict) -> dict:
+    changed = {key: _replaced(check[key], pairs) for key in _places(check, column) if key in check}
+    if column in check.get("where", {}):
+        changed["where"] = check["where"] | {column: _replaced(check["where"][column], pairs)}
+    return check | changed
+
+
+def _replaced(values: Any, pairs: dict) -> Any:
+    return [_replaced(value, pairs) for value in values] if isinstance(values, list) else pairs.get(values, values)
+
+
+# From comparisons to a verdict.
+
+
+def holm(p: np.ndarray) -> np.ndarray:
+    """p (n,) of a family, corrected by Holm's step-down procedure: (n,)."""
+    order = np.argsort(p)
+    corrected = np.empty(len(p))
+    corrected[order] = np.minimum(np.maximum.accumulate(np.sort(p) * np.arange(len(p), 0, -1)), 1)
+    return corrected
+
+
+def mark(finding: Finding, p_holm: float, holds: str) -> str:
+    """The mark of a comparison in a claim that holds if `all` or `any` comparisons do."""
+    if finding.mark:
+        return finding.mark
+    p_for, p_against = (finding.p, p_holm) if holds == "all" else (p_holm, finding.p)
+    if finding.toward > 0 and p_for < ALPHA:
+        return "+"
+    if finding.toward < 0 and p_against < ALPHA:
+        return "-"
+    return "0" if finding.least_detectable <= finding.margin else "?"
+
+
+def verdict(marks: Sequence[str], holds: str) -> str:
+    """The verdict on a claim with the given marks (at least one), which holds if `all` or `any` comparisons do."""
+    found = set(marks)
+    if found == {"+"} or (holds == "any" and "+" in found):
+        return "supported"
+    if "+" in found:
+        return "in part" if found & {"-", "0"} else "undecided"
+    if found == {"-"} or (holds == "all" and "-" in found):
+        return "contradicted"
+    return "undecided" if "?" in found else "no effect"
+
+
+def _judge_variant(
+    claim: dict, first: dict, assignment: dict, study: str, material: Material, functions: dict[str, Function]
+) -> tuple[dict, list[dict]]:
+    """The row of claims.csv, and those of claim_checks.csv, of one variant of a claim."""
+    variant = ", ".join(f"{column}={' '.join(map(str, listed(value)))}" for column, value in assignment.items())
+    holds = claim.get("holds", "all")
+    name = f"{study}/{claim['id']}/{variant}"
+    # `rest` is what it is in the deciding variant, so it is filled in before values are exchanged.
+    checks = [claim_comparisons.with_rest(check, claim, material) for check in claim["checks"]]
+    checks = in_variant(checks, first, assignment)
+    described = {
+        **{key: claim[key] for key in ("id", "place", "statement")},
+        "study": study,
+        "variant": variant,
+        "artefact": ", ".join(listed(claim.get("artefact", []))),
+        "timed": any(_is_timed(check) for check in checks if "report" not in check),
+    }
+    judged, obstacle = [], ""
+    for number, check in enumerate(checks, start=1):
+        try:
+            judged += _findings(number, check, claim, name, material, functions)
+        except Untestable as reason:
+            if "report" in check:
+                judged.append(_Judged(number, check, False, "", "", None, Finding(reason=str(reason))))
+            else:
+                obstacle = obstacle or str(reason)
+    judged = _marked(judged, holds)
+    deciding = [each for each in judged if each.decides]
+    rows = [_check_row(each, material) | {key: described[key] for key in ("study", "id", "variant")} for each in judged]
+    if obstacle:
+        return described | {"verdict": "untestable", "published": _published(deciding), "reason": obstacle}, rows
+    shown = _shown(deciding, holds)
+    finding = shown.finding
+    summary = {
+        "verdict": verdict([each.mark for each in deciding], holds),
+        "holds": f"{sum(each.mark == '+' for each in deciding)} of {len(deciding)}",
+        "published": _published(deciding),
+        **{key: getattr(finding, key) for key in ("effect", "effect_size_name", "effect_size", "n", "p")},
+        "low95": finding.low,
+        "high95": finding.high,
+        "p_holm": shown.p_holm,
+        "chance": _chance(deciding, holds, f"{name}/chance"),
+        "size": _size(shown),
+        "reason": _reason(shown),
+    }
+    return described | summary, rows
+
+
+def _findings(number: int, check: dict, claim: dict, name: str, material: Material, functions: dict[str, Function]) -> list[_Judged]:
+    """The comparisons of one check with what they found. Raises Untestable."""
+    decides = "report" not in check
+    if check["test"] == "published_arithmetic":
+        computed = claim_published.arithmetic(check, material.published)
+        if empty := [finding.reason for _, finding in computed if finding.mark == "?"]:
+            raise Untestable(empty[0])
+        return [_Judged(number, check, decides, condition, check["form"], None, finding) for condition, finding in computed]
+    if check["test"] == "function":
+        return [_Judged(number, check, decides, "", check["name"], None, _asked(check, claim, material, functions))]
+    if _is_timed(check) and check.get("scale") != "relative":
+        raise Untestable("absolute seconds say nothing about another machine")
+    return [
+        _Judged(
+            *(number, check, decides, comparison.place, comparison.name, comparison),
+            claim_tests.TESTS[check["test"]](check, comparison, f"{name}/{number}/{comparison.name}"),
+        )
+        for comparison in claim_comparisons.comparisons(check, claim, material)
+    ]
+
+
+def _asked(check: dict, claim: dict, material: Material, functions: dict[str, Function]) -> Finding:
+    """The answer of a function. Raises Untestable if its experiment was not run, Fault if there is no function of that name."""
+    for experiment in listed(check.get("experiment", [])):
+        if experiment not in material.results:
+            raise Untestable(f"the experiment {experiment} was not run")
+    if check["name"] not in functions:
+        raise Fault(f"claim {claim['id']}: function {check['name']}: unknown{closest(check['name'], functions)}")
+    answer, effect, interval, n = functions[check["name"]](check, material.results, material.published)
+    low, high = interval or (math.nan, math.nan)
+    return Finding(effect, check["effect"], effect, low, high, n, mark=answer)
+
+
+def _marked(judged: list[_Judged], holds: str) -> list[_Judged]:
+    """The comparisons with their marks, the deciding ones corrected as a family."""
+    family = [number for number, each in enumerate(judged) if each.decides and not math.isnan(each.finding.p)]
+    corrected = dict(zip(family, holm(np.array([judged[number].finding.p for number in family]))))
+    marked = []
+    for number, each in enumerate(judged):
+        p_holm = corrected.get(number, math.nan)
+        found = mark(each.finding, p_holm, holds) if each.decides else mark(each.finding, each.finding.p, "all")
+        marked.append(each._replace(mark=found, p_holm=p_holm))
+    return marked
+
+
+def _shown(deciding: list[_Judged], holds: str) -> _Judged:
+    """The comparison that decides.
+
+    If all have to hold, the worst - by effect (of the first check that has one), else that with the largest p, first one without p that is
+    not +. If any may hold, that with the smallest p, of those with a + if there are any.
+    """
+
+    def p(each: _Judged) -> float:
+        return each.finding.p if not math.isnan(each.finding.p) else -1.0 if each.mark == "+" else 2.0
+
+    if holds == "any":
+        return min([each for each in deciding if each.mark == "+"] or deciding, key=p)
+    against = [each for each in deciding if each.mark == "-"]
+    if against:
+        first = [each for each in against if each.number == against[0].number]
+        return max(first, key=lambda each: np.nan_to_num(abs(each.finding.effect - each.check.get("target", 0)), nan=np.inf))
+    return max(deciding, key=p)
+
+
+# The printed numbers, and experiments of the paper's size.
+
+
+def _printed(each: _Judged) -> tuple[float, bool | None]:
+    """The effect in the printed numbers, and whether the sentence holds in them; None if they are not printed."""
+    if each.check["test"] == "published_arithmetic":
+        return each.finding.effect, each.mark == "+"
+    if each.comparison is None or np.isnan(each.comparison.printed).any():
+        return math.nan, None
+    effect = claim_tests.effect(each.check, each.comparison.printed, each.comparison.cells)
+    return float(effect), bool(claim_tests.claimed(each.check, effect, each.finding.margin))
+
+
+def _published(deciding: list[_Judged]) -> str:
+    held = [held for _, held in map(_printed, deciding) if held is not None]
+    return f"{sum(held)} of {len(held)}" if held else "not printed"
+
+
+def _chance(deciding: list[_Judged], holds: str, name: str) -> float:
+    """Share of experiments of the paper's size, drawn from our runs, in which the claim holds by point values.
+
+    Not a number where some comparison is not one of all runs of its cells, where a cell is empty, or the paper's size is unknown.
+    """
+    held = []
+    for each in deciding:
+        comparison = each.comparison
+        if comparison is None or comparison.paper_units is None or "pick" in each.check:
+            return math.nan
+        points = claim_tests.drawn_points(comparison, claim_tests.point_statistic(each.check), name, comparison.paper_units)
+        effects = claim_tests.effect(each.check, points, comparison.cells)
+        if np.isnan(effects).any():
+            return math.nan
+        held.append(claim_tests.claimed(each.check, effects, each.finding.margin))
+    together = np.all(held, axis=0) if holds == "all" else np.any(held, axis=0)
+    return float(together.mean())
+
+
+def _size(each: _Judged) -> str:
+    """Our effect beside the printed one; empty where there is no printed one, or no interval of ours."""
+    printed, held = _printed(each)
+    finding = each.finding
+    if held is None or math.isnan(finding.low):
+        return ""
+    if finding.low <= printed <= finding.high:
+        return "alike"
+    if printed * finding.effect < 0:
+        return "opposite"
+    return "larger" if abs(finding.effect) > abs(printed) else "smaller"
+
+
+# Rows.
+
+
+def _is_timed(check: dict) -> bool:
+    metric = check.get("metric")
+    return metric in metrics.METRICS and metrics.METRICS[metric].unit == "s"
+
+
+def _reason(each: _Judged) -> str:
+    """What a reader of a row should know."""
+    unexplained = "too few units to tell" if each.mark == "?" else ""
+    note = each.comparison.note if each.comparison else ""
+    return "; ".join(filter(None, [each.finding.reason or unexplained, note]))
+
+
+def _check_row(each: _Judged, material: Material) -> dict:
+    check, finding = each.check, each.finding
+    effect_published, held = _printed(each)
+    fields = ("effect", "effect_size_name", "effect_size", "n", "p", "margin", "least_detectable", "rho", "r_squared")
+    return {
+        "check": each.number,
+        "decides": each.decides,
+        "test": check["test"],
+        "metric": check.get("metric", ""),
+        "statistic": check.get("statistic", "rank") if check["test"] in ("lower", "ordered", "trend", "equal_within") else "",
+        "unit": _unit(check, material),
+        "condition": each.condition,
+        "comparison": each.name,
+        "mark": each.mark,
+        **{key: getattr(finding, key) for key in fields},
+        "low95": finding.low,
+        "high95": finding.high,
+        "p_holm": each.p_holm,
+        "effect_published": effect_published,
+        "published": {True: "holds", False: "fails", None: "not printed"}[held],
+        "timed": _is_timed(check),
+        "reason": _reason(each),
+    }
+
+
+def _unit(check: dict, material: Material) -> str:
+    """The unit of a check's metric, or of the effect of a function; empty where neither is known."""
+    if "effect_unit" in check:
+        return check["effect_unit"]
+    experiments = [name for name in listed(check.get("experiment", [])) if name in material.results]
+    return claim_comparisons.unit_of(check["metric"], experiments, material) if experiments else ""

@@ -1,0 +1,68 @@
+"""All studies together: every published number beside ours, every claim, and how many of them came out."""
+
+import pandas as pd
+
+VERDICTS = ("supported", "in part", "contradicted", "no effect", "undecided", "untestable")
+
+
+def numbers(comparisons: dict[tuple[str, str], pd.DataFrame], variants: dict[str, list[str]]) -> pd.DataFrame:
+    """Every row of comparisons that has a published number.
+
+    comparisons: (study, table) -> `comparison.compare`. variants: study -> its methods that are another reading of a published one.
+    Columns: study, table, decides (the method is not such a reading), then those of the comparisons, key columns first.
+    """
+    frames = []
+    for (study, table), frame in comparisons.items():
+        printed = frame[frame["value_published"].notna()]
+        decides = ~printed["method"].isin(variants[study]) if "method" in printed else True
+        frames.append(printed.assign(study=study, table=table, decides=decides))
+    everything = pd.concat(frames, ignore_index=True)
+    last = list(everything.columns[everything.columns.get_loc("metric") :].drop(["study", "table", "decides"], errors="ignore"))
+    keys = [column for column in everything.columns if column not in last and column not in ("study", "table", "decides")]
+    return everything[["study", "table", "decides", *keys, *last]]
+
+
+def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
+    """One row a study: published numbers judged, those within the range that chance gives, and claims by verdict.
+
+    numbers: as from `numbers`. claims: as from `claims.judge`. Of readings and variants only those count that decide.
+    """
+    judged = numbers[numbers["decides"] & numbers["reproduced"].notna()]
+    deciding = claims[claims["decides"]]
+    verdicts = pd.crosstab(deciding["study"], deciding["verdict"]).reindex(columns=VERDICTS, fill_value=0)
+    counts = judged.groupby("study")["reproduced"].agg(numbers="count", reproduced=lambda each: int(each.astype(bool).sum()))
+    return counts.join(verdicts, how="outer").fillna(0).astype(int)
+
+
+def markdown(table: pd.DataFrame) -> str:
+    """A table as markdown, its index first."""
+    rows = [[table.index.name or "", *table.columns], ["---"] * (table.shape[1] + 1)]
+    rows += [[name, *values] for name, values in zip(table.index, table.to_numpy().tolist(), strict=True)]
+    return "\n".join("| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |" for row in rows)
+
+
+def report(numbers: pd.DataFrame, claims: pd.DataFrame, titles: dict[str, str], scale: str) -> str:
+    """The summary of a scale as markdown: the outcome of each study, then its claims with their verdicts."""
+    parts = [
+        f"# Outcome at scale {scale}",
+        "`numbers`: published numbers that can be judged; `reproduced`: those within the central 95 % of what our runs give by chance in "
+        "an experiment of the paper's size. The other columns count claims by verdict. Readings that do not decide are left out here; "
+        "`numbers.csv` and `claims.csv` have them.",
+        markdown(outcome(numbers, claims)),
+    ]
+    for study, title in titles.items():
+        own = claims[(claims["study"] == study) & claims["decides"]].set_index("id")
+        if not own.empty:
+            shown = own[["statement", "verdict", "holds", "published", "effect", "n"]].fillna("")
+            shown["effect"] = [f"{value:.3g}" if isinstance(value, float) else value for value in shown["effect"]]
+            parts += [f"## {title}", markdown(shown)]
+    return "\n\n".join(parts) + "\n"
+
+
+def with_block(text: str, name: str, block: str) -> str:
+    """A text whose part between `<!-- name -->` and `<!-- /name -->` is replaced. Raises ValueError if it has no such part."""
+    begin, end = f"<!-- {name} -->\n", f"\n<!-- /{name} -->"
+    if begin not in text or end not in text:
+        raise ValueError(f"no part between {begin.strip()} and {end.strip()}")
+    head, rest = text.split(begin, 1)
+    return head + begin + block + end + rest.split(end, 1)[1]

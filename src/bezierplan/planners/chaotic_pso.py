@@ -1,0 +1,453 @@
+"""Particle swarm optimisation of a path's control points, plain (PSO) or with a chaotic sequence in place of one of its two random numbers:
+of the cognitive term (CPSO-I) or of the social term (CPSO-II) (tharwat2018, Sections 3.2 and 4).
+
+A particle is (x_1, ..., x_n, y_1, ..., y_n), the coordinates of the n free control points of one curve. The curve is linear in them, so
+every kind of curve is the same constant matrix to the kernels. Obstacles are tested at samples of the curve.
+
+All methods draw the same numbers: positions, moves and the start of the chaotic sequence come from three generators; the positions particle
+by particle, and for a move r1 before r2, of which the one that the chaotic sequence replaces is drawn and thrown away.
+"""
+
+import logging
+import math
+from functools import cache
+from typing import Annotated, Any, Literal, NamedTuple, get_args
+
+import numpy as np
+from numba import njit
+
+from bezierplan import curves
+from bezierplan.problem import Path, Plan, Problem, Range
+from bezierplan.search import chaotic_maps
+
+logger = logging.getLogger(__name__)
+
+workspaces = ("circles",)
+
+ChaoticTerm = Literal["none", "cognitive", "social"]
+RandomNumbers = Literal["dimension", "particle", "iteration"]
+BoundRule = Literal["mirror", "clamp", "stop", "none"]
+Penalty = Literal["multiply", "add", "death"]
+_NO_TERM, _COGNITIVE, _SOCIAL = range(3)
+_EACH_DIMENSION, _EACH_PARTICLE, _EACH_ITERATION = range(3)
+_MIRROR, _CLAMP, _STOP, _NO_BOUND = range(4)
+_MULTIPLY, _ADD, _DEATH = range(3)
+
+# A path whose violation is not above this is feasible: a swarm that converges ends tangent to a circle, a rounding error deep.
+FEASIBLE = 1e-9
+
+
+class Swarm(NamedTuple):
+    """What a swarm did in `done` iterations.
+
+    positions: (done + 1, 2 n) and fitness: (done + 1,) of its best path after iteration 0, 1, ..., done. violation: of the last of them.
+    infeasible, colliding_samples: evaluated paths that collide, and colliding samples of all evaluated paths, summed over obstacles.
+    best_colliding_samples: those of the best path, added over the iterations. best_infeasible: after how many iterations, the initial one
+    included, the best path collides. zeta_clipped: clipped numbers of the chaotic sequence. zeta_collapsed_at: the iteration at which it
+    collapsed, or 0.
+    """
+
+    positions: np.ndarray
+    fitness: np.ndarray
+    violation: float
+    infeasible: int
+    colliding_samples: int
+    best_colliding_samples: int
+    best_infeasible: int
+    zeta_clipped: int
+    zeta_collapsed_at: int
+
+
+def check(settings: dict) -> None:
+    """Rules over several settings. Raises ValueError, naming the setting and what would be right; warns of a swarm that cannot move."""
+    try:
+        curves.piece_matrix(settings["curve"], settings["control_points"] + 2)
+    except ValueError as error:
+        raise ValueError(f"control_points: {settings['control_points']}, beside start and target; {error}") from None
+    if settings["chaotic_map"] == "constant" and settings["chaotic_start_rule"] == "random":
+        raise ValueError("chaotic_start_rule: random; a constant map needs fixed, its value is chaotic_start")
+    if settings["particles"] == 1:
+        logger.warning("particles: 1; the only particle is its own best and the swarm's, so it never moves")
+
+
+def plan(
+    problem: Problem,
+    rng: np.random.Generator,
+    *,
+    curve: Literal["bezier", "spline", "ferguson"],
+    control_points: Annotated[int, Range(0, 60)],
+    samples: Annotated[int, Range(2)],
+    penalty: Penalty,
+    beta: Annotated[float, Range(0)],
+    d_min: Annotated[float, Range(0)],
+    particles: Annotated[int, Range(1)],
+    iterations: Annotated[int, Range(0)],
+    stall_limit: Annotated[int, Range(0)],
+    straight_line_particle: bool,
+    c1: Annotated[float, Range(0)],
+    c2: Annotated[float, Range(0)],
+    inertia: Annotated[float, Range(0)],
+    inertia_damping: Annotated[float, Range(0, 1)],
+    velocity_limit: Annotated[float, Range(0)],
+    bound_rule: BoundRule,
+    random_numbers: RandomNumbers,
+    update: Literal["asynchronous", "synchronous"],
+    chaotic_term: ChaoticTerm,
+    chaotic_map: chaotic_maps.Map,
+    chaotic_start_rule: Literal["random", "fixed"],
+    chaotic_start: Annotated[float, Range(0, 1)],
+    zeta_for: Literal["iteration", "particle", "dimension"],
+    singer_mu: Annotated[float, Range(0.9, 1.08)],
+    singer_x4: Annotated[float, Range(13, 14)],
+    sine_a: Annotated[float, Range(0, 4)],
+    piecewise_p: Annotated[float, Range(0.01, 0.49)],
+    sinusoidal_a: Annotated[float, Range(0, 4)],
+    count_collisions: bool,
+) -> Plan:
+    """Shortest penalised curve from start to target with a number of free control points (tharwat2018, Algorithm 1, eqs. 7, 8, 17 to 22).
+
+    control_points: free ones, beside start and target; those of a `ferguson` curve are tangents and points by turns. samples: points of the
+    curve that are tested and measured, uniform in the parameter, both ends included. penalty: the fitness of a path with the length L and
+    the violation V is L (1 + beta V), L + beta V, or beta if it is infeasible and L if not. d_min: added to every radius, in units (eq. 21).
+
+    stall_limit: iterations without a better path after which the search ends; 0 for never. straight_line_particle: whether the first
+    particle starts as the straight line. c1, c2: cognition and social learning factors. inertia: w in eq. 8, in the first iteration;
+    inertia_damping: its factor from one iteration to the next. velocity_limit: largest change of a coordinate in an iteration, as a share of
+    the field's side; infinite for none. bound_rule: what happens to a coordinate that leaves the field: it is put on the border and its
+    velocity is mirrored, kept (clamp) or zero (stop); or it is left outside. random_numbers: what gets an r1 and r2 of its own. update: the
+    swarm's best path is replaced as soon as a particle finds a better one, or after all have moved.
+
+    chaotic_term: the one in which the chaotic sequence replaces the random number. chaotic_start: the sequence's first number by the rule
+    `fixed`; of the map `constant`, all of them. zeta_for: what gets a number of the sequence of its own. singer_mu, ..., sinusoidal_a: see
+    `chaotic_maps.Parameters`. count_collisions: false saves the test of a path that is too long to be better anyway, which changes no
+    result; collisions_a, _b and _f are then not numbers.
+
+    The planner's own test: V at most `FEASIBLE`. Extra columns: violation, V of the path; zeta_collapsed_at and zeta_clipped as in `Swarm`;
+    and six readings of the paper's undefined number of collisions: of particles in an iteration (a), of samples of an evaluated path (b),
+    of samples of the best path, added over the iterations (c), of iterations whose best path collides (d), of final paths, 0 or 1 (e), of
+    evaluated paths in the run (f).
+    """
+    swarm = search(**locals())
+    done = len(swarm.fitness) - 1
+    evaluations = (1 if control_points == 0 else particles) * (done + 1)
+    feasible = swarm.violation <= FEASIBLE
+    infeasible = swarm.infeasible if count_collisions else math.nan
+    return Plan(
+        path=Path(curve, _points(swarm.positions[-1], curve, problem)),
+        objective=swarm.fitness[-1],
+        claimed_feasible=feasible,
+        evaluations=evaluations,
+        history=swarm.fitness,
+        stop="iterations" if done == iterations or control_points == 0 else "stall",
+        extra={
+            "violation": swarm.violation,
+            "collisions_a": infeasible / evaluations * particles,
+            "collisions_b": (swarm.colliding_samples if count_collisions else math.nan) / evaluations,
+            "collisions_c": swarm.best_colliding_samples,
+            "collisions_d": swarm.best_infeasible,
+            "collisions_e": int(not feasible),
+            "collisions_f": float(infeasible),
+            "zeta_collapsed_at": swarm.zeta_collapsed_at,
+            "zeta_clipped": swarm.zeta_clipped,
+        },
+    )
+
+
+def track(problem: Problem, rng: np.random.Generator, **settings: Any) -> np.ndarray:
+    """Control points (iterations done + 1, control points, 2) of the best path after every iteration of the run that `plan` makes of the
+    same generator and settings, in units (tharwat2018, Figure 12)."""
+    positions = search(problem, rng, **settings).positions
+    return np.array([_points(position, settings["curve"], problem) for position in positions])
+
+
+def search(problem: Problem, rng: np.random.Generator, **settings: Any) -> Swarm:
+    """The search behind `plan` and `track`, with the settings of `plan`."""
+    initial, moves, chaos = rng.spawn(3)
+    particles, iterations, dimensions = settings["particles"], settings["iterations"], 2 * settings["control_points"]
+    if dimensions == 0:
+        particles, iterations = 1, 0
+    objective = _objective(problem, settings)
+    low, high = np.repeat(np.reshape(problem.workspace.bounds, (2, 2)).T, dimensions // 2, axis=1)
+    x = low + (high - low) * initial.random((particles, dimensions))
+    if settings["straight_line_particle"]:
+        x[0] = _straight_line(problem, settings["curve"], dimensions // 2)
+    zeta, clipped, collapsed_at = _zeta(chaos, (iterations, particles, dimensions), settings)
+    rules = _Rules(
+        settings["stall_limit"],
+        settings["c1"],
+        settings["c2"],
+        settings["inertia"],
+        settings["inertia_damping"],
+        get_args(BoundRule).index(settings["bound_rule"]),
+        get_args(RandomNumbers).index(settings["random_numbers"]),
+        settings["update"] == "synchronous",
+        get_args(ChaoticTerm).index(settings["chaotic_term"]),
+        settings["count_collisions"],
+    )
+    return Swarm(*_swarm(moves, x, zeta, low, high, settings["velocity_limit"] * (high - low), objective, rules), clipped, collapsed_at)
+
+
+class _Objective(NamedTuple):
+    """The fitness of a path, for the kernels.
+
+    ends: (2, samples), x and y of what start and target give to the samples. free: (n, samples), the weights of the free control points.
+    circles: (obstacles, 3), x, y and radius, in units. penalty: its number. beta: its factor.
+    """
+
+    ends: np.ndarray
+    free: np.ndarray
+    circles: np.ndarray
+    penalty: int
+    beta: float
+
+
+class _Rules(NamedTuple):
+    """Settings of `plan` for the kernels, choices by their numbers."""
+
+    stall_limit: int
+    c1: float
+    c2: float
+    inertia: float
+    inertia_damping: float
+    bound_rule: int
+    random_numbers: int
+    synchronous: bool
+    chaotic_term: int
+    count_collisions: bool
+
+
+def _objective(problem: Problem, settings: dict) -> _Objective:
+    ends, free = _basis(settings["curve"], settings["control_points"], settings["samples"])
+    field = problem.workspace
+    circles = np.empty((len(field.radii), 3))
+    circles[:, :2], circles[:, 2] = field.centres, field.radii + settings["d_min"]
+    return _Objective(
+        np.array([problem.start, problem.target]).T @ ends,
+        free,
+        circles,
+        get_args(Penalty).index(settings["penalty"]),
+        float(settings["beta"]),
+    )
+
+
+@cache
+def _basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
+    """Weights of start and target (2, samples) and of the free control points (n, samples) in the samples of a curve."""
+    basis = curves.sample_matrix(curve, control_points + 2, samples).T
+    return basis[list(curves.ends(curve))], basis[_free(curve, control_points)]
+
+
+@cache
+def _free(curve: str, control_points: int) -> np.ndarray:
+    """Which control points of a curve are the free ones (n,)."""
+    return np.delete(np.arange(control_points + 2), curves.ends(curve))
+
+
+def _points(position: np.ndarray, curve: str, problem: Problem) -> np.ndarray:
+    """Control points (n + 2, 2) of a particle (2 n,)."""
+    n = len(position) // 2
+    points = np.empty((n + 2, 2))
+    points[list(curves.ends(curve))] = problem.start, problem.target
+    points[_free(curve, n)] = position.reshape(2, n).T
+    return points
+
+
+def _straight_line(problem: Problem, curve: str, control_points: int) -> np.ndarray:
+    """The particle (2 n,) whose curve is the straight line, passed at a constant speed."""
+    start, way = np.array(problem.start), np.subtract(problem.target, problem.start)
+    points = np.empty((control_points + 2, 2))
+    if curve == "ferguson":
+        points[::2] = start + np.outer(np.linspace(0, 1, control_points // 2 + 1), way)
+        points[1::2] = way / (control_points // 2)
+    else:
+        points[:] = start + np.outer(np.linspace(0, 1, control_points + 2), way)
+    return points[_free(curve, control_points)].T.ravel()
+
+
+def _zeta(chaos: np.random.Generator, size: tuple[int, int, int], settings: dict) -> chaotic_maps.Sequence:
+    """The chaotic sequence; its values (iterations, particles or 1, dimensions or 1), the iteration at which it collapsed."""
+    shape = size[: {"iteration": 1, "particle": 2, "dimension": 3}[settings["zeta_for"]]]
+    shape += (1,) * (3 - len(shape))
+    if settings["chaotic_term"] == "none":
+        return chaotic_maps.Sequence(np.zeros(shape), 0, 0)
+    parameters = chaotic_maps.Parameters(*(float(settings[name]) for name in chaotic_maps.Parameters._fields))
+    start = settings["chaotic_start"]
+    if settings["chaotic_start_rule"] == "random":
+        start = chaotic_maps.random_start(chaos, settings["chaotic_map"], parameters)
+    values, clipped, collapsed_at = chaotic_maps.sequence(settings["chaotic_map"], float(start), math.prod(shape), parameters)
+    return chaotic_maps.Sequence(values.reshape(shape), clipped, math.ceil(collapsed_at / math.prod(shape[1:])))
+
+
+@njit(cache=True)
+def _swarm(rng, x, zeta, low, high, limit, objective, rules):
+    """Algorithm 1 of tharwat2018; the first fields of a `Swarm`.
+
+    x: (particles, dimensions), the initial positions, which are moved. zeta: (iterations, particles or 1, dimensions or 1). low, high,
+    limit: (dimensions,), the field and the largest velocity.
+    """
+    iterations = len(zeta)
+    particles, dimensions = x.shape
+    samples = objective.free.shape[1]
+    curve_x, curve_y, scratch = np.empty(samples), np.empty(samples), np.empty(samples)
+    v = np.zeros_like(x)
+    p, p_fitness = np.empty_like(x), np.full(particles, np.inf)
+    g, g_fitness = np.empty((iterations + 1, dimensions)), np.full(iterations + 1, np.inf)
+    g_violation, g_colliding = np.inf, 0
+    r = np.empty(2)
+    w = rules.inertia
+    infeasible, colliding_samples, best_colliding_samples, best_infeasible = 0, 0, 0, 0
+    improved_at = 0
+
+    for t in range(iterations + 1):
+        before = max(t - 1, 0)
+        _copy(g[before], g[t])
+        g_fitness[t] = g_fitness[before]
+        attractor = g[before] if rules.synchronous else g[t]
+        for i in range(particles):
+            if t > 0:
+                if rules.random_numbers == _EACH_PARTICLE or (rules.random_numbers == _EACH_ITERATION and i == 0):
+                    _draw(rng, r)
+                _move(rng, r, x[i], v[i], p[i], attractor, zeta[before, min(i, zeta.shape[1] - 1)], w, limit, rules)
+                _hold(x[i], v[i], low, high, rules.bound_rule)
+            length = _length(x[i], objective, curve_x, curve_y, scratch)
+            if not rules.count_collisions and _least_fitness(length, objective) >= p_fitness[i]:
+                continue
+            violation, colliding = _violation(curve_x, curve_y, objective.circles, scratch)
+            infeasible += violation > FEASIBLE
+            colliding_samples += colliding
+            fitness = _fitness(length, violation, objective)
+            if fitness < p_fitness[i]:
+                _copy(x[i], p[i])
+                p_fitness[i] = fitness
+            if fitness < g_fitness[t]:
+                _copy(x[i], g[t])
+                g_fitness[t] = fitness
+                g_violation, g_colliding = violation, colliding
+                improved_at = t
+        best_infeasible += g_violation > FEASIBLE
+        if t > 0:
+            best_colliding_samples += g_colliding
+            w *= rules.inertia_damping
+        if t - improved_at == rules.stall_limit > 0:
+            break
+    return g[: t + 1], g_fitness[: t + 1], g_violation, infeasible, colliding_samples, best_colliding_samples, best_infeasible
+
+
+@njit(cache=True)
+def _copy(source, target):
+    for d in range(len(source)):
+        target[d] = source[d]
+
+
+@njit(cache=True)
+def _draw(rng, r):
+    r[0] = rng.random()
+    r[1] = rng.random()
+
+
+@njit(cache=True)
+def _move(rng, r, x, v, p, g, zeta, w, limit, rules):
+    """Velocity and position of one particle, in place (tharwat2018, eqs. 8 and 7; CPSO-I: eq. 17, CPSO-II: eq. 18).
+
+    zeta: (dimensions or 1,), this particle's number or numbers of the chaotic sequence.
+    """
+    for d in range(len(x)):
+        if rules.random_numbers == _EACH_DIMENSION:
+            _draw(rng, r)
+        r1, r2 = r[0], r[1]
+        if rules.chaotic_term == _COGNITIVE:
+            r1 = zeta[min(d, len(zeta) - 1)]
+        elif rules.chaotic_term == _SOCIAL:
+            r2 = zeta[min(d, len(zeta) - 1)]
+        v[d] = w * v[d] + rules.c1 * r1 * (p[d] - x[d]) + rules.c2 * r2 * (g[d] - x[d])
+        v[d] = min(max(v[d], -limit[d]), limit[d])
+        x[d] += v[d]
+
+
+@njit(cache=True)
+def _hold(x, v, low, high, bound_rule):
+    """Bring one particle back into the field, in place."""
+    if bound_rule == _NO_BOUND:
+        return
+    for d in range(len(x)):
+        if not low[d] <= x[d] <= high[d]:
+            x[d] = min(max(x[d], low[d]), high[d])
+            if bound_rule == _MIRROR:
+                v[d] = -v[d]
+            elif bound_rule == _STOP:
+                v[d] = 0.0
+
+
+@njit(cache=True)
+def _fitness(length, violation, objective):
+    """Length of a path and the penalty for its violation (tharwat2018, eq. 22, which leaves the penalty open)."""
+    if objective.penalty == _MULTIPLY:
+        return length * (1.0 + objective.beta * violation)
+    if objective.penalty == _ADD:
+        return length + objective.beta * violation
+    return objective.beta if violation > FEASIBLE else length
+
+
+@njit(cache=True)
+def _least_fitness(length, objective):
+    """The least fitness that a path of this length can have, whatever it meets."""
+    return min(length, objective.beta) if objective.penalty == _DEATH else length
+
+
+@njit(cache=True)
+def _length(z, objective, x, y, chords):
+    """Length of the polyline through the samples of a particle's curve (tharwat2018, eq. 19).
+
+    z: (2 n,), the particle. x, y: (samples,), the samples, which are set. chords: (samples,) scratch.
+    """
+    ends, free = objective.ends, objective.free
+    n, samples = free.shape
+    for s in range(samples):
+        x[s], y[s] = ends[0, s], ends[1, s]
+    for k in range(n):
+        zx, zy = z[k], z[n + k]
+        for s in range(samples):
+            x[s] += zx * free[k, s]
+            y[s] += zy * free[k, s]
+    # Several roots are taken at a time if their sum is apart; its four parts need not wait for each other.
+    for s in range(samples - 1):
+        dx, dy = x[s + 1] - x[s], y[s + 1] - y[s]
+        chords[s] = np.sqrt(dx * dx + dy * dy)
+    a, b, c, d = 0.0, 0.0, 0.0, 0.0
+    fours = (samples - 1) // 4 * 4
+    for s in range(0, fours, 4):
+        a += chords[s]
+        b += chords[s + 1]
+        c += chords[s + 2]
+        d += chords[s + 3]
+    for s in range(fours, samples - 1):
+        a += chords[s]
+    return (a + b) + (c + d)
+
+
+@njit(cache=True)
+def _violation(x, y, circles, squares):
+    """Violation of a path, and its number of samples in circles: summed over the circles, the mean over the samples of their depth below the
+    edge as a share of the radius (tharwat2018, eqs. 20 and 21, taken at samples of the curve, not at its control points).
+
+    x, y: (samples,). circles: (obstacles, 3). squares: (samples,) scratch.
+    """
+    samples = len(x)
+    violation, colliding = 0.0, 0
+    for o in range(len(circles)):
+        x_centre, y_centre, radius = circles[o, 0], circles[o, 1], circles[o, 2]
+        square = radius * radius
+        inside = 0
+        for s in range(samples):
+            dx, dy = x[s] - x_centre, y[s] - y_centre
+            squares[s] = dx * dx + dy * dy
+            inside += squares[s] < square
+        if inside:
+            depth = 0.0
+            for s in range(samples):
+                # Few samples are inside: their roots are taken one by one.
+                if squares[s] < square:
+                    depth += max(1.0 - np.sqrt(squares[s]) / radius, 0.0)
+            violation += depth / samples
+            colliding += inside
+    return violation, colliding

@@ -1,0 +1,145 @@
+"""One-dimensional chaotic maps: sequences of numbers in [0, 1] that stand in for random ones (tharwat2018, Section 3.3, eqs. 9 to 16).
+
+Three formulas are printed with slips. Eq. 9 prints 1 / (x mod 1) for the Gauss map and explains it as 1/x - floor(1/x), which is `gauss`;
+the printed form is `gauss_printed`, whose values exceed 1. In eq. 12 "mod 1" acts on the whole right side. Eq. 14 asks for a below 4, where
+the usual sine map has a = 4. `constant` is a control: it stays where it starts.
+"""
+
+import math
+from typing import Literal, NamedTuple, get_args
+
+import numpy as np
+from numba import njit
+
+Map = Literal["gauss", "singer", "tent", "circle", "logistic", "sine", "piecewise", "sinusoidal", "gauss_printed", "constant"]
+MAPS = get_args(Map)
+_GAUSS, _SINGER, _TENT, _CIRCLE, _LOGISTIC, _SINE, _PIECEWISE, _SINUSOIDAL, _GAUSS_PRINTED, _CONSTANT = range(len(MAPS))
+
+# tharwat2018: eq. 11, the two constants of eq. 12, and the text below eq. 13.
+TENT_PEAK = 0.7
+CIRCLE_A, CIRCLE_B = 0.5, 0.2
+LOGISTIC_A = 4.0
+
+# Two values closer than this are one: a sequence that moves less has collapsed.
+STANDSTILL = 1e-12
+
+# Smaller numbers have no finite reciprocal; they count as 0.
+_LEAST = 1e-300
+
+# A random start must keep its sequence alive for this many steps; this many starts are tried.
+_TRIAL_STEPS = 60
+_MOST_STARTS = 1000
+
+
+class Parameters(NamedTuple):
+    """Parameters of maps that the paper leaves open.
+
+    singer_mu: mu of eq. 10, between 0.9 and 1.08. singer_x4: its coefficient of x^4, printed as 13.3, usually 13.302875.
+    sine_a: a of eq. 14. piecewise_p: P of eq. 15, between 0 and 0.5. sinusoidal_a: a of eq. 16.
+    """
+
+    singer_mu: float
+    singer_x4: float
+    sine_a: float
+    piecewise_p: float
+    sinusoidal_a: float
+
+
+class Sequence(NamedTuple):
+    """Values (length,) of a map; how many were clipped to [0, 1]; and the index at which it collapsed, the first being 1, or 0."""
+
+    values: np.ndarray
+    clipped: int
+    collapsed_at: int
+
+
+def sequence(name: Map, start: float, length: int, parameters: Parameters) -> Sequence:
+    """A map's values from a start in [0, 1], which is the first of them.
+
+    Values that leave [0, 1] are clipped and go on from there; those of `gauss_printed` are left as they are. A sequence has collapsed
+    where it begins to stand still until its end. Raises ValueError for an unknown map and for a start outside [0, 1].
+    """
+    if not 0 <= start <= 1:
+        raise ValueError(f"start: {start}; a chaotic sequence starts from 0 to 1")
+    return Sequence(*_sequence(_number(name), start, length, parameters))
+
+
+def random_start(rng: np.random.Generator, name: Map, parameters: Parameters) -> float:
+    """A uniform random start in (0, 1) from which a map's sequence stays alive: redrawn while it dies at 0 or at a fixed point.
+
+    Raises ValueError for an unknown map and if no start lives.
+    """
+    number = _number(name)
+    for _ in range(_MOST_STARTS):
+        start = rng.random()
+        if _lives(number, start, parameters):
+            return start
+    raise ValueError(f"chaotic map {name}: none of {_MOST_STARTS} random starts lives with {parameters}")
+
+
+def _number(name: str) -> int:
+    if name not in MAPS:
+        raise ValueError(f"unknown chaotic map {name!r}; known: {', '.join(MAPS)}")
+    return MAPS.index(name)
+
+
+@njit(cache=True)
+def _sequence(number, start, length, parameters):
+    """The fields of a `Sequence`."""
+    values = np.empty(length)
+    clipped = 0
+    collapsed_at = 0
+    x = start
+    for k in range(length):
+        if k > 0:
+            x = _next(number, x, parameters)
+            if number != _GAUSS_PRINTED and not 0.0 <= x <= 1.0:
+                x = min(max(x, 0.0), 1.0)
+                clipped += 1
+            if abs(x - values[k - 1]) >= STANDSTILL:
+                collapsed_at = 0
+            elif collapsed_at == 0:
+                collapsed_at = k
+        values[k] = x
+    return values, clipped, collapsed_at
+
+
+@njit(cache=True)
+def _lives(number, start, parameters):
+    """Whether a sequence without clipping is neither at (or below) 0 nor at a fixed point after a number of steps."""
+    before = x = start
+    for _ in range(_TRIAL_STEPS):
+        before, x = x, _next(number, x, parameters)
+    return x >= STANDSTILL and abs(x - before) >= STANDSTILL
+
+
+@njit(cache=True)
+def _next(number, x, parameters):
+    """x_{k+1} of a map from x_k (tharwat2018, eqs. 9 to 16)."""
+    if number == _GAUSS:
+        return _fraction(1.0 / x) if x > _LEAST else 0.0
+    if number == _SINGER:
+        return parameters.singer_mu * x * (7.86 + x * (-23.31 + x * (28.75 - parameters.singer_x4 * x)))
+    if number == _TENT:
+        return x / TENT_PEAK if x < TENT_PEAK else 10.0 / 3.0 * (1.0 - x)
+    if number == _CIRCLE:
+        return _fraction(x + CIRCLE_B - CIRCLE_A / (2.0 * math.pi) * math.sin(2.0 * math.pi * x))
+    if number == _LOGISTIC:
+        return LOGISTIC_A * x * (1.0 - x)
+    if number == _SINE:
+        return parameters.sine_a / 4.0 * math.sin(math.pi * x)
+    if number == _PIECEWISE:
+        p = parameters.piecewise_p
+        nearer = min(x, 1.0 - x)  # the map is symmetric about 0.5
+        return nearer / p if nearer <= p else (nearer - p) / (0.5 - p)
+    if number == _SINUSOIDAL:
+        return parameters.sinusoidal_a * x * x * math.sin(math.pi * x)
+    if number == _GAUSS_PRINTED:
+        return 1.0 / _fraction(x) if _fraction(x) > _LEAST else 0.0
+    return x
+
+
+@njit(cache=True)
+def _fraction(x):
+    """x mod 1."""
+    return x - math.floor(x)

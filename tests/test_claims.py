@@ -1,0 +1,783 @@
+"""Claims judged: every kind of test on a true and on a false case, the way from marks to a verdict, and degenerate runs."""
+
+import itertools
+import math
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from bezierplan import metrics
+from bezierplan.analysis import claims, statistics
+from bezierplan.analysis.claim_tests import Finding
+from bezierplan.analysis.results import Results
+from bezierplan.checked import Fault
+from bezierplan.metrics import Metric
+from bezierplan.problem import Problem
+from bezierplan.workspaces.grid import from_lines
+
+GRID = from_lines(["..", ".."], 1.0, "m")
+PROBLEMS = {name: Problem(name, GRID, (0.5, 0.5), (1.5, 1.5)) for name in ("first", "second")}
+UNITS = 40
+
+pytestmark = pytest.mark.filterwarnings("error")
+
+
+@pytest.fixture(autouse=True)
+def few_draws(monkeypatch):
+    monkeypatch.setattr(statistics, "DRAWS", 1000)
+
+
+def sample(name: str, mean: float = 0.0, n: int = UNITS, std: float = 1.0) -> np.ndarray:
+    """Normal values (n,) of exactly this mean and standard deviation, the same for a name."""
+    values = statistics.generator(name).normal(size=n)
+    return mean + std * (values - values.mean()) / values.std(ddof=1)
+
+
+def table(values: dict[str, np.ndarray], metric: str = "objective", **columns) -> pd.DataFrame:
+    """Runs of one condition: method -> one value of the metric a repeat, in an order of their own."""
+    described = {"experiment": "tried", "problem": "first", "workspace": "grid", "feasible": True, "claimed_feasible": True} | columns
+    condition = ",".join(f"{key}={value}" for key, value in {**described, **columns}.items())
+    rows = [
+        described | {"condition": condition, "method": method, "repeat": repeat, metric: value}
+        for method, numbers in values.items()
+        for repeat, value in enumerate(numbers)
+    ]
+    return pd.DataFrame(rows)
+
+
+def judge(claim: dict, *runs: pd.DataFrame, **material) -> tuple[pd.DataFrame, pd.DataFrame]:
+    given = {"published": {}, "artefacts": {}, "functions": {}, "variant_of": {}, "paired": {}, "repeats": {"tried": 10}} | material
+    results = {"tried": Results(pd.concat(runs, ignore_index=True), PROBLEMS, pd.DataFrame())} if runs else {}
+    described = {"id": "C1", "place": "1", "statement": "It is so."} | claim
+    return claims.judge([described], results, given.pop("published"), given.pop("artefacts"), "study", given.pop("functions"), **given)
+
+
+def judged(check: dict, *runs: pd.DataFrame, **material) -> pd.Series:
+    """The row of the deciding variant of a claim of one check."""
+    return judge({"checks": [check]}, *runs, **material)[0].iloc[0]
+
+
+def marks(claim: dict, *runs: pd.DataFrame, **material) -> list[str]:
+    return judge(claim, *runs, **material)[1]["mark"].to_list()
+
+
+def over_x(slope: float, std: float = 1.0) -> pd.DataFrame:
+    """Runs of one method at five values of `particles`; the mean grows with slope, the standard deviation is std times the number."""
+    return pd.concat(
+        table({"plain": 100 + slope * x + sample(f"x{x}", std=std * x if std < 1 else std)}, particles=x) for x in (5, 10, 20, 30, 50)
+    )
+
+
+LOWER = {"test": "lower", "experiment": "tried", "metric": "objective", "groups": ["a"], "than": ["b"], "direction": "lower", "margin": 1.5}
+TREND = {"test": "trend", "experiment": "tried", "metric": "objective", "x": "particles", "direction": "up", "margin": 5}
+SHARE = {"test": "share", "experiment": "tried", "metric": "objective", "event": {"below": 0}, "threshold": 0.5, "direction": "at_least"}
+SHARE |= {"where": {"method": "a"}}
+ALL = {key: value for key, value in SHARE.items() if key != "direction"} | {"threshold": "all"}
+WITHIN = {"test": "equal_within", "experiment": "tried", "metric": "objective", "groups": ["a"], "than": ["b"], "statistic": "mean"}
+WITHIN |= {"margin": 1}
+DIFFERENCE = {"test": "difference", "experiment": "tried", "metric": "objective", "groups": ["a", "b"], "margin": 1}
+ORDERED = {"test": "ordered", "experiment": "tried", "metric": "objective", "order": [["a"], ["b", "c"], ["d"]], "direction": "lower"}
+ORDERED |= {"margin": 2}
+TIERS = {"a": sample("a"), "b": sample("b", 1), "c": sample("c", 1.2), "d": sample("d", 2.5)}
+APART, ALIKE = table({"a": sample("a"), "b": sample("b", 1)}), table({"a": sample("a"), "b": sample("b", 0.1)})
+MOSTLY = table({"a": np.r_[np.full(35, -1.0), np.full(5, 1.0)]})
+TRUTHS = table({"a": np.arange(UNITS) < 5, "b": np.arange(UNITS) < 25}, metric="claimed_feasible")
+
+# Name -> a check with runs on which it holds; and on which its contrary does.
+CASES = {
+    "lower": ((LOWER, APART), (LOWER | {"groups": ["b"], "than": ["a"]}, APART)),
+    "lower, paired": ((LOWER | {"paired": True}, APART), (LOWER | {"paired": True, "direction": "higher"}, APART)),
+    "lower, pairs": ((LOWER | {"pairs": [["a", "b"]]}, APART), (LOWER | {"pairs": [["b", "a"]]}, APART)),
+    "lower, mean": ((LOWER | {"statistic": "mean"}, APART), (LOWER | {"statistic": "mean", "direction": "higher"}, APART)),
+    "lower, median": ((LOWER | {"statistic": "median"}, APART), (LOWER | {"statistic": "median", "direction": "higher"}, APART)),
+    "lower, spread": (
+        (LOWER | {"statistic": "iqr"}, table({"a": sample("a"), "b": sample("b", std=3)})),
+        (LOWER | {"statistic": "iqr"}, table({"a": sample("a", std=3), "b": sample("b")})),
+    ),
+    "lower, extremes": (
+        (LOWER | {"statistic": "min"}, table({"a": sample("a"), "b": sample("b", 5)})),
+        (LOWER | {"statistic": "min"}, table({"a": sample("a", 5), "b": sample("b")})),
+    ),
+    "lower, truths": (
+        (LOWER | {"metric": "claimed_feasible"}, TRUTHS),
+        (LOWER | {"metric": "claimed_feasible", "direction": "higher"}, TRUTHS),
+    ),
+    "lower, paired truths": (
+        (LOWER | {"metric": "claimed_feasible", "paired": True}, TRUTHS),
+        (LOWER | {"metric": "claimed_feasible", "paired": True, "direction": "higher"}, TRUTHS),
+    ),
+    "ordered": ((ORDERED, table(TIERS)), (ORDERED | {"order": ORDERED["order"][::-1]}, table(TIERS))),
+    "trend": ((TREND, over_x(0.2)), (TREND | {"direction": "down"}, over_x(0.2))),
+    "trend, reversed": ((TREND | {"direction": "down"}, over_x(-0.2)), (TREND, over_x(-0.2))),
+    "trend of a spread": (
+        (TREND | {"statistic": "std"}, over_x(0.0, std=0.2)),
+        (TREND | {"statistic": "std", "direction": "down"}, over_x(0.0, std=0.2)),
+    ),
+    "share": ((SHARE, MOSTLY), (SHARE | {"event": {"at_least": 0}}, MOSTLY)),
+    "share, at most": ((SHARE | {"direction": "at_most"}, table({"a": sample("a", 1)})), (SHARE | {"direction": "at_most"}, MOSTLY)),
+    "share, all": ((ALL, table({"a": np.full(59, -1.0)})), (ALL | {"event": {"at_least": 0}}, table({"a": np.full(59, -1.0)}))),
+    "share, none": (
+        (ALL | {"threshold": "none"}, table({"a": np.full(59, 1.0)})),
+        (ALL | {"threshold": "none", "event": {"at_least": 0}}, table({"a": np.full(59, 1.0)})),
+    ),
+    "share, some": (
+        (ALL | {"threshold": "some"}, table({"a": np.r_[np.ones(9), -1]})),
+        (ALL | {"threshold": "some"}, table({"a": np.full(59, 1.0)})),
+    ),
+    "equal_within": ((WITHIN, ALIKE), (WITHIN, table({"a": sample("a", 3), "b": sample("b", 0.1)}))),
+    "equal_within, target": ((WITHIN | {"target": -3}, table({"a": sample("a", -3), "b": sample("b")})), (WITHIN | {"target": -3}, ALIKE)),
+    "equal_within, relative": (
+        (WITHIN | {"scale": "relative", "margin": 0.05}, table({"a": sample("a", 100), "b": sample("b", 101)})),
+        (WITHIN | {"scale": "relative", "margin": 0.05}, table({"a": sample("a", 100), "b": sample("b", 115)})),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_true_case_is_supported(name):
+    check, runs = CASES[name][0]
+    row = judged(check, runs)
+    assert row["verdict"] == "supported"
+    assert re.fullmatch(r"(\d+) of \1", row["holds"])
+    assert row["chance"] > 0.5
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_false_case_is_contradicted(name):
+    check, runs = CASES[name][1]
+    row = judged(check, runs)
+    assert row["verdict"] == "contradicted"
+    assert row["holds"].startswith("0 of")
+    assert row["chance"] < 0.5
+
+
+@pytest.mark.parametrize("paired", [True, False])
+@pytest.mark.parametrize("others", [{}, {"c": sample("c", 0.05)}])
+def test_difference_and_its_absence(others, paired):
+    check = DIFFERENCE | {"groups": ["a", "b", *others], "paired": paired}
+    shifted = table({"a": sample("a", 3), "b": sample("b")} | others)
+    assert judged(check, shifted)["verdict"] == "supported"
+    assert judged(check, table({"a": sample("a"), "b": sample("b")} | others))["verdict"] == "no effect"
+
+
+# Effects and their sizes.
+
+
+def test_lower_against_scipy():
+    from scipy import stats
+
+    (row,) = judge({"checks": [LOWER]}, APART)[1].to_dict("records")
+    a, b = sample("a"), sample("b", 1)
+    assert row["p"] == stats.mannwhitneyu(a, b).pvalue
+    assert row["effect"] == pytest.approx(-1)
+    assert row["low95"] < -1 < row["high95"] < 0
+    assert (row["effect_size_name"], row["effect_size"]) == ("A12", np.mean(a[:, None] < b))
+    assert (row["n"], row["unit"], row["comparison"]) == (UNITS, "m", "a lower than b")
+    assert row["least_detectable"] == pytest.approx(3 * (row["high95"] - row["low95"]) / 2 / 1.96)
+
+
+def test_paired_differences_against_scipy():
+    from scipy import stats
+
+    common = sample("common", std=20)
+    a, b = common + sample("a", 0, std=0.5), common + sample("b", 0.5, std=0.5)
+    runs = table({"a": a, "b": b})
+    together = judge({"checks": [LOWER | {"paired": True}]}, runs)[1].iloc[0]
+    assert together["p"] == stats.wilcoxon(a - b, zero_method="pratt").pvalue
+    assert together["effect_size"] == np.mean(a < b)
+    assert together["high95"] - together["low95"] < 1
+    apart = judged(LOWER, runs)
+    assert (together["mark"], apart["verdict"]) == ("+", "undecided")
+    assert apart["high95"] - apart["low95"] > 10
+    # What an experiment pairs is the default.
+    assert judged(LOWER, runs, paired={"tried": True})["verdict"] == "supported"
+
+
+def test_pairs_need_both_runs():
+    runs = table({"a": sample("a"), "b": sample("b", 1)}, metric="length")
+    runs.loc[runs["repeat"] == runs["method"].map({"a": 3, "b": 4}), "feasible"] = False
+    check = LOWER | {"metric": "length"}
+    assert judged(check, runs)["n"] == UNITS - 1
+    assert judged(check | {"paired": True}, runs)["n"] == UNITS - 2
+
+
+def test_odds_ratios():
+    check = LOWER | {"metric": "claimed_feasible"}
+    row = judged(check, TRUTHS)
+    assert (row["effect_size_name"], row["effect_size"], row["effect"]) == ("odds ratio", (5 * 15) / (35 * 25), -0.5)
+    assert judged(check | {"paired": True}, TRUTHS)["effect_size"] == 0
+
+
+def test_share_and_its_exact_interval():
+    row = judged(SHARE, MOSTLY)
+    assert (row["effect"], row["n"]) == (35 / 40, 40)
+    assert (row["low95"], row["high95"]) == pytest.approx((0.7320, 0.9581), abs=1e-4)  # Clopper and Pearson (1934)
+
+
+@pytest.mark.parametrize(
+    ("threshold", "misses", "n", "expected"),
+    [
+        ("all", 0, 58, "?"),
+        ("all", 0, 59, "+"),
+        ("all", 1, 200, "-"),
+        ("none", 58, 58, "?"),
+        ("none", 59, 59, "+"),
+        ("none", 199, 200, "-"),
+        ("some", 58, 58, "?"),
+        ("some", 59, 59, "-"),
+        ("some", 6, 7, "+"),
+    ],
+)
+def test_59_runs_without_an_example_are_enough(threshold, misses, n, expected):
+    runs = table({"a": np.where(np.arange(n) < misses, 1.0, -1.0)})
+    assert marks({"checks": [ALL | {"threshold": threshold}]}, runs) == [expected]
+
+
+def test_slope_is_a_units_own():
+    row = judge({"checks": [TREND]}, over_x(0.2))[1].iloc[0]
+    assert row["effect"] == pytest.approx(0.2 * 45, abs=0.5)
+    assert (row["effect_size_name"], row["n"], row["rho"]) == ("slope", UNITS, pytest.approx(1))
+    assert row["effect_size"] == pytest.approx(row["effect"] / 45)
+    assert row["r_squared"] > 0.98
+
+
+def test_relative_scale_and_least_effect():
+    runs = table({"a": sample("a", 100), "b": sample("b", 200)})
+    check = LOWER | {"scale": "relative", "margin": 0.1}
+    assert judged(check, runs)["effect"] == pytest.approx(-0.5)
+    assert judged(check | {"least": 0.45}, runs)["verdict"] == "supported"
+    assert judged(check | {"least": 0.55}, runs)["verdict"] == "contradicted"
+    higher = check | {"groups": ["b"], "than": ["a"], "direction": "higher"}
+    assert judged(higher | {"least": 0.9}, runs)["verdict"] == "supported"
+    assert judged(higher | {"least": 1.1}, runs)["verdict"] == "contradicted"
+    assert judged(LOWER | {"least": 99}, runs)["verdict"] == "supported"
+    assert judged(LOWER | {"least": 101}, runs)["verdict"] == "contradicted"
+
+
+@pytest.mark.parametrize("paired", [True, False])
+@pytest.mark.parametrize("statistic", ["mean", "median", "iqr"])
+def test_many_units_by_normal_approximation(statistic, paired, monkeypatch):
+    runs = table({"a": sample("a", 0, n=300), "b": sample("b", 0.4, n=300, std=1.5)})
+    check = LOWER | {"statistic": statistic, "paired": paired}
+    approximate = judged(check, runs)
+    monkeypatch.setattr("bezierplan.analysis.claim_tests.MOST_RESAMPLED", 1000)
+    resampled = judged(check, runs)
+    width = resampled["high95"] - resampled["low95"]
+    assert approximate[["low95", "high95"]].to_list() == pytest.approx(resampled[["low95", "high95"]].to_list(), abs=0.12 * width)
+    assert approximate["verdict"] == resampled["verdict"] == "supported"
+
+
+def test_extremes_need_the_size_of_the_papers_experiment():
+    check, runs = CASES["lower, extremes"][0]
+    row = judged(check, runs)
+    assert math.isnan(row["p"])
+    assert math.isnan(row["low95"])
+    assert row["reason"] == "holds in 1.000 of draws of 10"
+    assert judged(check, runs, repeats={})["reason"] == "the paper's number of runs is unknown"
+    assert judged(check, ALIKE)["verdict"] == "undecided"
+    assert judged(WITHIN | {"statistic": "min", "margin": 9}, ALIKE)["verdict"] == "supported"
+
+
+# From marks to a verdict.
+
+VERDICTS = [
+    ("++", "supported", "supported"),
+    ("+-", "in part", "supported"),
+    ("+0", "in part", "supported"),
+    ("+-?", "in part", "supported"),
+    ("+?", "undecided", "supported"),
+    ("-0", "contradicted", "no effect"),
+    ("-?", "contradicted", "undecided"),
+    ("--", "contradicted", "contradicted"),
+    ("00", "no effect", "no effect"),
+    ("0?", "undecided", "undecided"),
+    ("?", "undecided", "undecided"),
+]
+
+
+@pytest.mark.parametrize(("found", "all_hold", "any_holds"), VERDICTS)
+def test_verdict(found, all_hold, any_holds):
+    for order in set(itertools.permutations(found)):
+        assert (claims.verdict(order, "all"), claims.verdict(order, "any")) == (all_hold, any_holds)
+
+
+def test_holm_against_a_worked_example():
+    assert claims.holm(np.array([0.01, 0.04, 0.03, 0.005])) == pytest.approx([0.03, 0.06, 0.06, 0.02])
+    assert claims.holm(np.array([0.9, 0.8])) == pytest.approx([1, 1])
+    assert len(claims.holm(np.array([]))) == 0
+
+
+@pytest.mark.parametrize(
+    ("toward", "p", "p_holm", "least_detectable", "holds", "expected"),
+    [
+        (1, 0.04, 0.4, 1, "all", "+"),
+        (1, 0.04, 0.4, 1, "any", "0"),
+        (1, 0.04, 0.4, 3, "any", "?"),
+        (1, 0.01, 0.04, 3, "any", "+"),
+        (-1, 0.04, 0.4, 1, "all", "0"),
+        (-1, 0.04, 0.4, 3, "all", "?"),
+        (-1, 0.01, 0.04, 1, "all", "-"),
+        (-1, 0.04, 0.4, 1, "any", "-"),
+        (0, 0.01, 0.01, 1, "all", "0"),
+        (1, math.nan, math.nan, math.nan, "all", "?"),
+    ],
+)
+def test_mark(toward, p, p_holm, least_detectable, holds, expected):
+    assert claims.mark(Finding(p=p, toward=toward, least_detectable=least_detectable, margin=2), p_holm, holds) == expected
+
+
+def test_precise_and_nothing_there_is_no_effect():
+    alike = table({"a": sample("a"), "b": sample("b")})
+    assert judged(LOWER, alike)["verdict"] == "no effect"
+    assert judged(LOWER | {"margin": 0.1}, alike)["verdict"] == "undecided"
+
+
+def places(first: float, second: float) -> pd.DataFrame:
+    """Two groups on two problems, where they differ by the given amounts."""
+    return pd.concat(
+        table({"a": sample("a"), "b": sample("b", apart)}, problem=problem) for problem, apart in (("first", first), ("second", second))
+    )
+
+
+def test_every_makes_one_comparison_a_combination_and_pool_averages():
+    every, pool = LOWER | {"every": ["problem"]}, LOWER | {"pool": ["problem"]}
+    assert marks({"checks": [every]}, places(2, -1)) == ["+", "-"]
+    assert judged(every, places(2, -1))["verdict"] == "in part"
+    pooled = judged(pool, places(2, -1))
+    assert (pooled["verdict"], pooled["holds"], pooled["n"]) == ("supported", "1 of 1", 2 * UNITS)
+    assert pooled["effect"] == pytest.approx(-0.5)
+    assert judged(pool, places(1, -1))["verdict"] == "no effect"
+    assert judged(WITHIN | {"pool": ["problem"]}, places(1.2, -1.2))["verdict"] == "supported"
+    assert judged(WITHIN | {"every": ["problem"]}, places(4, -4))["verdict"] == "contradicted"
+
+
+def test_conditions_of_equal_weight_whatever_their_numbers_of_runs():
+    runs = places(2, -1)
+    runs = runs[(runs["problem"] == "second") | (runs["repeat"] < 10)]
+    assert judged(LOWER | {"pool": ["problem"], "statistic": "median"}, runs)["n"] == UNITS + 10
+    few = pd.concat(
+        [table({"a": np.zeros(10), "b": np.full(10, 2.0)}), table({"a": np.zeros(40), "b": np.full(40, -1.0)}, problem="second")]
+    )
+    assert judged(LOWER | {"pool": ["problem"]}, few)["effect"] == pytest.approx(-0.5)
+
+
+def test_any_comparison_may_hold():
+    check = LOWER | {"every": ["problem"]}
+    row = judge({"checks": [check], "holds": "any"}, places(2, -1))[0].iloc[0]
+    assert (row["verdict"], row["holds"]) == ("supported", "1 of 2")
+    assert row["effect"] == pytest.approx(-2)
+    assert judge({"checks": [check], "holds": "any"}, places(-2, -1))[0].iloc[0]["verdict"] == "contradicted"
+
+
+def test_runs_of_several_conditions_are_never_mixed():
+    with pytest.raises(Fault, match="claim C1: lower of objective: several values of condition are neither told apart nor pooled"):
+        judged(LOWER, places(1, 1))
+    with pytest.raises(Fault, match="several values of method"):
+        judged(SHARE | {"where": {"problem": "first"}}, APART)
+
+
+def test_the_family_is_that_of_the_deciding_checks():
+    reported = LOWER | {"groups": ["b"], "than": ["a"], "report": True}
+    summary, details = judge({"checks": [LOWER, reported]}, APART)
+    assert (summary.iloc[0]["verdict"], summary.iloc[0]["holds"]) == ("supported", "1 of 1")
+    assert details["mark"].to_list() == ["+", "-"]
+    assert details["decides"].to_list() == [True, False]
+    assert details["p_holm"].isna().to_list() == [False, True]
+
+
+def test_the_worst_comparison_is_shown():
+    row = judged(LOWER | {"every": ["problem"]}, places(-1, -2))
+    assert row["effect"] == pytest.approx(2)
+    row = judged(LOWER | {"every": ["problem"]}, places(2, 1))
+    assert row["effect"] == pytest.approx(-1)
+
+
+# Selections.
+
+
+def test_factors_across_and_where():
+    runs = pd.concat([over_x(0.2), over_x(-0.2).assign(method="other")])
+    check = LOWER | {"across": "particles", "groups": [5], "than": [30, 50], "where": {"method": "plain"}}
+    assert judged(check, runs)["holds"] == "2 of 2"
+    assert judged(check | {"where": {"method": ["other"]}}, runs)["holds"] == "0 of 2"
+    every = judge({"checks": [TREND | {"every": ["method"]}]}, runs)[1]
+    assert dict(zip(every["condition"], every["mark"])) == {"method=plain": "+", "method=other": "-"}
+
+
+def test_rest_is_what_the_artefact_shows_and_the_check_does_not_name():
+    artefacts = {"table1": {"experiment": "tried", "where": {"method": ["a", "b", "d"]}}}
+    figure = {"figure1": {"panels": [{"experiment": "tried", "where": {"method": method}} for method in ("d", "b", "a")]}}
+    check = LOWER | {"than": ["rest"]}
+    for known in (artefacts, figure):
+        found = judge({"checks": [check], "artefact": next(iter(known))}, table(TIERS), artefacts=known)[1]
+        assert sorted(found["comparison"]) == ["a lower than b", "a lower than d"]
+    everything = judge({"checks": [check]}, table(TIERS))[1]
+    assert everything["comparison"].to_list() == ["a lower than b", "a lower than c", "a lower than d"]
+    ordered = ORDERED | {"order": [["a"], ["rest"], ["d"]]}
+    assert judge({"checks": [ordered], "artefact": "table1"}, table(TIERS), artefacts=artefacts)[0].iloc[0]["holds"] == "2 of 2"
+
+
+def test_variants_take_the_place_of_what_the_checks_name():
+    runs = pd.concat([table(TIERS), table({"a": sample("a", 9), "b": sample("b")}, workspace="other")])
+    claim = {"checks": [LOWER], "variants": {"method": ["a", "d"], "workspace": ["grid", "other"]}}
+    summary, details = judge(claim, runs)
+    assert summary["variant"].to_list() == [f"method={m}, workspace={w}" for m in "ad" for w in ("grid", "other")]
+    assert summary["decides"].to_list() == [True, False, False, False]
+    assert summary["verdict"].to_list() == ["supported", "contradicted", "contradicted", "undecided"]
+    assert set(details["comparison"]) == {"a lower than b", "d lower than b"}
+    metric = {"checks": [LOWER], "variants": {"metric": ["objective", "evaluations"]}}
+    runs = runs[runs["workspace"] == "grid"].assign(evaluations=lambda each: -each["objective"])
+    assert judge(metric, runs)[0]["verdict"].to_list() == ["supported", "contradicted"]
+
+
+def test_variant_that_is_a_list_is_exchanged_member_by_member():
+    check = LOWER | {"than": ["b", "c"], "where": {"method": ["a", "b", "c"]}}
+    (changed,) = claims.in_variant([check], {"method": ["b", "c"]}, {"method": ["e", "f"]})
+    assert (changed["than"], changed["where"]) == (["e", "f"], {"method": ["a", "e", "f"]})
+    assert claims.in_variant([check], {"method": ["b", "c"]}, {"method": ["b", "c"]}) == [check]
+
+
+def test_rest_is_the_same_in_every_variant():
+    claim = {"checks": [LOWER | {"than": ["rest"]}], "variants": {"method": ["a", "d"]}}
+    artefacts = {"table1": {"experiment": "tried", "where": {"method": ["a", "b"]}}}
+    found = judge(claim | {"artefact": "table1"}, table(TIERS), artefacts=artefacts)[1]
+    assert found["comparison"].to_list() == ["a lower than b", "d lower than b"]
+
+
+def test_failures():
+    lengths = table({"a": sample("a"), "b": sample("b", 1)}, metric="length")
+    lengths.loc[(lengths["method"] == "a") & (lengths["repeat"] < 30), "feasible"] = False
+    check = LOWER | {"metric": "length"}
+    dropped = judged(check, lengths)
+    assert (dropped["verdict"], dropped["n"], dropped["reason"]) == ("supported", 10, "compared on common successes")
+    last = judged(check | {"failures": "last"}, lengths)
+    assert (last["verdict"], last["n"]) == ("contradicted", UNITS)
+    share = SHARE | {"metric": "length"}
+    assert judged(share, lengths)["n"] == 10
+    for event in ({"below": 99}, {"at_most": 99}, {"above": -99}, {"at_least": -99}):
+        row = judged(share | {"failures": "count", "event": event}, lengths)
+        assert (row["n"], row["effect"]) == (UNITS, 0.25)
+
+
+def test_no_success_against_some():
+    lengths = table({"a": sample("a"), "b": sample("b", 1)}, metric="length")
+    lengths["feasible"] = lengths["method"] == "b"
+    check = LOWER | {"metric": "length"}
+    assert judged(check | {"failures": "last"}, lengths)["verdict"] == "contradicted"
+    assert judged(check, lengths)["reason"].startswith("no run of a counts")
+    nowhere = judged(check | {"failures": "last"}, lengths.assign(feasible=False))
+    assert (nowhere["verdict"], nowhere["reason"]) == ("undecided", "no run succeeded")
+
+
+def test_pick_takes_one_run_of_each_condition():
+    runs = pd.concat([table({"a": [3.0, -1.0, 2.0]}), table({"a": [3.0, 1.0, 2.0]}, problem="second")])
+    check = ALL | {"pick": {"lowest": "objective"}, "every": ["problem"]}
+    summary, details = judge({"checks": [check]}, runs)
+    assert (summary.iloc[0]["verdict"], details["mark"].to_list(), details["n"].to_list()) == ("in part", ["+", "-"], [1, 1])
+    assert details["p"].isna().all()
+    runs["feasible"] = runs["problem"] == "first"
+    assert judge({"checks": [check]}, runs)[1]["mark"].to_list() == ["+", "?"]
+
+
+def test_rows_of_one_unit_are_averaged_first():
+    layouts = pd.concat(table({"a": sample(f"a{k}", k), "b": sample(f"b{k}", k + 0.5)}).assign(layout=k) for k in range(8))
+    layouts["condition"] = layouts["layout"].astype(str)
+    row = judged(LOWER | {"unit": "layout"}, layouts)
+    assert (row["n"], row["verdict"]) == (8, "supported")
+    assert judged(SHARE | {"unit": "layout", "event": {"below": 3.5}}, layouts)["effect"] == 0.5
+
+
+def test_where_on_an_outcome_keeps_places_without_such_runs():
+    runs = places(1, 1).reset_index(drop=True)
+    runs["feasible"] = runs["problem"] == "first"
+    found = judge({"checks": [LOWER | {"every": ["problem"], "where": {"feasible": True}}]}, runs)
+    assert found[1]["mark"].to_list() == ["+", "?"]
+    assert found[0].iloc[0]["verdict"] == "undecided"
+
+
+def test_rank_is_one_among_the_rows_of_the_artefact(monkeypatch):
+    among = Metric("-", "rank", False, lambda runs, problems: runs.groupby("repeat")["objective"].rank())
+    monkeypatch.setitem(metrics.METRICS, "rank", among)
+    artefacts = {"table1": {"experiment": "tried", "where": {"method": ["a", "b", "d"]}}}
+    claim = {"checks": [LOWER | {"metric": "rank", "than": ["d"], "margin": 0.5}], "artefact": "table1"}
+    row = judge(claim, table({"a": np.zeros(9), "b": np.ones(9), "c": np.full(9, 2.0), "d": np.full(9, 3.0)}), artefacts=artefacts)[0].iloc[
+        0
+    ]
+    assert (row["verdict"], row["effect"]) == ("supported", -2)
+
+
+# The printed numbers.
+
+PRINTED = pd.DataFrame(
+    {
+        "method": ["a", "b", "c"],
+        "metric": "objective",
+        "statistic": "mean",
+        "n": [10.0, 10.0, math.nan],
+        "unit": "m",
+        "value": [5.0, 6.0, 4.0],
+    }
+)
+TABLE = {"table1": {"experiment": "tried", "published": "table1.csv", "where": {"method": ["a", "b", "c"]}}}
+
+
+def with_printed(check: dict, printed: pd.DataFrame = PRINTED, **material) -> tuple[pd.Series, pd.DataFrame]:
+    summary, details = judge(
+        {"checks": [check], "artefact": "table1"}, table(TIERS), published={"table1": printed}, artefacts=TABLE, **material
+    )
+    return summary.iloc[0], details
+
+
+def test_the_same_check_on_the_printed_numbers():
+    row, details = with_printed(LOWER | {"than": ["b", "c", "d"]})
+    assert row["published"] == "1 of 2"
+    assert details["published"].to_list() == ["holds", "fails", "not printed"]
+    assert details["effect_published"].to_list()[:2] == [-1, 1]
+    assert with_printed(LOWER | {"statistic": "median"})[0]["published"] == "not printed"
+    assert with_printed(LOWER, PRINTED.assign(statistic="unstated"))[0]["published"] == "1 of 1"
+    assert with_printed(WITHIN)[0]["published"] == "1 of 1"
+    assert with_printed(WITHIN | {"margin": 0.5})[0]["published"] == "0 of 1"
+    assert with_printed(SHARE | {"event": {"below": 5.5}})[0]["published"] == "1 of 1"
+
+
+def test_a_variant_stands_beside_the_numbers_of_its_method():
+    row, _ = with_printed(LOWER | {"groups": ["d"], "direction": "higher"}, variant_of={"d": "a"})
+    assert row["published"] == "0 of 1"
+
+
+def test_printed_counts_are_shares():
+    counts = PRINTED.assign(metric="claimed_feasible", statistic="count", value=[2.0, 8.0, 1.0])
+    _, details = judge(
+        {"checks": [LOWER | {"metric": "claimed_feasible"}], "artefact": "table1"}, TRUTHS, published={"table1": counts}, artefacts=TABLE
+    )
+    assert details["effect_published"].to_list() == [pytest.approx(-0.6)]
+
+
+def test_trend_over_printed_numbers():
+    printed = pd.DataFrame({"particles": [5, 10, 20, 30, 50], "metric": "objective", "statistic": "mean", "n": 10, "unit": "m"})
+    artefacts = {"table1": {"experiment": "tried", "published": "table1.csv"}}
+    claim = {"checks": [TREND], "artefact": "table1"}
+    row = judge(claim, over_x(0.2), published={"table1": printed.assign(value=[1, 3, 2, 4, 9])}, artefacts=artefacts)[0].iloc[0]
+    assert (row["published"], row["size"]) == ("1 of 1", "larger")
+    row = judge(claim, over_x(0.2), published={"table1": printed.assign(value=[9, 7, 8, 2, 1])}, artefacts=artefacts)[0].iloc[0]
+    assert (row["published"], row["size"]) == ("0 of 1", "opposite")
+
+
+def test_conditions_that_the_paper_does_not_tell_apart_are_not_printed():
+    runs = pd.concat([table(TIERS), table({"a": sample("other")}, workspace="other")])
+    check = LOWER | {"across": "workspace", "groups": ["grid"], "than": ["other"], "where": {"method": "a"}}
+    row = judge({"checks": [check], "artefact": "table1"}, runs, published={"table1": PRINTED}, artefacts=TABLE)[0].iloc[0]
+    assert row["published"] == "not printed"
+
+
+def test_margin_is_the_printed_difference_where_it_points_as_claimed():
+    _, details = with_printed(LOWER | {"than": ["b", "c", "d"], "margin": {"published": 0.01}})
+    assert details["margin"].to_list() == pytest.approx([1, 0.01 * 1.2, 0.01 * 2.5])
+    _, details = with_printed(LOWER | {"than": ["b", "c"], "margin": {"published": 0.01}, "scale": "relative"})
+    assert details["margin"].to_list() == pytest.approx([1 / 6, 0.01])
+
+
+@pytest.mark.parametrize(
+    ("printed", "size"), [([5.0, 6.0], "alike"), ([5.0, 5.2], "larger"), ([5.0, 9.0], "smaller"), ([6.0, 5.0], "opposite")]
+)
+def test_size_beside_the_printed_effect(printed, size):
+    assert with_printed(LOWER, PRINTED[:2].assign(value=printed))[0]["size"] == size
+
+
+def test_arithmetic_of_printed_numbers():
+    check = {"test": "published_arithmetic", "form": "difference", "equals": 1.25}
+    check["of"] = [{"table": "table1", "method": "a"}, {"table": "table1", "method": "b"}]
+
+    def printed(*values: float) -> dict:
+        return {"published": {"table1": PRINTED[:2].assign(value=values)}}
+
+    assert judged(check, **printed(5.0, 6.25))["verdict"] == "supported"
+    assert judged(check, **printed(5.0, 6.254))["published"] == "1 of 1"
+    wrong = judged(check, **printed(5.0, 6.27))
+    assert (wrong["verdict"], wrong["published"]) == ("contradicted", "0 of 1")
+    percent = check | {"form": "increase_percent", "equals": 4.96}
+    assert judged(percent, **printed(30.3458, 31.8503))["verdict"] == "supported"
+    assert judged(percent, **printed(30.3458, 31.8703))["verdict"] == "contradicted"
+    empty = judged(check, **printed(5.0, math.nan))
+    assert (empty["verdict"], empty["reason"]) == ("untestable", "a printed cell is empty")
+
+
+def test_arithmetic_matches_cells_by_the_columns_that_no_selector_names():
+    quoted = pd.DataFrame({"place": ["p1", "p2"], "method": ["c", "a"], "metric": "objective", "value": [4.0, 5.0]})
+    check = {
+        "test": "published_arithmetic",
+        "form": "equal",
+        "of": [{"table": "text"}],
+        "equals": {"table": ["table1"], "metric": "objective"},
+    }
+    published = {"table1": PRINTED, "text": quoted}
+    row, details = (each.iloc[0] for each in judge({"checks": [check]}, published=published))
+    assert (row["verdict"], row["holds"], details["condition"]) == ("supported", "2 of 2", "place=p1, method=c")
+    published["text"] = quoted.assign(value=[4.0, 5.02])
+    assert judge({"checks": [check]}, published=published)[0].iloc[0]["holds"] == "1 of 2"
+    published["text"] = quoted.assign(method=["c", "unknown"])
+    assert judge({"checks": [check]}, published=published)[0].iloc[0]["verdict"] == "untestable"
+
+
+def test_function_of_the_study():
+    check = {"test": "function", "name": "counted", "effect": "runs", "effect_unit": "-", "experiment": "tried", "where": {"method": "a"}}
+
+    def counted(check, results, published):
+        n = int((results["tried"].runs["method"] == check["where"]["method"]).sum())
+        return ("+" if n == UNITS else "-"), float(n), None, n
+
+    row = judged(check, APART, functions={"counted": counted})
+    assert (row["verdict"], row["effect"], row["effect_size_name"], row["n"]) == ("supported", UNITS, "runs", UNITS)
+    assert judged(check | {"where": {"method": "z"}}, APART, functions={"counted": counted})["verdict"] == "contradicted"
+    with pytest.raises(Fault, match="claim C1: function counted: unknown; did you mean count"):
+        judged(check, APART, functions={"count": counted})
+    assert judged(check, functions={"counted": counted})["verdict"] == "untestable"
+
+
+# Experiments of the paper's size.
+
+
+def test_chance_of_a_small_experiment():
+    # The difference of two means of n units is normal with variance 2 / n; it is negative with probability Phi(0.5 sqrt(n / 2)).
+    runs = table({"a": sample("a", n=2000), "b": sample("b", 0.5, n=2000)})
+    for n, expected in [(2, 0.691), (10, 0.868), (50, 0.994)]:
+        assert judged(LOWER, runs, repeats={"tried": n})["chance"] == pytest.approx(expected, abs=0.04)
+    assert math.isnan(judged(LOWER, runs, repeats={})["chance"])
+    assert with_printed(LOWER, repeats={})[0]["chance"] > 0.9
+
+
+def test_chance_of_several_comparisons_is_that_all_hold():
+    same = table({name: sample(name) for name in "abcd"})
+    row = judged(LOWER | {"than": ["b", "c", "d"]}, same)
+    # The first of four equal methods is the best of them one time in four.
+    assert row["chance"] == pytest.approx(0.25, abs=0.06)
+    anyone = judge({"checks": [LOWER | {"than": ["b", "c", "d"]}], "holds": "any"}, same)[0].iloc[0]
+    assert anyone["chance"] == pytest.approx(0.75, abs=0.06)
+
+
+# Times.
+
+
+def test_times_are_compared_by_ratio_only(monkeypatch):
+    monkeypatch.setitem(metrics.METRICS, "cpu_s", Metric("s", "CPU time of the run", False))
+    runs = table({"a": sample("a", 20), "b": sample("b", 40)}, metric="cpu_s")
+    check = LOWER | {"metric": "cpu_s"}
+    row = judged(check | {"scale": "relative", "margin": 0.1}, runs)
+    assert (row["verdict"], bool(row["timed"])) == ("supported", True)
+    assert judged(check, runs)["verdict"] == "untestable"
+    assert not judged(LOWER, APART)["timed"]
+
+
+# Degenerate runs.
+
+
+@pytest.mark.parametrize("check", [LOWER, LOWER | {"paired": True}, LOWER | {"statistic": "median"}, LOWER | {"scale": "relative"}])
+def test_no_difference_in_any_unit(check):
+    row = judged(check, table({"a": np.full(9, 3.0), "b": np.full(9, 3.0)}))
+    assert (row["verdict"], row["p"], row["effect"], row["low95"], row["high95"]) == ("no effect", 1, 0, 0, 0)
+
+
+ANY_KIND = {
+    "lower": LOWER,
+    "paired": LOWER | {"paired": True},
+    "median": LOWER | {"statistic": "median", "scale": "relative"},
+    "min": LOWER | {"statistic": "min"},
+    "published margin": LOWER | {"margin": {"published": 0.01}},
+    "ordered": ORDERED,
+    "trend": TREND | {"x": "problem_size", "where": {"method": "a"}},
+    "share": SHARE,
+    "all": ALL,
+    "equal_within": WITHIN,
+    "difference": DIFFERENCE | {"groups": ["a", "b", "c"]},
+    "paired difference": DIFFERENCE | {"groups": ["a", "b", "c"], "paired": True},
+}
+
+
+@pytest.mark.parametrize("value", [math.nan, math.inf, 0.0])
+@pytest.mark.parametrize("n", [1, 5, 20])
+@pytest.mark.parametrize("kind", ANY_KIND)
+def test_degenerate_values_give_no_fault(kind, n, value):
+    runs = pd.concat(
+        table({name: np.full(n, value) for name in "abcd"}).assign(problem_size=size, condition=str(size)) for size in (1, 2, 3, 4)
+    )
+    if kind != "trend":
+        runs = runs[runs["problem_size"] == 1]
+    row = judged(ANY_KIND[kind], runs)
+    assert row["verdict"] in ("no effect", "undecided", "contradicted", "supported")
+    if math.isnan(value) or (n < 6 and kind not in ("all", "share", "min")):
+        assert row["verdict"] == "undecided"
+        assert row["reason"]
+
+
+@pytest.mark.parametrize("kind", ["lower", "median", "ordered", "equal_within", "difference"])
+def test_missing_group_is_undecided(kind):
+    row = judged(ANY_KIND[kind], table({"a": sample("a")}))
+    assert (row["verdict"], row["reason"]) == ("undecided", "no run of b counts")
+    assert math.isnan(row["chance"])
+
+
+@pytest.mark.parametrize("check", [*ANY_KIND.values(), SHARE | {"where": {"method": "z"}}])
+def test_without_runs_a_claim_is_untestable(check):
+    row = judged(check)
+    assert (row["verdict"], row["reason"]) == ("untestable", "the experiment tried was not run")
+    assert pd.isna(row["n"])
+
+
+def test_no_run_of_the_conditions():
+    row = judged(SHARE | {"where": {"method": "z"}}, APART)
+    assert (row["verdict"], row["reason"]) == ("untestable", "no run is of the conditions that the claim names")
+
+
+def test_reported_check_that_cannot_be_judged_decides_nothing():
+    reported = LOWER | {"experiment": "other", "report": True}
+    summary, details = judge({"checks": [LOWER, reported]}, APART)
+    assert summary.iloc[0]["verdict"] == "supported"
+    assert details["reason"].to_list() == ["", "the experiment other was not run"]
+
+
+def test_relative_to_zero():
+    runs = table({"a": np.ones(9), "b": np.zeros(9)})
+    row = judged(LOWER | {"scale": "relative", "statistic": "mean"}, runs)
+    assert row["verdict"] == "undecided"
+    assert judged(WITHIN | {"scale": "relative"}, table({"a": np.zeros(9), "b": np.zeros(9)}))["verdict"] == "undecided"
+
+
+# What must not matter, and what must.
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_order_of_the_runs_never_changes_a_byte(name):
+    check, runs = CASES[name][0]
+    mixed = runs.sample(frac=1, random_state=1)
+    for table_of_runs, table_of_mixed in zip(judge({"checks": [check]}, runs), judge({"checks": [check]}, mixed)):
+        assert table_of_runs.to_csv() == table_of_mixed.to_csv()
+
+
+OPPOSITE = {"lower": "higher", "up": "down", "at_least": "at_most"}
+OPPOSITE |= {value: key for key, value in OPPOSITE.items()}
+REVERSED = {"supported": "contradicted", "contradicted": "supported", "no effect": "no effect", "undecided": "undecided"}
+
+
+@pytest.mark.parametrize("apart", [-1.0, -0.3, 0.0, 0.3, 1.0])
+@pytest.mark.parametrize("options", [{}, {"paired": True}, {"statistic": "mean"}, {"statistic": "iqr"}, {"statistic": "min"}])
+def test_exchanging_the_direction_reverses_the_verdict(options, apart):
+    runs = table({"a": sample("a"), "b": sample("b", apart, std=1 + abs(apart))})
+    check = LOWER | options
+    assert judged(check | {"direction": "higher"}, runs)["verdict"] == REVERSED[judged(check, runs)["verdict"]]
+
+
+@pytest.mark.parametrize("name", [name for name in CASES if CASES[name][0][0].get("direction")])
+def test_exchanging_the_direction_contradicts_what_was_supported(name):
+    check, runs = CASES[name][0]
+    assert judged(check | {"direction": OPPOSITE[check["direction"]]}, runs)["verdict"] == "contradicted"
+
+
+def test_columns():
+    summary, details = judge({"checks": [LOWER]}, APART)
+    assert summary.columns.to_list() == claims.CLAIM_COLUMNS
+    assert details.columns.to_list() == claims.CHECK_COLUMNS
+    described = set(re.findall(r"\w+", claims.__doc__))
+    assert described.issuperset(claims.CLAIM_COLUMNS + claims.CHECK_COLUMNS)
+    assert set(summary["verdict"]) <= set(claims.VERDICTS)

@@ -1,0 +1,187 @@
+"""Claims and assumptions of the five studies: they fit their schemas, are complete, and name what exists."""
+
+from collections import Counter
+from functools import cache
+from itertools import chain
+from pathlib import Path
+
+import pytest
+import yaml
+
+from bezierplan import checked
+from bezierplan.metrics import METRICS
+from bezierplan.problem import planner_module, planner_settings, setting_fault
+
+STUDIES = Path(__file__).parents[1] / "config" / "studies"
+CLAIMS = {"song2016": 10, "tharwat2018": 41, "ma2020": 21, "meledje": 10, "elhoseny2017": 24}
+CHECKS = {
+    "lower": 52,
+    "ordered": 25,
+    "share": 22,
+    "trend": 13,
+    "function": 8,
+    "equal_within": 5,
+    "published_arithmetic": 3,
+    "difference": 2,
+}
+
+
+@cache
+def claims(key):
+    return checked.read(STUDIES / key / "claims.yaml", "claims")["claims"]
+
+
+@cache
+def assumptions(key):
+    return checked.read(STUDIES / key / "assumptions.yaml", "assumptions")["assumptions"]
+
+
+def all_checks(keys=CLAIMS):
+    return [check for key in keys for claim in claims(key) for check in claim["checks"]]
+
+
+def as_list(value):
+    return value if isinstance(value, list) else [value]
+
+
+def names_by_column(claim):
+    """(column, value) of every value that the checks of a claim name, `rest` left out, and of its variants."""
+    for check in claim["checks"]:
+        across = check.get("across", "method")
+        tiers = [check.get("groups", []), check.get("than", []), *check.get("pairs", []), *check.get("order", [])]
+        yield from ((across, group) for group in chain(*tiers) if group != "rest")
+        yield from ((column, value) for column, given in check.get("where", {}).items() for value in as_list(given))
+        yield from ((key, value) for key in ("metric", "experiment") if key in check for value in as_list(check[key]))
+        if "pick" in check:
+            yield "metric", check["pick"]["lowest"]
+    for column, values in claim.get("variants", {}).items():
+        yield from ((column, name) for value in values for name in as_list(value))
+
+
+@pytest.mark.parametrize("key", CLAIMS)
+def test_claims_are_complete_and_numbered(key):
+    assert [claim["id"] for claim in claims(key)] == [f"C{number + 1}" for number in range(CLAIMS[key])]
+
+
+def test_number_of_claims_and_deciding_checks():
+    assert sum(CLAIMS.values()) == 106
+    assert Counter(check["test"] for check in all_checks() if not check.get("report")) == CHECKS
+    assert sum(check.get("report", False) for check in all_checks()) == 9
+
+
+def test_published_margins():
+    """Claims with a margin that is read from the printed numbers."""
+    printed = [claim for key in CLAIMS for claim in claims(key) if any(isinstance(check.get("margin"), dict) for check in claim["checks"])]
+    assert len(printed) == 43
+
+
+@pytest.mark.parametrize("key", CLAIMS)
+def test_first_value_of_a_variant_is_what_the_checks_name(key):
+    """Or the checks name nothing of its column. Lists have equally many members, of which a claim may name some only."""
+    for claim in claims(key):
+        named = {(column, name) for column, name in names_by_column(claim | {"variants": {}})}
+        for column, values in claim.get("variants", {}).items():
+            free = all(column != other for other, _ in named)
+            assert free or any((column, name) in named for name in as_list(values[0])), claim["id"]
+            assert len({len(as_list(value)) for value in values}) == 1, claim["id"]
+
+
+def test_names_of_song2016():
+    study = checked.read(STUDIES / "song2016" / "experiments.yaml", "experiments")
+    artefacts = checked.read(STUDIES / "song2016" / "artefacts.yaml", "artefacts")
+    known = {"method": study["methods"], "problem": study["problems"], "experiment": study["experiments"], "metric": METRICS}
+    known["feasible"] = [True, False]
+    for claim in claims("song2016"):
+        assert {(column, name) for column, name in names_by_column(claim) if name not in known[column]} == set(), claim["id"]
+        assert set(as_list(claim["artefact"])) <= artefacts["tables"].keys() | artefacts["figures"].keys()
+
+
+@pytest.mark.parametrize("key", CLAIMS)
+def test_assumptions_are_numbered_and_name_claims(key):
+    ids = [assumption["id"] for assumption in assumptions(key)]
+    assert len(set(ids)) == len(ids)
+    numbers = [int(name[1:].rstrip("abcdefgh")) for name in ids]
+    assert sorted(set(numbers)) == list(range(1, max(numbers) + 1))
+    assert numbers == sorted(numbers)
+    known = {claim["id"] for claim in claims(key)}
+    for assumption in assumptions(key):
+        assert set(assumption.get("claims", [])) <= known
+        default = assumption["default"]
+        in_force = default.values() if isinstance(default, dict) else [default]
+        assert not set(in_force) & set(assumption["alternatives"]), f"{assumption['id']}: the default is not an alternative"
+
+
+def test_alternatives_of_song2016_are_legal():
+    """The default is the value in force, and every alternative fits the planner, with the settings that go along with it."""
+    study = checked.read(STUDIES / "song2016" / "experiments.yaml", "experiments")
+    governed = [assumption for assumption in assumptions("song2016") if "setting" in assumption]
+    assert len(governed) == 9
+    for assumption in governed:
+        assert assumption["claims"]
+        setting, default = assumption["setting"], assumption["default"]
+        for method, value in default.items() if isinstance(default, dict) else ((method, default) for method in study["methods"]):
+            planner = planner_module(study["methods"][method]["planner"])
+            settings = study["settings"] | study["methods"][method]["settings"]
+            assert settings[setting] == value, f"{assumption['id']}: {method}"
+            for alternative in assumption["alternatives"]:
+                changed = {setting: alternative} | assumption.get("with", {}).get(method, {})
+                for name, given in changed.items():
+                    assert setting_fault(planner_settings(planner)[name], given) is None, f"{assumption['id']}: {name}: {given}"
+                planner.check(settings | changed)
+
+
+def keys_of_schema(schema):
+    if isinstance(schema, list):
+        return set().union(*map(keys_of_schema, schema))
+    if not isinstance(schema, dict):
+        return set()
+    own = set(schema["properties"]) if "properties" in schema else set()
+    return own.union(*(keys_of_schema(value) for value in schema.values()))
+
+
+def keys_of_data(data):
+    if isinstance(data, list):
+        return set().union(*map(keys_of_data, data))
+    if not isinstance(data, dict):
+        return set()
+    return set(data).union(*map(keys_of_data, data.values()))
+
+
+@pytest.mark.parametrize("schema", ["claims", "assumptions"])
+def test_no_key_of_the_schema_is_unused(schema):
+    keys = keys_of_schema(yaml.safe_load((checked.SCHEMAS / f"{schema}.schema.yaml").read_text()))
+    used = {schema}.union(*(keys_of_data({"claims": claims, "assumptions": assumptions}[schema](key)) for key in CLAIMS))
+    assert keys - used == set()
+
+
+def test_no_key_of_a_kind_of_test_is_unused():
+    """A key may be used by one kind and idle in another."""
+    kinds = yaml.safe_load((checked.SCHEMAS / "claims.schema.yaml").read_text())["$defs"]["check"]["allOf"]
+    for kind in kinds:
+        name = kind["if"]["properties"]["test"]["const"]
+        used = set().union(*(check.keys() for check in all_checks() if check["test"] == name))
+        assert set(kind["then"]["properties"]) - used == set(), name
+
+
+FAULTS = {
+    "a check without a margin": ({"margin": None}, "checks: 0: margin: missing key; the smallest effect that matters"),
+    "a misspelt key": ({"direktion": "lower"}, "checks: 0: direktion: unknown key; did you mean direction?"),
+    "a misspelt kind of test": ({"test": "lowr"}, "checks: 0: test: lowr: unknown; did you mean lower?"),
+    "groups without than": ({"than": None}, "either groups and than, or pairs"),
+    "an unknown statistic": ({"statistic": "meen"}, "checks: 0: statistic: meen: unknown; did you mean mean?"),
+    "a margin of nothing": ({"margin": 0}, "checks: 0: margin: 0: the smallest effect that matters"),
+    "no check that decides": ({"report": True}, "checks: "),
+    "a share without a side": ({"test": "share", "threshold": 0.5}, "unknown key"),
+}
+
+
+@pytest.mark.parametrize("name", FAULTS)
+def test_faults(name):
+    change, message = FAULTS[name]
+    check = {"test": "lower", "experiment": "e", "metric": "length", "groups": ["a"], "than": ["b"], "direction": "lower", "margin": 0.1}
+    check = {key: value for key, value in (check | change).items() if value is not None}
+    claim = {"id": "C1", "place": "1", "statement": "a is shorter than b.", "artefact": "table1", "checks": [check]}
+    with pytest.raises(checked.Fault) as fault:
+        checked.check({"claims": [claim]}, "claims", "here")
+    assert message in str(fault.value)
+    assert "\n" not in str(fault.value)

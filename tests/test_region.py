@@ -1,0 +1,38 @@
+"""Whether a point is blocked, by the region alone, against the certified check of the path that stays there."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bezierplan.exact.checker import check
+from bezierplan.exact.region import blocks, region
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import from_lines
+from bezierplan.workspaces.polygons import Polygons
+
+SQUARE = np.array([[4.0, 4.0], [6.0, 4.0], [6.0, 6.0], [4.0, 6.0]])
+WALL = np.array([[7.0, 0.0], [8.0, 0.0], [8.0, 5.0], [7.0, 5.0]])
+RING = np.array([[1.0, 6.0], [3.5, 6.0], [3.5, 9.0], [1.0, 9.0]])
+HOLE = np.array([[2.0, 7.0], [3.0, 7.0], [3.0, 8.0], [2.0, 8.0]])
+WORKSPACES = {
+    "grid": from_lines(["....#", ".##..", ".##..", "....#", "#...."], 2.0, "unit"),
+    "circles": Circles((0.0, 10.0, 0.0, 10.0), np.array([[3.0, 3.0], [5.0, 3.0], [9.5, 9.5]]), np.array([1.0, 1.5, 1.0]), "unit"),
+    "polygons": Polygons((0.0, 10.0, 0.0, 10.0), ((SQUARE,), (WALL,), (RING, HOLE)), "unit"),
+}
+# Whole and half numbers meet edges, corners and seams.
+coordinates = st.one_of(st.integers(0, 20).map(lambda n: n / 2), st.floats(0, 10))
+
+
+@pytest.mark.parametrize("kind", WORKSPACES)
+@given(x=coordinates, y=coordinates)
+@settings(max_examples=150)
+def test_point_is_blocked_where_a_path_that_stays_there_collides(kind, x, y):
+    found = region(WORKSPACES[kind])
+    assert blocks(found, (x, y)) != check(np.array([[(x, y), (x, y)]]), found).feasible
+
+
+@pytest.mark.parametrize("kind", WORKSPACES)
+@pytest.mark.parametrize("point", [(-1.0, 5.0), (11.0, 5.0), (5.0, -1.0), (5.0, 11.0), (50.0, 50.0)])
+def test_outside_is_blocked(kind, point):
+    assert blocks(region(WORKSPACES[kind]), point)
