@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from scipy.integrate import quad
-from scipy.interpolate import BSpline
+from scipy.interpolate import BSpline, CubicHermiteSpline, CubicSpline
 
 from bezierplan import curves
 from bezierplan.problem import Path
@@ -20,6 +20,8 @@ coordinates = st.floats(-100, 100, allow_subnormal=False)
 def paths(draw, kinds=curves.CURVES):
     curve = draw(st.sampled_from(kinds))
     count = draw(st.integers(curves.least_points(curve), 9))
+    if curve == "ferguson":
+        count -= count % 2
     return Path(curve, draw(hnp.arrays(float, (count, 2), elements=coordinates)))
 
 
@@ -36,32 +38,66 @@ def test_samples_are_those_of_a_clamped_uniform_b_spline(curve, degree):
     assert np.allclose(sampled(Path(curve, points), 101), expected, atol=1e-12)
 
 
+@pytest.mark.parametrize("count", [2, 3, 4, 5, 9])
+def test_spline_is_the_not_a_knot_spline_through_its_points(count):
+    points = np.random.default_rng(0).normal(size=(count, 2))
+    expected = CubicSpline(np.arange(count), points, bc_type="not-a-knot")(np.linspace(0, count - 1, 101))
+    assert np.allclose(sampled(Path("spline", points), 101), expected, atol=1e-12)
+    assert np.array_equal(sampled(Path("spline", points), 10 * (count - 1) + 1)[::10], points)
+
+
+def test_ferguson_curve_is_the_hermite_spline_of_its_points_and_tangents():
+    points = np.random.default_rng(0).normal(size=(8, 2))
+    expected = CubicHermiteSpline(np.arange(4), points[::2], points[1::2])(np.linspace(0, 3, 101))
+    assert np.allclose(sampled(Path("ferguson", points), 101), expected, atol=1e-12)
+
+
 @given(paths())
 @settings(max_examples=50)
-def test_ends_are_exact_and_weights_are_a_partition_of_one(path):
-    assert np.array_equal(sampled(path)[[0, -1]], path.points[[0, -1]])
+def test_ends_are_exact(path):
+    assert np.array_equal(sampled(path)[[0, -1]], path.points[list(curves.ends(path.curve))])
+
+
+@given(paths(curves.B_SPLINES))
+@settings(max_examples=50)
+def test_weights_of_a_b_spline_are_a_partition_of_one(path):
     basis = curves.sample_matrix(path.curve, len(path.points), 201)
     assert basis.min() >= 0
     assert np.allclose(basis.sum(axis=1), 1)
 
 
+@pytest.mark.parametrize(("curve", "points"), [("spline", slice(None)), ("ferguson", slice(None, None, 2))])
+def test_weights_of_the_points_of_an_interpolating_curve_add_to_one(curve, points):
+    assert np.allclose(curves.sample_matrix(curve, 8, 201)[:, points].sum(axis=1), 1)
+
+
 @given(paths())
 @settings(max_examples=50)
-def test_length_lies_between_straight_line_and_control_polygon(path):
-    polygon = np.hypot(*np.diff(path.points, axis=0).T).sum()
+def test_length_lies_between_straight_line_and_control_polygons(path):
+    pieces = curves.bezier_pieces(path)
+    polygons = np.hypot(*np.moveaxis(np.diff(pieces, axis=1), 2, 0)).sum()
     length = curves.length(path)
-    assert math.dist(path.points[0], path.points[-1]) <= length * (1 + 1e-9) + 1e-9
-    assert length <= polygon * (1 + 1e-9) + 1e-9
+    assert math.dist(pieces[0, 0], pieces[-1, -1]) <= length * (1 + 1e-9) + 1e-9
+    assert length <= polygons * (1 + 1e-9) + 1e-9
+    if path.curve in curves.B_SPLINES:
+        assert polygons <= np.hypot(*np.diff(path.points, axis=0).T).sum() * (1 + 1e-9) + 1e-9
 
 
-@given(paths(), st.floats(0, 2 * math.pi), st.tuples(coordinates, coordinates))
+def transformed(path, turn, shift, backwards):
+    """A path turned, moved, and perhaps passed from its end; tangents are turned, and reversed, only."""
+    points = path.points @ turn
+    if path.curve != "ferguson":
+        return Path(path.curve, (points[::-1] if backwards else points) + shift)
+    pairs = points.reshape(-1, 2, 2) * ([[1], [-1]] if backwards else 1) + [shift, (0, 0)]
+    return Path(path.curve, (pairs[::-1] if backwards else pairs).reshape(-1, 2))
+
+
+@given(paths(), st.floats(0, 2 * math.pi), st.tuples(coordinates, coordinates), st.booleans())
 @settings(max_examples=50)
-def test_length_does_not_change_when_a_path_is_moved_or_reversed(path, angle, shift):
+def test_length_does_not_change_when_a_path_is_moved_or_reversed(path, angle, shift, backwards):
     turn = np.array([[math.cos(angle), -math.sin(angle)], [math.sin(angle), math.cos(angle)]])
-    moved = Path(path.curve, path.points @ turn + shift)
-    backwards = Path(path.curve, path.points[::-1].copy())
-    assert curves.length(moved) == pytest.approx(curves.length(path), rel=1e-9, abs=1e-9)
-    assert curves.length(backwards) == pytest.approx(curves.length(path), rel=1e-9, abs=1e-9)
+    other = transformed(path, turn, shift, backwards)
+    assert curves.length(other) == pytest.approx(curves.length(path), rel=1e-9, abs=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -109,8 +145,11 @@ def test_curvature_is_left_out_where_the_curve_stands_still():
     assert speed[0] == 0
 
 
-@pytest.mark.parametrize(("curve", "continuous"), [("bezier", True), ("piecewise_cubic", True), ("piecewise_quadratic", False)])
-def test_only_cubic_pieces_and_a_single_bezier_have_continuous_curvature(curve, continuous):
+@pytest.mark.parametrize(
+    ("curve", "continuous"),
+    [("bezier", True), ("piecewise_cubic", True), ("spline", True), ("piecewise_quadratic", False), ("ferguson", False)],
+)
+def test_only_cubic_splines_and_a_single_bezier_have_continuous_curvature(curve, continuous):
     points = np.random.default_rng(1).normal(size=(8, 2))
     assert (curves.curvature_jump(Path(curve, points)) < 1e-6) == continuous
 
@@ -123,3 +162,8 @@ def test_curvature_jumps_without_limit_at_the_corner_of_a_polyline():
 def test_too_few_control_points_are_refused(curve):
     with pytest.raises(ValueError, match="at least"):
         curves.piece_matrix(curve, curves.least_points(curve) - 1)
+
+
+def test_a_ferguson_curve_needs_pairs_of_a_point_and_a_tangent():
+    with pytest.raises(ValueError, match="even number"):
+        curves.piece_matrix("ferguson", 5)

@@ -4,9 +4,9 @@ Four kinds are clamped uniform B-splines of n control points and differ in degre
 `piecewise_cubic` (3), and `bezier` (n - 1, which has one piece). A piece of a B-spline is a Bezier curve whose control points are values of
 the spline's blossom (its polar form).
 
-Two kinds pass through their points. `spline` is the cubic spline through all of them at uniform parameters, with not-a-knot ends. `ferguson`
-is a chain of cubic Hermite pieces (tharwat2018's reference 33); its control points are pairs of a point and the tangent in it, the derivative
-by a piece's own parameter: P0, T0, V, TV, ..., P1, T1.
+Two kinds pass through their points. `spline` is the cubic spline through all of them at uniform parameters, with not-a-knot ends.
+`ferguson` is a chain of cubic Hermite pieces (tharwat2018's reference 33); its control points are pairs of a point and the tangent in it,
+the derivative by a piece's own parameter: P0, T0, V, TV, ..., P1, T1.
 """
 
 import math

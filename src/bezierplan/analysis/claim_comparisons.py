@@ -102,7 +102,7 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
     keys = ["experiment", *every, *pool, *([column] if column else []), *(key for _, table in tables for key in table if key in runs)]
     keys = list(dict.fromkeys(key for key in keys if key != "value"))
     runs = runs[list(dict.fromkeys([*keys, *_FACTORS, unit, "value"]))]
-    _refuse_mixtures(check, claim, runs, column)
+    _refuse_mixtures(check, claim, runs, [*every, *pool, *([column] if column else []), unit])
     # Published numbers are found by the places of the runs, each once.
     places = dict(_split(runs[keys].drop_duplicates(), every))
     found = []
@@ -180,11 +180,12 @@ def _cell_column(check: dict) -> str | None:
     return check["x"] if check["test"] == "trend" else check.get("across", "method")
 
 
-def _refuse_mixtures(check: dict, claim: dict, runs: pd.DataFrame, column: str | None) -> None:
-    keys = [*check.get("every", []), *check.get("pool", []), *([column] if column else [])]
-    unit = check.get("unit", "repeat")
-    mixed = runs.groupby([*keys, unit], dropna=False)[_FACTORS].nunique().max() > 1
-    for factor in mixed.index[mixed]:
+def _refuse_mixtures(check: dict, claim: dict, runs: pd.DataFrame, keys: list[str]) -> None:
+    """Raises Fault if a unit of a comparison, told apart by the keys, is of several experiments, conditions or methods."""
+    distinct = runs[[*keys, *(factor for factor in _FACTORS if factor not in keys)]].drop_duplicates()
+    mixed = distinct[distinct.duplicated(keys, keep=False)]
+    if not mixed.empty:
+        factor = next(factor for factor in _FACTORS if factor not in keys and mixed[factor].nunique() > 1)
         what = f"claim {claim['id']}: {check['test']} of {check['metric']}"
         raise Fault(f"{what}: several values of {factor} are neither told apart nor pooled")
 

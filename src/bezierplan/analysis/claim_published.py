@@ -34,39 +34,41 @@ def printed(
     cells = len(places[0])
     nothing = np.full(cells, np.nan), None
     found = [_rows_of_cell(cell, check["metric"], tables, variant_of) for condition in places for cell in condition]
-    rows = [(id(table), row) for table, numbers in found for row in numbers.index]
+    if None in found:
+        return nothing
+    rows = [(table, row) for table, statistics in found for row, _, _ in statistics.values()]
     if len(set(rows)) < len(rows):
         return nothing
     named = check.get("statistic", "rank")
     for statistic in _ANY_STATISTIC if named == "rank" else (named, "unstated"):
-        same = [numbers[numbers["statistic"] == statistic] for _, numbers in found]
-        if all(len(row) == 1 for row in same):
-            together = pd.concat(same)
-            values = together["value"] / together["n"] if statistic == "count" else together["value"]
-            runs = together["n"].dropna()
-            numbers = values.to_numpy(dtype=float).reshape(-1, cells).mean(axis=0)
-            return claim_tests.event(check, numbers), int(runs.min()) if len(runs) else None
+        if all(statistic in statistics for _, statistics in found):
+            values, runs = np.array([statistics[statistic][1:] for _, statistics in found]).T
+            numbers = (values / runs if statistic == "count" else values).reshape(-1, cells).mean(axis=0)
+            return claim_tests.event(check, numbers), None if np.isnan(runs).all() else int(np.nanmin(runs))
     return nothing
 
 
 def _rows_of_cell(
     cell: pd.DataFrame, metric: str, tables: list[tuple[str, pd.DataFrame]], variant_of: dict[str, str]
-) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """The first published table that has the metric of a cell, with its rows; no rows if none has, or if the cell is several rows of it."""
-    nothing = pd.DataFrame(columns=["statistic"])
-    for experiment, table in tables:
+) -> tuple[int, dict[str, tuple[int, float, float]]] | None:
+    """The number of the first table that has the metric of a cell, and statistic -> (row, value, runs) in it.
+
+    None if no table has it, or if the cell is several rows of it.
+    """
+    for number, (experiment, table) in enumerate(tables):
         keys = table.columns[: table.columns.get_loc("metric")].to_list()
         if set(cell["experiment"]) != {experiment} or not set(keys) <= set(cell.columns):
             continue
-        rows = cell[keys].drop_duplicates()
-        if len(rows) != 1:
+        places = cell[keys].drop_duplicates()
+        if len(places) != 1:
             continue
-        numbers = table[table["metric"] == metric]
-        for key, value in rows.iloc[0].items():
-            numbers = numbers[numbers[key] == (variant_of.get(value, value) if key == "method" else value)]
-        if not numbers.empty:
-            return table, numbers
-    return nothing, nothing
+        rows = table[table["metric"] == metric]
+        for key, value in places.iloc[0].items():
+            rows = rows[rows[key] == (variant_of.get(value, value) if key == "method" else value)]
+        if not rows.empty:
+            values, runs = (rows[column].astype(float) for column in ("value", "n"))
+            return number, dict(zip(rows["statistic"], zip(rows.index, values, runs)))
+    return None
 
 
 def arithmetic(check: dict, published: dict[str, pd.DataFrame]) -> list[tuple[str, Finding]]:

@@ -175,7 +175,8 @@ def _search(
                 for cell in cells[i]:
                     objective[i] += occupied_point_penalty * occupied.flat[cell]
             if objective[i] < best_objective:
-                best[:], best_objective, best_bad = cells[i], objective[i], count
+                _copy(cells[i], best)
+                best_objective, best_bad = objective[i], count
         history[generation] = best_objective
         if generation == generations:
             break
@@ -185,7 +186,7 @@ def _search(
         parent_bad, bad = bad, parent_bad
         drawn = roulette(rng, 1.0 / objective, population)
         for i in range(population):
-            cells[i] = parents[drawn[i]]
+            _copy(parents[drawn[i]], cells[i])
         for i in range(0, population, 2):
             if rng.random() < crossover_probability:
                 cut = bits * rng.integers(1, genes) if cut_between_genes else rng.integers(1, bits * genes)
@@ -193,8 +194,15 @@ def _search(
         for i in range(population):
             _mutate(rng, cells[i, 1:-1], bits, mutation_probability, mutation)
         if elitism:
-            cells[0] = best
+            _copy(best, cells[0])
     return best, best_bad, history
+
+
+@njit(cache=True)
+def _copy(source, target):
+    """Copy an array of one dimension. Compiles in no time, unlike numpy's assignment to a slice."""
+    for k in range(len(source)):
+        target[k] = source[k]
 
 
 @njit(cache=True)
@@ -231,8 +239,8 @@ def _measure(cells, occupied, basis, stretch, x, y):
     first_point, last_point, first, last = stretch
     columns = occupied.shape[1]
     samples = last - first + 1
-    x[:samples] = 0.0
-    y[:samples] = 0.0
+    for s in range(samples):
+        x[s] = y[s] = 0.0
     for p in range(first_point, last_point + 1):
         weights = basis[p, first : last + 1]
         column, row = cells[p] % columns + 0.5, cells[p] // columns + 0.5

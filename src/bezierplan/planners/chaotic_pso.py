@@ -108,14 +108,15 @@ def plan(
 
     control_points: free ones, beside start and target; those of a `ferguson` curve are tangents and points by turns. samples: points of the
     curve that are tested and measured, uniform in the parameter, both ends included. penalty: the fitness of a path with the length L and
-    the violation V is L (1 + beta V), L + beta V, or beta if it is infeasible and L if not. d_min: added to every radius, in units (eq. 21).
+    the violation V is L (1 + beta V), L + beta V, or (death) L, but beta if it is infeasible. d_min: added to every radius, in units
+    (eq. 21).
 
     stall_limit: iterations without a better path after which the search ends; 0 for never. straight_line_particle: whether the first
-    particle starts as the straight line. c1, c2: cognition and social learning factors. inertia: w in eq. 8, in the first iteration;
-    inertia_damping: its factor from one iteration to the next. velocity_limit: largest change of a coordinate in an iteration, as a share of
-    the field's side; infinite for none. bound_rule: what happens to a coordinate that leaves the field: it is put on the border and its
-    velocity is mirrored, kept (clamp) or zero (stop); or it is left outside. random_numbers: what gets an r1 and r2 of its own. update: the
-    swarm's best path is replaced as soon as a particle finds a better one, or after all have moved.
+    particle starts as the straight line. c1, c2: C1 and C2, the cognition and social learning factors. inertia: w of the first iteration;
+    inertia_damping: its factor from one iteration to the next. velocity_limit: largest change of a coordinate in an iteration, as a share
+    of the field's side; infinite for none. bound_rule: a coordinate that leaves the field is put on its border, and its velocity is
+    mirrored, kept (clamp), or set to zero (stop); or it stays outside (none). random_numbers: what gets an r1 and r2 of its own. update:
+    the swarm's best path is replaced as soon as a particle finds a better one, or after all have moved.
 
     chaotic_term: the one in which the chaotic sequence replaces the random number. chaotic_start: the sequence's first number by the rule
     `fixed`; of the map `constant`, all of them. zeta_for: what gets a number of the sequence of its own. singer_mu, ..., sinusoidal_a: see
@@ -174,10 +175,7 @@ def search(problem: Problem, rng: np.random.Generator, **settings: Any) -> Swarm
     zeta, clipped, collapsed_at = _zeta(chaos, (iterations, particles, dimensions), settings)
     rules = _Rules(
         settings["stall_limit"],
-        settings["c1"],
-        settings["c2"],
-        settings["inertia"],
-        settings["inertia_damping"],
+        *(float(settings[name]) for name in ("c1", "c2", "inertia", "inertia_damping")),  # a whole number would compile kernels anew
         get_args(BoundRule).index(settings["bound_rule"]),
         get_args(RandomNumbers).index(settings["random_numbers"]),
         settings["update"] == "synchronous",
@@ -234,7 +232,7 @@ def _objective(problem: Problem, settings: dict) -> _Objective:
 def _basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
     """Weights of start and target (2, samples) and of the free control points (n, samples) in the samples of a curve."""
     basis = curves.sample_matrix(curve, control_points + 2, samples).T
-    return basis[list(curves.ends(curve))], basis[_free(curve, control_points)]
+    return basis[list(curves.ends(curve))], np.ascontiguousarray(basis[_free(curve, control_points)])
 
 
 @cache
@@ -427,8 +425,10 @@ def _length(z, objective, x, y, chords):
 
 @njit(cache=True)
 def _violation(x, y, circles, squares):
-    """Violation of a path, and its number of samples in circles: summed over the circles, the mean over the samples of their depth below the
-    edge as a share of the radius (tharwat2018, eqs. 20 and 21, taken at samples of the curve, not at its control points).
+    """Violation of a path, and its number of samples in circles, both summed over the circles.
+
+    The violation of a circle is the mean over the samples of their depth below its edge, as a share of its radius (tharwat2018, eqs. 20 and
+    21; the paper prints control points where only points of the path make sense).
 
     x, y: (samples,). circles: (obstacles, 3). squares: (samples,) scratch.
     """

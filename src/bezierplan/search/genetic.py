@@ -13,9 +13,9 @@ def roulette(rng: np.random.Generator, fitness: np.ndarray, draws: int) -> np.nd
     wheel = np.cumsum(fitness)
     parents = np.empty(draws, dtype=np.int64)
     for draw in range(draws):
-        parents[draw] = np.searchsorted(wheel, rng.random() * wheel[-1], side="right")
-    # A draw next to 1 can round up to the whole wheel.
-    return np.minimum(parents, len(fitness) - 1)
+        # A draw next to 1 can round up to the whole wheel.
+        parents[draw] = min(np.searchsorted(wheel, rng.random() * wheel[-1], side="right"), len(fitness) - 1)
+    return parents
 
 
 @njit(cache=True)

@@ -1,0 +1,147 @@
+"""The chaotic maps of tharwat2018: worked sequences, long-run distributions, clipping, collapse, and starts."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bezierplan.search.chaotic_maps import MAPS, Parameters, random_start, sequence
+
+PARAMETERS = Parameters(singer_mu=1.07, singer_x4=13.302875, sine_a=4.0, piecewise_p=0.4, sinusoidal_a=2.3)
+CHAOTIC = MAPS[:8]
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("gauss", [0.7, 0.4285714286, 0.3333333333]),
+        ("singer", [0.7, 0.7996427924, 0.6861594164, 0.8105473696, 0.6682288204, 0.8236504967]),
+        ("tent", [0.6, 0.8571428571, 0.4761904762, 0.6802721088, 0.9718172983, 0.09394233884]),
+        ("circle", [0.7, 0.9756826729, 0.1877940846, 0.3142179422, 0.4410309357, 0.6122163956]),
+        ("logistic", [0.7, 0.84, 0.5376, 0.99434496, 0.02249224209, 0.08794536454]),
+        ("sine", [0.7, 0.8090169944, 0.5646348864, 0.9794547712, 0.06449993352, 0.2012486817]),
+        ("piecewise", [0.7, 0.75, 0.625, 0.9375, 0.15625, 0.390625]),
+        ("sinusoidal", [0.7, 0.9117621527, 0.5232620861, 0.6280664915, 0.8348294256, 0.7949476415]),
+        ("gauss_printed", [0.7, 1.4285714286, 2.3333333333, 3.0]),
+        ("constant", [0.7, 0.7, 0.7]),
+    ],
+)
+def test_first_values(name, expected):
+    assert sequence(name, expected[0], len(expected), PARAMETERS).values == pytest.approx(expected, abs=5e-11, rel=1e-9)
+
+
+def test_the_fourth_value_of_gauss_is_what_rounding_leaves_of_zero():
+    assert 0 < sequence("gauss", 0.7, 4, PARAMETERS).values[3] < 1e-14
+
+
+@pytest.mark.parametrize(
+    ("name", "mean", "deviation", "correlation"),
+    [
+        ("gauss", 0.443, 0.288, -0.35),
+        ("singer", 0.639, 0.289, -0.50),
+        ("tent", 0.501, 0.288, 0.40),
+        ("circle", 0.449, 0.259, 0.04),
+        ("logistic", 0.499, 0.354, 0.0),
+        ("sine", 0.468, 0.354, 0.07),
+        ("piecewise", 0.500, 0.289, 0.0),
+        ("sinusoidal", 0.728, 0.144, -0.20),
+    ],
+)
+def test_long_run_mean_deviation_and_correlation(name, mean, deviation, correlation):
+    values = sequence(name, 0.3141592653589793 if name != "sinusoidal" else 0.7, 400_000, PARAMETERS).values[100:]
+    assert values.mean() == pytest.approx(mean, abs=0.004)
+    assert values.std() == pytest.approx(deviation, abs=0.004)
+    assert np.corrcoef(values[1:], values[:-1])[0, 1] == pytest.approx(correlation, abs=0.012)
+
+
+def test_gauss_does_not_stay_below_seven_tenths():
+    # Its invariant density 1 / (ln 2 (1 + x)) leaves 1 - log2 1.7 above 0.7.
+    values = sequence("gauss", 0.3141592653589793, 400_000, PARAMETERS).values
+    assert np.mean(values > 0.7) == pytest.approx(1 - np.log2(1.7), abs=0.004)
+
+
+@given(st.sampled_from(CHAOTIC), st.floats(0, 1), st.floats(0.9, 1.08))
+@settings(max_examples=200)
+def test_every_value_lies_from_0_to_1_whatever_the_start(name, start, mu):
+    values = sequence(name, start, 100, PARAMETERS._replace(singer_mu=mu)).values
+    assert ((values >= 0) & (values <= 1)).all()
+
+
+def test_clipped_values_are_counted_and_the_sequence_goes_on_from_them():
+    # With mu = 1.08 the highest value of the Singer map is 1.0054, and its value at 1 is below 0.
+    found = sequence("singer", 0.8822, 4, PARAMETERS._replace(singer_mu=1.08))
+    assert sequence("singer", 0.8822, 400, PARAMETERS).clipped == 0
+    assert found.clipped >= 0
+    highest = max((sequence("singer", x, 2, PARAMETERS._replace(singer_mu=1.08)) for x in np.linspace(0, 1, 1001)), key=lambda s: s.clipped)
+    assert highest.clipped == 1
+    assert highest.values[1] in (0.0, 1.0)
+    assert sequence("singer", 0.9999, 5, PARAMETERS).values[1:].tolist() == [0.0] * 4
+
+
+@pytest.mark.parametrize(
+    ("name", "start", "collapsed_at"),
+    [
+        ("gauss", 0.5, 2),
+        ("gauss", 0.0, 1),
+        ("gauss", 0.7, 0),
+        ("tent", 0.7, 3),
+        ("logistic", 0.25, 2),
+        ("logistic", 0.75, 1),
+        ("piecewise", 0.4, 3),
+        ("sinusoidal", 0.9284, 0),
+        ("constant", 0.2, 1),
+        ("singer", 0.7, 0),
+    ],
+)
+def test_where_a_sequence_collapses(name, start, collapsed_at):
+    assert sequence(name, start, 60 if name != "gauss" or start != 0.7 else 4, PARAMETERS).collapsed_at == collapsed_at
+
+
+@pytest.mark.parametrize("start", [0.1, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.75, 0.8, 0.9])
+def test_decimal_starts_let_gauss_collapse(start):
+    assert 0 < sequence("gauss", start, 60, PARAMETERS).collapsed_at <= 11
+
+
+@pytest.mark.parametrize("start", [0.2, 0.4, 0.45, 0.5, 0.6])
+def test_starts_that_let_piecewise_collapse(start):
+    found = sequence("piecewise", start, 60, PARAMETERS)
+    assert found.collapsed_at > 0
+    assert found.values[-1] == 0
+
+
+@pytest.mark.parametrize(("start", "alive"), [(0.4420, False), (0.4423, True), (0.9283, True), (0.9286, False)])
+def test_sinusoidal_dies_from_about_half_of_all_starts(start, alive):
+    assert (sequence("sinusoidal", start, 200, PARAMETERS).collapsed_at == 0) == alive
+
+
+@pytest.mark.parametrize("name", CHAOTIC)
+def test_random_starts_keep_their_sequences_alive(name):
+    rng = np.random.default_rng(0)
+    starts = [random_start(rng, name, PARAMETERS) for _ in range(200)]
+    assert all(sequence(name, start, 60, PARAMETERS).collapsed_at == 0 for start in starts)
+    if name == "sinusoidal":
+        assert 0.4421 < min(starts) < max(starts) < 0.9285
+
+
+def test_a_start_that_lives_is_the_first_number_drawn():
+    assert random_start(np.random.default_rng(3), "tent", PARAMETERS) == np.random.default_rng(3).random()
+
+
+def test_no_living_start_is_an_error():
+    with pytest.raises(ValueError, match="none of 1000 random starts"):
+        random_start(np.random.default_rng(0), "constant", PARAMETERS)
+
+
+@pytest.mark.parametrize("start", [-0.1, 1.1, np.nan])
+def test_starts_outside_0_to_1_are_refused(start):
+    with pytest.raises(ValueError, match="from 0 to 1"):
+        sequence("tent", start, 10, PARAMETERS)
+
+
+def test_unknown_maps_are_refused():
+    with pytest.raises(ValueError, match="unknown chaotic map 'henon'; known: gauss"):
+        sequence("henon", 0.5, 10, PARAMETERS)
+
+
+def test_a_sequence_may_be_empty():
+    assert sequence("tent", 0.5, 0, PARAMETERS).values.shape == (0,)
