@@ -11,7 +11,7 @@ LOCK      = $(RUN) -m uv pip compile --quiet --universal --python-version 3.11 -
 # A killed run leaves its lock behind. A clone has one user, so these targets may break it; plain `snakemake` keeps it.
 UNLOCK = if [ -n "$$(ls .snakemake/locks 2>/dev/null)" ]; then $(SNAKEMAKE) --unlock >/dev/null 2>&1 || true; fi
 
-.PHONY: help reproduce smoke extended test lint benchmark lock clean distclean anew
+.PHONY: help reproduce smoke extended test lint benchmark outcome lock clean distclean anew
 
 help: ## list these targets
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1|\2/p' Makefile | awk -F '|' '{ printf "%-15s %s\n", $$1, $$2 }'
@@ -42,6 +42,11 @@ lint: .venv/ready ## style of Python and Snakemake files, and who may import who
 
 benchmark: .venv/ready ## speed of the inner loops, beside the bare minimum
 	$(RUN) tests/benchmark/run.py $(ARGS)
+
+outcome: .venv/ready ## everything at scale full with the alternatives, then docs/outcome and the README's table from it
+	@$(UNLOCK)
+	$(SNAKEMAKE) all alternatives $(ARGS)
+	$(RUN) -m bezierplan outcome
 
 lock: .venv/ready ## renew environment.txt from pyproject.toml (newest versions: ARGS=--upgrade)
 	$(LOCK) $(ARGS) --group build -o environment-build.txt

@@ -257,7 +257,7 @@ def test_relative_scale_and_least_effect():
 
 
 @pytest.mark.parametrize("paired", [True, False])
-@pytest.mark.parametrize("statistic", ["mean", "median", "iqr"])
+@pytest.mark.parametrize("statistic", ["mean", "median", "std", "iqr"])
 def test_many_units_by_normal_approximation(statistic, paired, monkeypatch):
     runs = table({"a": sample("a", 0, n=300), "b": sample("b", 0.4, n=300, std=1.5)})
     check = LOWER | {"statistic": statistic, "paired": paired}
@@ -734,6 +734,11 @@ def test_no_run_of_the_conditions():
     assert (row["verdict"], row["reason"]) == ("untestable", "no run is of the conditions that the claim names")
 
 
+def test_metric_that_the_runs_do_not_have():
+    row = judged(LOWER | {"metric": "evaluations"}, APART)
+    assert (row["verdict"], row["reason"]) == ("untestable", "the runs of tried have no evaluations")
+
+
 def test_reported_check_that_cannot_be_judged_decides_nothing():
     reported = LOWER | {"experiment": "other", "report": True}
     summary, details = judge({"checks": [LOWER, reported]}, APART)
@@ -744,7 +749,7 @@ def test_reported_check_that_cannot_be_judged_decides_nothing():
 def test_relative_to_zero():
     runs = table({"a": np.ones(9), "b": np.zeros(9)})
     row = judged(LOWER | {"scale": "relative", "statistic": "mean"}, runs)
-    assert row["verdict"] == "undecided"
+    assert (row["verdict"], row["reason"]) == ("undecided", "relative to a value that is zero or does not exist")
     assert judged(WITHIN | {"scale": "relative"}, table({"a": np.zeros(9), "b": np.zeros(9)}))["verdict"] == "undecided"
 
 

@@ -1,4 +1,4 @@
-"""The command line: `python -m bezierplan list`, `replay RUN` and `digest FOLDER`."""
+"""The command line: `python -m bezierplan list`, `replay RUN`, `digest FOLDER` and `outcome`."""
 
 import argparse
 import sys
@@ -18,6 +18,8 @@ def main(words: list[str]) -> None:
     replayer = commands.add_parser("replay", help="one run again, bit-equal, with its picture")
     replayer.add_argument("run", help="its name: study/experiment/condition/method/repeat")
     replayer.set_defaults(do=lambda given: replay_run(given.run))
+    keeper = commands.add_parser("outcome", help="copy the outcome of results/full to docs/outcome and into the README")
+    keeper.set_defaults(do=lambda given: keep_outcome())
     given = parser.parse_args(words)
     try:
         given.do(given)
@@ -60,6 +62,13 @@ def replay_run(name: str) -> None:
     picture = Path("results/replay") / f"{name}.svg"
     replay.draw(made, studies[run["study"]], picture)
     print(f"{'picture':18}{picture}")
+
+
+def keep_outcome() -> None:
+    """Write docs/outcome and the README's table from results/full."""
+    from bezierplan import outcome
+
+    outcome.write()
 
 
 def print_digests(folder: Path) -> None:

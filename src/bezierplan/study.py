@@ -3,6 +3,8 @@
 A study is a paper of this project or a reader's own folder of the same form (config/README.md); `study_file` reads and checks it.
 """
 
+import dataclasses
+import importlib.util
 import itertools
 import os
 from collections.abc import Iterable
@@ -17,7 +19,8 @@ SCALES = ("smoke", "full", "extended")
 
 @dataclass(frozen=True)
 class Study:
-    """A study as its files say it. key: its name; folder: where it lies; the others: experiments.yaml and artefacts.yaml.
+    """A study as its files say it. key: its name; folder: where it lies; the others: experiments.yaml, artefacts.yaml, claims.yaml and
+    assumptions.yaml.
 
     methods: controls as well; controls: their names.
     """
@@ -34,6 +37,8 @@ class Study:
     labels: dict[str, str]
     tables: dict[str, dict]
     figures: dict[str, dict]
+    claims: list[dict]
+    assumptions: list[dict]
 
     def resolved(self, method: str) -> dict[str, Any]:
         """All settings of a method, by name: the study's where its planner has them, and its own."""
@@ -66,6 +71,15 @@ class Study:
         """The file of a table's published numbers as seen from here, or None."""
         file = self.tables[table].get("published")
         return file and relative(self.folder / "published" / file)
+
+    def published_files(self) -> list[str]:
+        """All files of published numbers as seen from here."""
+        return [relative(file) for file in sorted((self.folder / "published").glob("*.csv"))]
+
+    def module(self) -> str | None:
+        """The module with what only this study needs, or None."""
+        name = f"bezierplan.studies.{self.key}"
+        return name if importlib.util.find_spec(name) else None
 
 
 def relative(path: Path) -> str:
@@ -160,6 +174,81 @@ def methods_of(study: Study, artefact: str, experiment: str) -> list[str]:
             wanted = panel.get("where", {}).get("method", methods)
             needed.update([wanted] if isinstance(wanted, str) else wanted)
     return [method for method in methods if method in needed]
+
+
+def experiments_of_claims(study: Study, claims: list[dict]) -> list[str]:
+    """Names of the experiments on whose runs claims are judged, each once, in order; variants may name further ones."""
+    named = [check["experiment"] for claim in claims for check in claim["checks"] if "experiment" in check]
+    named += [value for claim in claims for value in claim.get("variants", {}).get("experiment", [])]
+    flat = itertools.chain.from_iterable([name] if isinstance(name, str) else name for name in named)
+    return list(dict.fromkeys(flat))
+
+
+def claims_job(study: Study, claims: list[dict]) -> dict:
+    """What claims depend on beside runs, problems, bounds and the files of published numbers."""
+    experiments = {name: study.experiments[name] for name in experiments_of_claims(study, claims)}
+    return {
+        "study": study.key,
+        "module": study.module(),
+        "claims": claims,
+        "artefacts": study.tables | study.figures,
+        "variant_of": {name: method["variant_of"] for name, method in study.methods.items() if "variant_of" in method},
+        "paired": {name: experiment.get("seeds", "own") == "shared" for name, experiment in experiments.items()},
+        "paper_repeats": {name: experiment["repeats"]["full"] for name, experiment in experiments.items()},
+    }
+
+
+def alternatives(study: Study) -> dict[str, tuple[str, Any]]:
+    """Every alternative of an assumption that governs a setting: its name, such as `O2_8`, -> the assumption's id and the value."""
+    return {
+        f"{assumption['id']}_{value}": (assumption["id"], value)
+        for assumption in study.assumptions
+        if "claims" in assumption
+        for value in assumption["alternatives"]
+    }
+
+
+def alternatives_described(study: Study) -> dict[str, dict]:
+    """What `analysis.sensitivity` prints of each alternative, by its name."""
+    described = {}
+    for name, (identity, value) in alternatives(study).items():
+        assumption = assumption_of(study, identity)
+        parts = {key: assumption[key] for key in ("detail", "setting", "default")}
+        described[name] = {"study": study.key, "assumption": identity, **parts, "alternative": value}
+    return described
+
+
+def with_alternative(study: Study, name: str) -> Study:
+    """The study with one alternative of `alternatives` in force."""
+    identity, value = alternatives(study)[name]
+    assumption = assumption_of(study, identity)
+    methods = dict(study.methods)
+    for method in methods_changed(study, name):
+        extra = assumption.get("with", {}).get(method, {})
+        settings = methods[method].get("settings", {}) | {assumption["setting"]: value} | extra
+        methods[method] = methods[method] | {"settings": settings}
+    return dataclasses.replace(study, methods=methods)
+
+
+def assumption_of(study: Study, identity: str) -> dict:
+    """The assumption of that id."""
+    return next(assumption for assumption in study.assumptions if assumption["id"] == identity)
+
+
+def methods_changed(study: Study, name: str) -> list[str]:
+    """Methods of the headline claims whose settings an alternative changes; those that the assumption's default names, if it names any."""
+    assumption = assumption_of(study, alternatives(study)[name][0])
+    default = assumption["default"]
+    concerned = [method for method in study.methods if method not in study.controls and "variant_of" not in study.methods[method]]
+    if isinstance(default, dict):
+        concerned = [method for method in concerned if method in default]
+    return [method for method in concerned if assumption["setting"] in study.resolved(method)]
+
+
+def headline_claims(study: Study, name: str) -> list[dict]:
+    """The claims on which an alternative is tried, in their deciding variant alone."""
+    wanted = assumption_of(study, alternatives(study)[name][0])["claims"]
+    return [{key: value for key, value in claim.items() if key != "variants"} for claim in study.claims if claim["id"] in wanted]
 
 
 def kind_of(study: Study, artefact: str) -> str:

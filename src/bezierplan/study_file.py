@@ -3,6 +3,8 @@ one line (`checked.Fault`).
 """
 
 import csv
+import importlib
+import itertools
 import math
 from pathlib import Path
 from typing import Any
@@ -13,7 +15,7 @@ from bezierplan.checked import Fault, closest
 from bezierplan.digest import PACKAGE
 from bezierplan.problem import Workspace, known_planners, planner_module, planner_settings, setting_fault
 from bezierplan.running import RUN_COLUMNS, conditions
-from bezierplan.study import Study, relative
+from bezierplan.study import Study, alternatives, methods_changed, relative, with_alternative
 from bezierplan.workspaces import files
 
 PUBLISHED_COLUMNS = ("metric", "statistic", "n", "unit", "value")
@@ -66,8 +68,15 @@ def _read(folder: Path) -> Study:
         labels=artefacts.get("labels", {}),
         tables=artefacts.get("tables", {}),
         figures=artefacts.get("figures", {}),
+        claims=_optional(folder / "claims.yaml", "claims"),
+        assumptions=_optional(folder / "assumptions.yaml", "assumptions"),
         **experiments,
     )
+
+
+def _optional(file: Path, name: str) -> list[dict]:
+    """The list of claims or assumptions in a file of that schema; empty without the file."""
+    return checked.read(_shown(file), name)[name] if file.is_file() else []
 
 
 def _shown(file: Path) -> Path:
@@ -101,6 +110,63 @@ def _check(study: Study) -> None:
             raise Fault(f"{place}: figures: {name}: a table has this name already")
         for number, panel in enumerate(figure["panels"]):
             _check_panel(study, panel, f"{place}: figures: {name}: panels: {number}")
+    for claim in study.claims:
+        _check_claim(study, claim, f"{relative(study.folder / 'claims.yaml')}: claims: {claim['id']}")
+    for assumption in study.assumptions:
+        _check_assumption(study, assumption, f"{relative(study.folder / 'assumptions.yaml')}: assumptions: {assumption['id']}")
+
+
+def _check_claim(study: Study, claim: dict, place: str) -> None:
+    """Names in a claim: of artefacts, experiments, metrics, columns, groups and functions."""
+    for artefact in _listed(claim.get("artefact", [])):
+        _known(artefact, [*study.tables, *study.figures], f"{place}: artefact")
+    for column, values in claim.get("variants", {}).items():
+        if column == "metric":
+            for value in values:
+                _known(value, metrics.METRICS, f"{place}: variants: metric")
+    for number, check in enumerate(claim["checks"]):
+        where = f"{place}: checks: {number}"
+        if check["test"] == "function":
+            _known(check["name"], vars(importlib.import_module(study.module())) if study.module() else [], f"{where}: name")
+        if "experiment" in check:
+            for experiment in _listed(check["experiment"]):
+                _known(experiment, study.experiments, f"{where}: experiment")
+                _check_check(study, experiment, check, where)
+
+
+def _check_check(study: Study, experiment: str, check: dict, place: str) -> None:
+    _known(check["metric"], metrics.METRICS, f"{place}: metric")
+    _check_where(study, experiment, check.get("where", {}), f"{place}: where")
+    columns = {"experiment", *_columns(study, experiment)}
+    for key in ("every", "pool"):
+        for column in check.get(key, []):
+            _known(column, columns, f"{place}: {key}")
+    for key in ("across", "x", "unit"):
+        if key in check:
+            _known(check[key], columns, f"{place}: {key}")
+    if check.get("across", "method") == "method":
+        tiers = [check.get("groups", []), check.get("than", []), *check.get("pairs", []), *check.get("order", [])]
+        for group in itertools.chain.from_iterable(tiers):
+            _known(group, ["rest", *study.methods_of(experiment)], f"{place}: group")
+
+
+def _check_assumption(study: Study, assumption: dict, place: str) -> None:
+    """An assumption's claims are claims of the study, and every alternative is a legal value of its setting."""
+    for identity in assumption.get("claims", []):
+        _known(identity, [claim["id"] for claim in study.claims], f"{place}: claims")
+    for name, (identity, value) in alternatives(study).items():
+        if identity != assumption["id"]:
+            continue
+        changed = with_alternative(study, name)
+        for method in methods_changed(study, name):
+            _check_settings(planner_module(study.planner(method)), changed.resolved(method), f"{place}: alternatives: {value}: {method}")
+        if not methods_changed(study, name):
+            used = {setting for method in study.methods for setting in study.resolved(method)}
+            raise Fault(f"{place}: setting: {assumption['setting']}: no method has this setting{closest(assumption['setting'], used)}")
+
+
+def _listed(value: Any) -> list:
+    return value if isinstance(value, list) else [value]
 
 
 def _known(name: str, known: Any, place: str) -> None:

@@ -1,5 +1,6 @@
 # The configuration, checked, and the functions that rules take their input and params from.
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -18,6 +19,7 @@ except checked.Fault as fault:
     sys.exit(str(fault))
 
 RESULTS = "results/{scale}/{study}"
+ALTERNATIVE = f"{RESULTS}/sensitivity/{{alternative}}"
 
 
 wildcard_constraints:
@@ -28,6 +30,7 @@ wildcard_constraints:
     chunk="[0-9]+",
     table="|".join(sorted({name for study in STUDIES.values() for name in study.tables})) or "(?!)",
     figure="|".join(sorted({name for study in STUDIES.values() for name in study.figures})) or "(?!)",
+    alternative="|".join(re.escape(name) for study in STUDIES.values() for name in studies.alternatives(study)) or "(?!)",
 
 
 def artefact(wildcards):
@@ -57,11 +60,12 @@ def run_code(wildcards):
     return source_digest("bezierplan.running", planner if planner.endswith(".py") else f"bezierplan.planners.{planner}")
 
 
-def chunk_files(wildcards, experiment, methods):
+def chunk_files(wildcards, experiment, methods, folder=RESULTS):
     """Runs of methods of an experiment: as the configuration says, whatever else lies in the folder."""
-    runs = f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"
+    runs = f"{folder}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet"
     chunks = studies.chunks(STUDIES[wildcards.study], experiment, wildcards.scale)
-    return expand(runs, scale=wildcards.scale, study=wildcards.study, experiment=experiment, method=methods, chunk=chunks)
+    names = {key: wildcards.get(key) for key in ("scale", "study", "alternative")}
+    return expand(runs, **names, experiment=experiment, method=methods, chunk=chunks)
 
 
 def artefact_runs(wildcards):
@@ -105,6 +109,100 @@ def caption(wildcards):
     return studies.caption(STUDIES[wildcards.study], artefact(wildcards), wildcards.scale)
 
 
+def claims_in_force(wildcards):
+    """All claims of a study, or under an alternative those on which it is tried."""
+    study, alternative = STUDIES[wildcards.study], wildcards.get("alternative")
+    return studies.headline_claims(study, alternative) if alternative else study.claims
+
+
+def claims_job(wildcards):
+    study = STUDIES[wildcards.study]
+    job = studies.claims_job(study, claims_in_force(wildcards))
+    return job | {"repeats": {name: study.experiments[name]["repeats"][wildcards.scale] for name in job["paired"]}}
+
+
+def claims_code(wildcards):
+    own = STUDIES[wildcards.study].module()
+    return source_digest("bezierplan.analysis.claims", *([own] if own else []))
+
+
+def claims_experiments(wildcards):
+    return studies.experiments_of_claims(STUDIES[wildcards.study], claims_in_force(wildcards))
+
+
+def claims_runs(wildcards):
+    methods = {name: STUDIES[wildcards.study].experiments[name]["methods"] for name in claims_experiments(wildcards)}
+    return [file for experiment, names in methods.items() for file in chunk_files(wildcards, experiment, names)]
+
+
+def claims_problems(wildcards):
+    return expand(f"{RESULTS}/problems/{{experiment}}.parquet", **wildcards, experiment=claims_experiments(wildcards))
+
+
+def claims_bounds(wildcards):
+    return expand(f"{RESULTS}/problems/{{experiment}}.bounds.parquet", **wildcards, experiment=claims_experiments(wildcards))
+
+
+def published_files(wildcards):
+    return STUDIES[wildcards.study].published_files()
+
+
+def audit_job(wildcards):
+    study = STUDIES[wildcards.study]
+    tables = {Path(spec["published"]).stem: spec["experiment"] for spec in study.tables.values() if "published" in spec}
+    return {"study": study.key, "module": study.module(), "tables": tables, "experiments": sorted(set(tables.values()))}
+
+
+def audit_bounds(wildcards):
+    return expand(f"{RESULTS}/problems/{{experiment}}.bounds.parquet", **wildcards, experiment=audit_job(wildcards)["experiments"])
+
+
+def audit_code(wildcards):
+    own = STUDIES[wildcards.study].module()
+    return source_digest("bezierplan.analysis.audit", *([own] if own else []))
+
+
+def alternative_job(wildcards):
+    changed = studies.with_alternative(STUDIES[wildcards.study], wildcards.alternative)
+    return studies.job(changed, wildcards.experiment, wildcards.method, wildcards.scale, int(wildcards.chunk))
+
+
+def alternative_runs(wildcards):
+    """Runs under an alternative of the methods whose settings it changes, and those with all values in force of the others."""
+    study = STUDIES[wildcards.study]
+    changed = studies.methods_changed(study, wildcards.alternative)
+    files = []
+    for experiment in claims_experiments(wildcards):
+        methods = [name for name in study.experiments[experiment]["methods"] if "variant_of" not in study.methods[name]]
+        files += chunk_files(wildcards, experiment, [name for name in methods if name not in changed])
+        files += chunk_files(wildcards, experiment, [name for name in methods if name in changed], folder=ALTERNATIVE)
+    return files
+
+
+def alternatives_claims(wildcards):
+    return expand(f"{ALTERNATIVE}/claims.csv", **wildcards, alternative=list(studies.alternatives(STUDIES[wildcards.study])))
+
+
+def alternatives_described(wildcards):
+    return studies.alternatives_described(STUDIES[wildcards.study])
+
+
+def all_comparisons(wildcards):
+    return [f"results/{wildcards.scale}/{study}/tables/{table}.comparison.csv" for study, table in summary_job(wildcards)["tables"]]
+
+
+def all_claims(wildcards):
+    return [f"results/{wildcards.scale}/{key}/claims.csv" for key, study in STUDIES.items() if study.claims]
+
+
+def summary_job(wildcards):
+    return {
+        "tables": [[key, name] for key, study in STUDIES.items() for name, table in study.tables.items() if "published" in table],
+        "variants": {key: [name for name, method in study.methods.items() if "variant_of" in method] for key, study in STUDIES.items()},
+        "titles": {key: study.title for key, study in STUDIES.items()},
+    }
+
+
 def files_of(scale, study, name):
     """The files of a table or figure."""
     if name in STUDIES[study].tables:
@@ -113,7 +211,20 @@ def files_of(scale, study, name):
 
 
 def files_of_study(scale, study):
-    return [file for name in [*STUDIES[study].tables, *STUDIES[study].figures] for file in files_of(scale, study, name)]
+    files = [file for name in [*STUDIES[study].tables, *STUDIES[study].figures] for file in files_of(scale, study, name)]
+    if STUDIES[study].claims:
+        files += [f"results/{scale}/{study}/{name}.csv" for name in ("claims", "audit")]
+    return files
+
+
+def files_of_summary(scale):
+    """Needs claims of at least one study and published numbers of at least one table."""
+    named = any(study.claims for study in STUDIES.values()) and summary_job(None)["tables"]
+    return [f"results/{scale}/summary.md"] if named else []
+
+
+def files_of_sensitivity(scale):
+    return [f"results/{scale}/{key}/sensitivity.csv" for key, study in STUDIES.items() if studies.alternatives(study)]
 
 
 def files_of_smoke():

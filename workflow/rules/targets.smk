@@ -4,6 +4,7 @@
 rule all:
     input:
         [files_of_study("full", study) for study in STUDIES],
+        files_of_summary("full"),
 
 
 rule smoke:
@@ -14,6 +15,12 @@ rule smoke:
 rule extended:
     input:
         [files_of_study("extended", study) for study in STUDIES],
+        files_of_summary("extended"),
+
+
+rule alternatives:
+    input:
+        files_of_sensitivity("full"),
 
 
 for study in STUDIES:

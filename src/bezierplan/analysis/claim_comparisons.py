@@ -91,7 +91,8 @@ def _groups_of_artefact(check: dict, claim: dict, material: Material) -> list:
 def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison]:
     """The comparisons of a check without `rest`, in an order that does not depend on that of the runs.
 
-    Raises Untestable if its experiment was not run or no run satisfies its `where`; Fault if runs of several conditions would be mixed.
+    Raises Untestable if its experiment was not run, has no such metric, or has no run that satisfies its `where`; Fault if runs of several
+    conditions would be mixed.
     """
     runs = _measured_runs(check, claim, material)
     if runs.empty:
@@ -149,6 +150,8 @@ def _measured_runs(check: dict, claim: dict, material: Material) -> pd.DataFrame
                 runs = select(runs, part.get("where", {}))
         else:
             runs = select(runs, conditions)
+        if metrics.METRICS[check["metric"]].compute is None and check["metric"] not in runs:
+            raise Untestable(f"the runs of {name} have no {check['metric']}")
         counting = _picked(runs, check["pick"]) if "pick" in check else runs
         values = metrics.values(counting, check["metric"], problems).fillna(_failure(check))
         values = values.loc[select(counting, outcomes).index].reindex(runs.index)
@@ -257,6 +260,6 @@ def _published_tables(check: dict, claim: dict, material: Material) -> list[tupl
     tables = []
     for name in [*own, *(name for name in material.artefacts if name not in own)]:
         artefact = material.artefacts.get(name, {})
-        if "published" in artefact and artefact["experiment"] in listed(check["experiment"]):
+        if "published" in artefact and artefact.get("experiment") in listed(check["experiment"]):
             tables.append((artefact["experiment"], material.published[PurePath(artefact["published"]).stem]))
     return tables

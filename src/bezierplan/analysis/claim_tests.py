@@ -123,11 +123,14 @@ def claimed(check: dict, effects: np.ndarray, margin: float) -> np.ndarray:
     """Is an effect what the claim says, by its value alone?"""
     match check["test"]:
         case "share":
-            return {
-                "all": effects == 1,
-                "none": effects == 0,
-                "some": effects > 0,
-            }.get(check["threshold"], _SIDES.get(check.get("direction"), 1) * (effects - _number(check["threshold"])) >= 0)
+            match check["threshold"]:
+                case "all":
+                    return effects == 1
+                case "none":
+                    return effects == 0
+                case "some":
+                    return effects > 0
+            return _SIDES[check["direction"]] * (effects - check["threshold"]) >= 0
         case "equal_within":
             return np.abs(effects - check.get("target", 0)) <= margin
         case "difference":
@@ -157,10 +160,6 @@ def point_statistic(check: dict) -> str:
         return "share"
     named = check.get("statistic", "rank")
     return "mean" if named == "rank" else named
-
-
-def _number(threshold: float | str) -> float:
-    return math.nan if isinstance(threshold, str) else threshold
 
 
 def _change_weights(x: np.ndarray) -> np.ndarray:
@@ -228,14 +227,15 @@ def _drawn_effects(check: dict, comparison: Comparison, name: str) -> np.ndarray
 
 
 def _gradient(check: dict, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
-    """How the effect changes with the point value of each cell (k,); None where it has no linear approximation (a range of groups)."""
-    relative = check.get("scale") == "relative"
-    if check["test"] == "trend":
-        weights = _change_weights(np.array(cells, dtype=float))
-        return weights / ours[0] if relative else weights
-    if len(cells) > 2:
+    """How the effect changes with the point value of each cell (k,); None where it has no linear approximation."""
+    reference = 1.0
+    if check.get("scale") == "relative":
+        reference = ours[0] if check["test"] == "trend" else ours[1]
+    if not reference or (len(cells) > 2 and check["test"] != "trend"):
         return None
-    return np.array([1 / ours[1], -ours[0] / ours[1] ** 2]) if relative and ours[1] else np.array([1.0, -1.0])
+    if check["test"] == "trend":
+        return _change_weights(np.array(cells, dtype=float)) / reference
+    return np.array([1.0, -ours[0] / reference if check.get("scale") == "relative" else -1.0]) / reference
 
 
 def _two_sided(draws: np.ndarray) -> float:
@@ -302,11 +302,12 @@ def lower(check: dict, comparison: Comparison, name: str) -> Finding:
             # The means have to differ in the direction of the ranks, unless some values have no mean.
             toward = side * ranked if np.isinf(stratum).any() or toward == side * ranked else 0
     size_name, size = _effect_size(check, comparison, side, ours)
-    found = Finding(ours, size_name, size, low, high, n, p, int(np.nan_to_num(toward)))
+    found = Finding(ours, size_name, size, low, high, n, p, int(np.nan_to_num(toward)), reason=_why_none(p))
     return found._replace(margin=margin_of(check, comparison), least_detectable=_least_detectable(low, high, n))
 
 
 def _why_none(number: float) -> str:
+    """Why there is no such p or effect, empty if there is one."""
     return "" if math.isfinite(number) else "relative to a value that is zero or does not exist"
 
 

@@ -272,8 +272,9 @@ def _zeta(chaos: np.random.Generator, size: tuple[int, int, int], settings: dict
     start = settings["chaotic_start"]
     if settings["chaotic_start_rule"] == "random":
         start = chaotic_maps.random_start(chaos, settings["chaotic_map"], parameters)
-    values, clipped, collapsed_at = chaotic_maps.sequence(settings["chaotic_map"], float(start), math.prod(shape), parameters)
-    return chaotic_maps.Sequence(values.reshape(shape), clipped, math.ceil(collapsed_at / math.prod(shape[1:])))
+    found = chaotic_maps.sequence(settings["chaotic_map"], float(start), math.prod(shape), parameters)
+    collapsed_in = math.ceil(found.collapsed_at / math.prod(shape[1:])) if found.collapsed_at else 0
+    return chaotic_maps.Sequence(found.values.reshape(shape), found.clipped, collapsed_in)
 
 
 @njit(cache=True)

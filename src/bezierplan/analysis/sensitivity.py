@@ -1,0 +1,43 @@
+"""Which verdicts hang on which choice: each alternative of an assumption, one at a time, beside the value in force.
+
+Columns: study, assumption, detail, setting, default, alternative; claim, statement; verdict, verdict_alternative, changed; holds,
+holds_alternative; effect, effect_alternative (of the comparison that decides).
+"""
+
+import json
+
+import pandas as pd
+
+
+def sensitivity(claims: pd.DataFrame, alternatives: dict[str, pd.DataFrame], described: dict[str, dict]) -> pd.DataFrame:
+    """One row an alternative and headline claim.
+
+    claims: claims of the study with all values in force. alternatives: by name, claims with that alternative. described: by name, the
+    columns study, assumption, detail, setting, default, alternative.
+    """
+    deciding = claims[claims["decides"]].set_index("id")
+    rows = []
+    for name, judged in alternatives.items():
+        for tried in judged.itertuples():
+            in_force = deciding.loc[tried.id]
+            rows.append(
+                {
+                    **described[name],
+                    "default": _text(described[name]["default"]),
+                    "claim": tried.id,
+                    "statement": in_force["statement"],
+                    "verdict": in_force["verdict"],
+                    "verdict_alternative": tried.verdict,
+                    "changed": tried.verdict != in_force["verdict"],
+                    "holds": in_force["holds"],
+                    "holds_alternative": tried.holds,
+                    "effect": in_force["effect"],
+                    "effect_alternative": tried.effect,
+                }
+            )
+    return pd.DataFrame(rows)
+
+
+def _text(value: object) -> str:
+    """A value, or one a method, as it is printed."""
+    return json.dumps(value) if isinstance(value, dict) else str(value)

@@ -1,0 +1,439 @@
+"""The particle swarms of tharwat2018: their search against a plain reference, fixed values, frozen swarms, shared numbers, bad input."""
+
+import logging
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import settings as hypothesis_settings
+from hypothesis import strategies as st
+
+from bezierplan import curves
+from bezierplan.planners import chaotic_pso
+from bezierplan.problem import Problem, planner_settings, setting_fault
+from bezierplan.search import chaotic_maps
+from bezierplan.workspaces.circles import Circles
+
+SETTINGS = {
+    "curve": "bezier",
+    "control_points": 3,
+    "samples": 100,
+    "penalty": "multiply",
+    "beta": 100.0,
+    "d_min": 0.0,
+    "particles": 20,
+    "iterations": 60,
+    "stall_limit": 10,
+    "straight_line_particle": False,
+    "c1": 1.5,
+    "c2": 1.5,
+    "inertia": 1.0,
+    "inertia_damping": 1.0,
+    "velocity_limit": math.inf,
+    "bound_rule": "mirror",
+    "random_numbers": "dimension",
+    "update": "asynchronous",
+    "chaotic_term": "none",
+    "chaotic_map": "singer",
+    "chaotic_start_rule": "random",
+    "chaotic_start": 0.7,
+    "zeta_for": "iteration",
+    "singer_mu": 1.07,
+    "singer_x4": 13.302875,
+    "sine_a": 4.0,
+    "piecewise_p": 0.4,
+    "sinusoidal_a": 2.3,
+    "count_collisions": True,
+}
+FROZEN = {"chaotic_term": "social", "chaotic_map": "constant", "chaotic_start_rule": "fixed", "chaotic_start": 0.0}
+CURVES = {"bezier": 3, "spline": 3, "ferguson": 4}
+
+
+def problem(circles, start=(0.0, 0.0), target=(4.0, 6.0)):
+    table = np.array(circles, dtype=float).reshape(-1, 3)
+    return Problem("test", Circles((-10.0, 10.0, -10.0, 10.0), table[:, :2], table[:, 2], "unit"), start, target)
+
+
+EQUAL = problem([[1.5, 4.5, 1.2], [4.0, 3.0, 1.2], [1.2, 1.5, 1.2]])
+PUBLIC = problem([[1.5, 4.5, 1.5], [4.0, 3.0, 1.0], [1.2, 1.5, 0.8]])
+OPEN = problem([])
+SEALED = problem(
+    [[1.5, 0, 1], [-1.5, 0, 1], [0, 1.5, 1], [0, -1.5, 1], [1.2, 1.2, 0.9], [-1.2, 1.2, 0.9], [1.2, -1.2, 0.9], [-1.2, -1.2, 0.9]]
+)
+
+
+def plan(where=EQUAL, seed=0, **changes):
+    return chaotic_pso.plan(where, np.random.default_rng(seed), **(SETTINGS | changes))
+
+
+def judged(points, curve, where, changes):
+    """Length, violation and colliding samples of a path by numpy alone."""
+    settings = SETTINGS | changes
+    samples = curves.sample_matrix(curve, len(points), settings["samples"]) @ points
+    radii = where.workspace.radii + settings["d_min"]
+    distances = np.hypot(*(samples[:, None] - where.workspace.centres).transpose(2, 0, 1))
+    length = np.hypot(*np.diff(samples, axis=0).T).sum()
+    return length, np.maximum(1 - distances / radii, 0).mean(axis=0).sum(), (distances < radii).sum()
+
+
+def fitness(length, violation, penalty="multiply", beta=100.0):
+    if penalty == "death":
+        return beta if violation > 1e-9 else length
+    return length * (1 + beta * violation) if penalty == "multiply" else length + beta * violation
+
+
+def whole_path(particle, where, curve):
+    """Control points of a particle; the last but one of a Ferguson curve is the target."""
+    free = particle.reshape(2, -1).T
+    if curve == "ferguson":
+        return np.concatenate([[where.start], free[:-1], [where.target], free[-1:]])
+    return np.concatenate([[where.start], free, [where.target]])
+
+
+def reference(where, seed, **changes):
+    """The whole search in plain Python: best fitness after every iteration, best particle, collisions a to f."""
+    s = SETTINGS | changes
+    initial, moves, chaos = np.random.default_rng(seed).spawn(3)
+    size, dimensions = s["particles"], 2 * s["control_points"]
+    x = -10 + 20 * np.array([[initial.random() for _ in range(dimensions)] for _ in range(size)])
+    parameters = chaotic_maps.Parameters(*(s[name] for name in chaotic_maps.Parameters._fields))
+    start = chaotic_maps.random_start(chaos, s["chaotic_map"], parameters) if s["chaotic_start_rule"] == "random" else s["chaotic_start"]
+    zeta = iter(chaotic_maps.sequence(s["chaotic_map"], start, s["iterations"] * size * dimensions, parameters).values)
+    v, p, p_fitness = np.zeros_like(x), x.copy(), np.full(size, np.inf)
+    best, history, w, since = (np.inf, None, None, None), [], s["inertia"], 0
+    infeasible, samples, best_samples, best_infeasible = 0, 0, 0, 0
+    for t in range(s["iterations"] + 1):
+        improved, old_best = False, best
+        for i in range(size):
+            if t > 0:
+                attractor = best[1] if s["update"] == "asynchronous" else old_best[1]
+                for d in range(dimensions):
+                    if {"dimension": True, "particle": d == 0, "iteration": i == d == 0}[s["random_numbers"]]:
+                        r1, r2 = moves.random(), moves.random()
+                    if {"dimension": True, "particle": d == 0, "iteration": i == d == 0}[s["zeta_for"]]:
+                        number = next(zeta)
+                    a1 = number if s["chaotic_term"] == "cognitive" else r1
+                    a2 = number if s["chaotic_term"] == "social" else r2
+                    v[i, d] = w * v[i, d] + s["c1"] * a1 * (p[i, d] - x[i, d]) + s["c2"] * a2 * (attractor[d] - x[i, d])
+                    v[i, d] = np.clip(v[i, d], -20 * s["velocity_limit"], 20 * s["velocity_limit"])
+                    x[i, d] += v[i, d]
+                    if abs(x[i, d]) > 10 and s["bound_rule"] != "none":
+                        x[i, d] = np.clip(x[i, d], -10, 10)
+                        v[i, d] *= {"mirror": -1, "clamp": 1, "stop": 0}[s["bound_rule"]]
+            length, violation, colliding = judged(whole_path(x[i], where, s["curve"]), s["curve"], where, s)
+            infeasible += violation > 1e-9
+            samples += colliding
+            f = fitness(length, violation, s["penalty"], s["beta"])
+            if f < p_fitness[i]:
+                p[i], p_fitness[i] = x[i], f
+            if f < best[0]:
+                best, improved = (f, x[i].copy(), violation, colliding), True
+        history.append(best[0])
+        best_infeasible += best[2] > 1e-9
+        if t > 0:
+            best_samples += best[3]
+            w *= s["inertia_damping"]
+        since = 0 if improved else since + 1
+        if since == s["stall_limit"] > 0:
+            break
+    evaluations = size * len(history)
+    counts = [infeasible / evaluations * size, samples / evaluations, best_samples, best_infeasible, int(best[2] > 1e-9), infeasible]
+    return history, whole_path(best[1], where, s["curve"]), counts
+
+
+def collisions(found):
+    return [found.extra[f"collisions_{letter}"] for letter in "abcdef"]
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {},
+        {"chaotic_term": "cognitive"},
+        {"chaotic_term": "social", "chaotic_map": "tent"},
+        {"chaotic_term": "social", "zeta_for": "particle"},
+        {"chaotic_term": "cognitive", "zeta_for": "dimension", "chaotic_start_rule": "fixed"},
+        {"chaotic_term": "social", "chaotic_map": "gauss_printed"},
+        {"inertia_damping": 0.98, "velocity_limit": 0.1},
+        {"bound_rule": "clamp", "random_numbers": "particle"},
+        {"bound_rule": "stop", "random_numbers": "iteration"},
+        {"bound_rule": "none", "update": "synchronous"},
+        {"penalty": "add", "d_min": 0.3, "samples": 51},
+        {"penalty": "death", "beta": 12.0},
+        {"curve": "spline"},
+        {"curve": "ferguson", "control_points": 4},
+        {"stall_limit": 1, "iterations": 60},
+        {"stall_limit": 0, "particles": 3, "iterations": 20},
+    ],
+    ids=lambda changes: "-".join(map(str, changes.values())) or "default",
+)
+@pytest.mark.parametrize("count_collisions", [True, False])
+def test_search_is_that_of_a_plain_reference(changes, count_collisions):
+    changes = {"particles": 6, "iterations": 8} | changes
+    history, points, counts = reference(EQUAL, 5, **changes)
+    found = plan(EQUAL, 5, count_collisions=count_collisions, **changes)
+    assert found.history == pytest.approx(history, rel=1e-9)
+    assert found.path.points == pytest.approx(points, rel=1e-6, abs=1e-9)
+    assert found.objective == found.history[-1]
+    assert found.evaluations == changes["particles"] * len(history)
+    known = slice(None) if count_collisions else slice(2, 5)
+    assert collisions(found)[known] == pytest.approx(counts[known])
+    assert np.isnan(collisions(found)).tolist() == [not count_collisions and letter in "abf" for letter in "abcdef"]
+    assert found.stop == ("iterations" if len(history) == changes["iterations"] + 1 else "stall")
+
+
+@given(st.integers(0, 10_000), st.sampled_from(list(CURVES)), st.sampled_from(["multiply", "add", "death"]), st.integers(2, 120))
+@hypothesis_settings(max_examples=60)
+def test_objective_is_length_and_penalty_of_the_samples_of_the_path(seed, curve, penalty, samples):
+    changes = {"curve": curve, "control_points": CURVES[curve], "penalty": penalty, "samples": samples, "iterations": 2}
+    found = plan(PUBLIC, seed, **changes)
+    length, violation, _ = judged(found.path.points, curve, PUBLIC, changes)
+    assert found.extra["violation"] == pytest.approx(violation, rel=1e-12, abs=1e-14)
+    assert found.objective == pytest.approx(fitness(length, violation, penalty), rel=1e-12)
+    assert found.claimed_feasible == (violation <= 1e-9)
+
+
+UNUSED = np.random.default_rng(0)
+
+
+def swarm(where, x):
+    """The swarm of no iterations that starts at x (particles, 6)."""
+    field, rules = np.full(6, 10.0), chaotic_pso._Rules(10, 1.5, 1.5, 1.0, 1.0, 0, 0, False, 0, True)
+    objective = chaotic_pso._objective(where, SETTINGS)
+    return chaotic_pso.Swarm(*chaotic_pso._swarm(UNUSED, x, np.empty((0, 1, 1)), -field, field, field, objective, rules), 0, 0)
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "where", "expected"),
+    [
+        ([1, 2, 3], [1.5, 3, 4.5], OPEN, 7.211103),
+        ([1, 2, 3], [1.5, 3, 4.5], PUBLIC, 95.050708),
+        ([1, 2, 3], [1.5, 3, 4.5], EQUAL, 118.766232),
+        ([6, 6, 6], [0, 3, 6], PUBLIC, 10.665079),
+        ([6, 6, 6], [0, 3, 6], EQUAL, 10.665079),
+        ([-4, -2, 2], [2, 8, 8], PUBLIC, 12.543342),
+        ([-4, -2, 2], [2, 8, 8], EQUAL, 12.543342),
+        ([0.7197, -0.1836, 2.2284], [2.1662, 2.8501, 1.1334], PUBLIC, 7.518209),
+        ([0.7197, -0.1836, 2.2284], [2.1662, 2.8501, 1.1334], EQUAL, 113.744577),
+        ([10, 10, 10], [-10, -10, -10], PUBLIC, 27.685773),
+        ([10, 10, 10], [-10, -10, -10], EQUAL, 32.359578),
+    ],
+)
+def test_fitness_of_known_paths(x, y, where, expected):
+    assert swarm(where, np.array([[*x, *y]], dtype=float)).fitness[-1] == pytest.approx(expected, abs=1e-6)
+
+
+@pytest.mark.parametrize(("where", "violation", "colliding"), [(PUBLIC, 0.12181162, 45), (EQUAL, 0.15469913, 33)])
+def test_violation_and_colliding_samples_of_the_straight_line(where, violation, colliding):
+    found = swarm(where, np.array([[1, 2, 3, 1.5, 3, 4.5]]))
+    assert found.violation == pytest.approx(violation, abs=1e-8)
+    assert found.colliding_samples == colliding
+
+
+@pytest.mark.parametrize(("where", "mean", "error"), [(EQUAL, 15.232, 0.12), (PUBLIC, 14.263, 0.09)], ids=["equal", "public"])
+def test_mean_of_20_000_frozen_swarms(where, mean, error):
+    x = np.random.default_rng(1).uniform(-10, 10, (20_000, 20, 6))
+    assert np.mean([swarm(where, positions).fitness[-1] for positions in x]) == pytest.approx(mean, abs=error)
+
+
+@pytest.mark.parametrize(
+    ("changes", "mean"),
+    [
+        ({}, 10.684),
+        ({"chaotic_term": "cognitive"}, 10.661),
+        ({"chaotic_term": "social"}, 11.342),
+        ({"chaotic_term": "social", "inertia_damping": 0.98, "velocity_limit": 0.1}, 8.61),
+    ],
+    ids=["PSO", "CPSO-I", "CPSO-II", "CPSO-II tuned"],
+)
+def test_means_are_those_of_an_independent_implementation(changes, mean):
+    """Of 2,000 runs there and 500 here; four standard errors of the difference."""
+    ends = [plan(EQUAL, seed, **changes).objective for seed in range(500)]
+    assert np.mean(ends) == pytest.approx(mean, abs=4 * np.std(ends) * math.sqrt(1 / 500 + 1 / 2000))
+
+
+def test_a_social_term_of_zero_freezes_the_swarm():
+    for seed in range(20):
+        found = plan(EQUAL, seed, **FROZEN)
+        assert len(set(found.history)) == 1
+        assert found.stop == "stall"
+        assert found.objective == plan(EQUAL, seed, iterations=0).objective
+        assert found.extra["collisions_f"] % 11 == 0
+
+
+def test_a_gauss_sequence_from_one_half_moves_the_swarm_once_and_is_recorded():
+    changes = {"chaotic_term": "social", "chaotic_map": "gauss", "chaotic_start_rule": "fixed", "chaotic_start": 0.5}
+    assert plan(EQUAL, 1, **changes).extra["zeta_collapsed_at"] == 2
+    assert plan(EQUAL, 1, zeta_for="particle", **changes).extra["zeta_collapsed_at"] == 1
+    assert plan(EQUAL, 1, **(changes | {"chaotic_start": 0.0})).objective == plan(EQUAL, 1, iterations=0).objective
+
+
+def test_clipped_numbers_are_recorded():
+    changes = {"chaotic_term": "social", "chaotic_start_rule": "fixed", "chaotic_start": 0.9999}
+    assert plan(**changes).extra["zeta_clipped"] == 1
+    assert plan(chaotic_start_rule="fixed", chaotic_start=0.9999).extra["zeta_clipped"] == 0
+
+
+@pytest.mark.parametrize("changes", [{"chaotic_term": "cognitive"}, {"chaotic_term": "social", "chaotic_map": "sine"}, {"c1": 0.0}])
+def test_all_methods_start_alike(changes):
+    assert plan(EQUAL, 3, **changes).history[0] == plan(EQUAL, 3).history[0]
+
+
+def test_psos_own_random_numbers_are_those_of_cpso():
+    """With the term that differs switched off, nothing differs."""
+    assert np.array_equal(plan(c1=0.0, chaotic_term="cognitive").history, plan(c1=0.0).history)
+    assert np.array_equal(plan(c2=0.0, chaotic_term="social").history, plan(c2=0.0).history)
+
+
+def test_a_larger_swarm_begins_with_the_smaller():
+    small, large = (np.random.default_rng(0).spawn(3)[0].random((size, 6)) for size in (20, 40))
+    assert np.array_equal(large[:20], small)
+    assert plan(particles=40, iterations=0).objective <= plan(iterations=0).objective
+
+
+@pytest.mark.parametrize("chaotic_term", ["cognitive", "social"])
+def test_the_fifth_chaotic_number_changes_a_run_from_iteration_5_on(chaotic_term, monkeypatch):
+    seeds, long = range(30), {"stall_limit": 0, "inertia_damping": 0.98, "velocity_limit": 0.1}
+    before = [plan(PUBLIC, seed, chaotic_term=chaotic_term, **long).history for seed in seeds]
+    pso = [plan(PUBLIC, seed, **long).history for seed in seeds]
+    sequence = chaotic_maps.sequence
+
+    def changed(*arguments):
+        found = sequence(*arguments)
+        found.values[4] = 1 - found.values[4]
+        return found
+
+    monkeypatch.setattr(chaotic_maps, "sequence", changed)
+    after = [plan(PUBLIC, seed, chaotic_term=chaotic_term, **long).history for seed in seeds]
+    first = [int((one != other).argmax()) for one, other in zip(before, after, strict=True)]
+    assert min(first) == 5
+    assert all(np.array_equal(plan(PUBLIC, seed, **long).history, pso[seed]) for seed in seeds)
+
+
+def test_track_gives_the_best_path_of_every_iteration():
+    settings = SETTINGS | {"chaotic_term": "social"}
+    found = plan(PUBLIC, 4, **settings)
+    path = chaotic_pso.track(PUBLIC, np.random.default_rng(4), **settings)
+    assert path.shape == (len(found.history), 5, 2)
+    assert np.array_equal(path[-1], found.path.points)
+    assert [fitness(*judged(points, "bezier", PUBLIC, {})[:2]) for points in path] == pytest.approx(found.history.tolist())
+
+
+@pytest.mark.parametrize("curve", CURVES)
+def test_the_straight_line_particle_is_the_best_path_of_an_open_field(curve):
+    found = plan(OPEN, curve=curve, control_points=CURVES[curve], straight_line_particle=True, stall_limit=0)
+    assert found.objective == pytest.approx(math.sqrt(52))
+    assert found.extra["violation"] == 0
+    steps = np.diff(curves.sample_matrix(curve, len(found.path.points), 11) @ found.path.points, axis=0)
+    assert steps == pytest.approx(np.tile([0.4, 0.6], (10, 1)))
+
+
+def test_same_seed_gives_the_same_bits():
+    one, other = plan(seed=7), plan(seed=7)
+    assert np.array_equal(one.history, other.history)
+    assert np.array_equal(one.path.points, other.path.points)
+
+
+def test_history_never_rises_and_ends_after_ten_iterations_without_a_better_path():
+    for seed in range(20):
+        history = plan(seed=seed).history
+        assert (np.diff(history) <= 0).all()
+        assert history[-11] == history[-1]
+        assert len(history) == 11 or history[-12] > history[-1]
+
+
+def test_an_early_stop_only_cuts_a_run_short():
+    short, long = plan(), plan(stall_limit=0)
+    assert np.array_equal(long.history[: len(short.history)], short.history)
+    assert len(long.history) == 61
+
+
+# The table of degenerate and bad input.
+
+
+@pytest.mark.parametrize("changes", [{}, {"chaotic_term": "social", "zeta_for": "dimension"}, {"straight_line_particle": True}])
+def test_without_a_free_control_point_the_straight_line_is_judged_once(changes):
+    found = plan(control_points=0, **changes)
+    assert found.objective == pytest.approx(118.766232, abs=1e-6)
+    assert (found.evaluations, len(found.history), found.stop) == (1, 1, "iterations")
+    assert found.path.points.tolist() == [[0, 0], [4, 6]]
+
+
+def test_no_iterations_leave_the_best_of_the_initial_swarm():
+    found = plan(iterations=0, chaotic_term="social", zeta_for="particle")
+    assert found.objective == plan().history[0]
+    assert (found.evaluations, found.stop) == (20, "iterations")
+
+
+def test_sealed_start_gives_a_path_that_is_said_to_collide():
+    found = plan(SEALED)
+    assert not found.claimed_feasible
+    assert found.extra["collisions_e"] == 1
+
+
+def test_start_equal_to_target_is_searched_like_any_other_problem():
+    found = plan(problem([], target=(0.0, 0.0)))
+    assert 0 < found.objective < found.history[0]
+    assert found.claimed_feasible
+
+
+def test_a_lone_particle_never_moves_and_is_warned_of(caplog):
+    with caplog.at_level(logging.WARNING):
+        chaotic_pso.check(SETTINGS | {"particles": 1})
+    assert "particles: 1" in caplog.text
+    found = plan(particles=1)
+    assert (found.history == found.history[0]).all()
+
+
+def test_a_path_a_rounding_error_deep_is_feasible():
+    grazed = problem([[2.0, -1.0, 1.0 + 1e-13]], target=(4.0, 0.0))
+    found = plan(grazed, control_points=0, samples=101)
+    assert 0 < found.extra["violation"] < 1e-12
+    assert found.claimed_feasible
+    assert collisions(found) == [0, 1, 0, 0, 0, 0]
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [
+        ("control_points", -1),
+        ("samples", 1),
+        ("beta", -1.0),
+        ("beta", math.nan),
+        ("d_min", math.nan),
+        ("inertia", math.nan),
+        ("c1", -0.5),
+        ("velocity_limit", -1.0),
+        ("particles", 0),
+        ("iterations", -1),
+        ("stall_limit", -1),
+        ("chaotic_start", 1.1),
+        ("chaotic_start", math.nan),
+        ("chaotic_map", "henon"),
+        ("singer_mu", 1.2),
+        ("piecewise_p", 0.5),
+    ],
+)
+def test_wrong_settings_are_faults(name, value):
+    assert setting_fault(planner_settings(chaotic_pso)[name], value)
+
+
+@pytest.mark.parametrize("curve", CURVES)
+def test_right_settings_are_none(curve):
+    settings = SETTINGS | {"curve": curve, "control_points": CURVES[curve]}
+    assert not any(setting_fault(annotation, settings[name]) for name, annotation in planner_settings(chaotic_pso).items())
+    chaotic_pso.check(settings)
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"curve": "ferguson"}, "control_points: 3.*even number"),
+        ({"curve": "ferguson", "control_points": 0}, "control_points: 0.*at least 4"),
+        ({"chaotic_map": "constant"}, "chaotic_start_rule: random; a constant map needs fixed"),
+    ],
+)
+def test_settings_that_do_not_fit_together_are_refused(changes, message):
+    with pytest.raises(ValueError, match=message):
+        chaotic_pso.check(SETTINGS | changes)

@@ -1,0 +1,139 @@
+"""The probabilistic road map: its sight test, its graph against a plain reference, degenerate cases."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from bezierplan import curves
+from bezierplan.exact.checker import check
+from bezierplan.exact.region import region
+from bezierplan.planners import prm
+from bezierplan.problem import Problem, planner_settings, setting_fault
+from bezierplan.workspaces.circles import Circles
+
+SETTINGS = {"nodes": 50, "links": "visible", "neighbours": 10, "d_min": 0.0}
+
+
+def problem(circles, start=(0.0, 0.0), target=(4.0, 6.0)):
+    table = np.array(circles, dtype=float).reshape(-1, 3)
+    return Problem("test", Circles((-10.0, 10.0, -10.0, 10.0), table[:, :2], table[:, 2], "unit"), start, target)
+
+
+PUBLIC = problem([[1.5, 4.5, 1.5], [4.0, 3.0, 1.0], [1.2, 1.5, 0.8]])
+
+
+def plan(where=PUBLIC, seed=0, **changes):
+    return prm.plan(where, np.random.default_rng(seed), **(SETTINGS | changes))
+
+
+def shortest(points, roads):
+    """Length of the shortest way from point 0 to point 1, by relaxing every road as often as there are points."""
+    lengths = np.full(len(points), np.inf)
+    lengths[0] = 0
+    for _ in points:
+        for one, other in roads:
+            step = math.dist(points[one], points[other])
+            lengths[one] = min(lengths[one], lengths[other] + step)
+            lengths[other] = min(lengths[other], lengths[one] + step)
+    return lengths[1]
+
+
+def sees(one, other, where):
+    """Whether a segment enters no circle, by 2,001 of its points."""
+    points = one + np.linspace(0, 1, 2001)[:, None] * (other - one)
+    distances = np.hypot(*(points[:, None] - where.workspace.centres).transpose(2, 0, 1))
+    return (distances > where.workspace.radii - 1e-6).all()
+
+
+@pytest.mark.parametrize(("links", "seed"), list(itertools.product(["visible", "nearest"], range(4))))
+def test_path_is_the_shortest_way_over_the_roads(links, seed):
+    nodes, neighbours = 12, 4
+    rng = np.random.default_rng(seed)
+    points = [np.array(PUBLIC.start), np.array(PUBLIC.target)]
+    while len(points) < nodes + 2:
+        point = -10 + 20 * rng.random(2)
+        if (np.hypot(*(point - PUBLIC.workspace.centres).T) >= PUBLIC.workspace.radii).all():
+            points.append(point)
+    pairs = set(itertools.combinations(range(len(points)), 2))
+    if links == "nearest":
+        ranked = [sorted(range(len(points)), key=lambda other: math.dist(points[one], points[other])) for one in range(len(points))]
+        pairs = {tuple(sorted((one, other))) for one in range(len(points)) for other in ranked[one][1 : neighbours + 1]}
+    roads = [(one, other) for one, other in pairs if sees(points[one], points[other], PUBLIC)]
+    found = plan(seed=seed, nodes=nodes, links=links, neighbours=neighbours)
+    assert found.extra["roads"] == len(roads)
+    assert found.objective == pytest.approx(shortest(points, roads))
+    assert found.claimed_feasible == (found.path is not None)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_paths_are_free_by_the_certified_check_and_as_long_as_said(seed):
+    found = plan(seed=seed)
+    assert found.claimed_feasible
+    assert check(curves.bezier_pieces(found.path), region(PUBLIC.workspace)).feasible
+    assert found.objective == pytest.approx(curves.length(found.path))
+    assert found.path.points[[0, -1]].tolist() == [[0, 0], [4, 6]]
+    assert found.history.tolist() == [found.objective]
+
+
+def test_more_nodes_keep_those_of_fewer():
+    assert plan(nodes=200).objective <= plan(nodes=50).objective <= plan(nodes=10).objective
+
+
+def test_as_many_neighbours_as_nodes_are_all():
+    assert plan(links="nearest", neighbours=51).objective == plan().objective
+    assert plan(links="nearest", neighbours=51).extra == plan().extra
+
+
+@pytest.mark.parametrize(
+    ("end", "seen"),
+    [
+        ((4, 0), False),
+        ((0.9, 0), True),
+        ((4, 2.4), True),
+        ((4, 2.2), False),
+        ((-4, 0), True),
+        ((0, 0), True),
+    ],
+    ids=["through", "before", "past", "grazing", "behind", "no way"],
+)
+def test_sight_is_exact(end, seen):
+    # From the origin a circle of radius 1 at (2, 0) hides all within 30 degrees beyond the tangent points.
+    assert prm._visible(np.zeros((1, 2)), np.array([end], dtype=float), np.array([[2.0, 0.0]]), np.array([1.0])).tolist() == [seen]
+
+
+def test_touching_is_allowed():
+    tangent = problem([[2.0, -1.0, 1.0]], target=(4.0, 0.0))
+    assert plan(tangent, nodes=0).objective == 4
+    assert plan(tangent, nodes=0, d_min=0.01).path is None
+
+
+def test_failure_is_a_plan_without_a_path():
+    ring = [[2 * math.cos(a), 2 * math.sin(a), 1] for a in np.linspace(0, 2 * math.pi, 9)]
+    found = plan(problem(ring))
+    assert found.path is None
+    assert found.objective == math.inf
+    assert not found.claimed_feasible
+
+
+def test_a_field_without_free_places_has_no_nodes_and_ends(monkeypatch):
+    monkeypatch.setattr(prm, "_MOST_DRAWS", 10)
+    assert plan(problem([[0, 0, 20]])).path is None
+
+
+def test_an_open_field_gives_the_straight_line():
+    assert plan(problem([])).objective == pytest.approx(math.sqrt(52))
+    assert len(plan(problem([])).path.points) == 2
+
+
+def test_start_equal_to_target_is_a_path_of_no_length():
+    assert plan(problem([[2, 2, 1]], target=(0.0, 0.0))).objective == 0
+
+
+def test_settings():
+    kinds = planner_settings(prm)
+    assert not any(setting_fault(kinds[name], value) for name, value in SETTINGS.items())
+    assert setting_fault(kinds["nodes"], -1)
+    assert setting_fault(kinds["neighbours"], 0)
+    assert setting_fault(kinds["d_min"], math.nan)

@@ -1,0 +1,20 @@
+"""Hold a paper's own numbers against each other and against exact bounds."""
+
+from bezierplan import log
+
+with log.job(snakemake.log[0]):
+    import importlib
+    from pathlib import Path
+
+    import pandas as pd
+
+    from bezierplan.analysis import audit
+
+    job, files = snakemake.params.job, snakemake.input
+    published = {Path(file).stem: pd.read_csv(file) for file in files.published}
+    bounds = {name: pd.read_parquet(file).set_index("problem") for name, file in zip(job["experiments"], files.bounds, strict=True)}
+    of_tables = {table: bounds[experiment] for table, experiment in job["tables"].items()}
+    rows = audit.below_bound({table: published[table] for table in of_tables}, of_tables)
+    if job["module"]:
+        rows += importlib.import_module(job["module"]).audit(published)
+    audit.table(job["study"], rows).to_csv(snakemake.output[0], index=False, float_format="%.10g", lineterminator="\n")

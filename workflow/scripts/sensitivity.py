@@ -1,0 +1,13 @@
+"""Set the verdicts under each alternative beside those with all values in force."""
+
+from bezierplan import log
+
+with log.job(snakemake.log[0]):
+    import pandas as pd
+
+    from bezierplan.analysis import sensitivity
+
+    described, files = snakemake.params.described, snakemake.input
+    tried = {name: pd.read_csv(file) for name, file in zip(described, files.alternatives, strict=True)}
+    table = sensitivity.sensitivity(pd.read_csv(files.claims), tried, described)
+    table.to_csv(snakemake.output[0], index=False, float_format="%.10g", lineterminator="\n")

@@ -1,0 +1,18 @@
+"""Gather the numbers and claims of all studies."""
+
+from bezierplan import log
+
+with log.job(snakemake.log[0]):
+    from pathlib import Path
+
+    import pandas as pd
+
+    from bezierplan.analysis import summary
+
+    job, files, output = snakemake.params.job, snakemake.input, snakemake.output
+    comparisons = {tuple(name): pd.read_csv(file) for name, file in zip(job["tables"], files.comparisons, strict=True)}
+    numbers = summary.numbers(comparisons, job["variants"])
+    claims = pd.concat([pd.read_csv(file) for file in files.claims], ignore_index=True)
+    numbers.to_csv(output.numbers, index=False, float_format="%.10g", lineterminator="\n")
+    claims.to_csv(output.claims, index=False, float_format="%.10g", lineterminator="\n")
+    Path(output.summary).write_text(summary.report(numbers, claims, job["titles"], snakemake.wildcards.scale), encoding="utf-8")
