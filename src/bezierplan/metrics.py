@@ -31,12 +31,14 @@ class Metric(NamedTuple):
 
     feasible_only: taken over the runs whose path the certified checker accepts, otherwise over all runs.
     compute: (runs, problems) -> one number a run (n,), where runs is a table of at least one run; None for a column of the runs table.
+    among_rows: it compares the methods of a table with each other, so variants and controls beside the table have none.
     """
 
     unit: str
     meaning: str
     feasible_only: bool
     compute: Callable[[pd.DataFrame, dict[str, Problem]], np.ndarray] | None = None
+    among_rows: bool = False
 
 
 def values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Series:
@@ -66,6 +68,12 @@ def unit(name: str, workspace_unit: str) -> str:
 def _disagrees(claimed: bool, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     """Whether (n,) the planner's own test says this and the checker's the opposite."""
     return ((runs["claimed_feasible"] == claimed) & (runs["feasible"] != claimed)).to_numpy()
+
+
+def _rank(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Rank (n,) of the objective within one unit, among methods or numbers of obstacles; equal ones share the mean of their ranks."""
+    unit = [column for column in ("workspace", "layout", "profile", "repeat") if column in runs]
+    return runs.groupby(unit, dropna=False)["objective"].rank().to_numpy()
 
 
 def _held_history(runs: pd.DataFrame) -> np.ndarray:
@@ -172,6 +180,8 @@ METRICS: dict[str, Metric] = {
     "clearance": Metric("u", "least distance to the obstacles", False),
     "evaluations": Metric("-", "paths whose objective the planner asked for", False),
     "generations": Metric("-", "generations really done", False),
+    "rank": Metric("-", "rank of the objective among the rows of the table, within one unit", False, _rank, among_rows=True),
+    "cpu_s": Metric("s", "CPU seconds of the run alone", False),
     "gap": Metric("-", "length / exact shortest length of the problem - 1", True, _gap),
     "gap_best": Metric("-", "length / length of the best feasible run of the same method and condition - 1", True, _gap_best),
     "generation_improved": Metric(
@@ -201,6 +211,13 @@ METRICS: dict[str, Metric] = {
     ),
     "distinct_points": Metric("-", "control points that differ from each other", False, partial(_of_path, _distinct_points)),
     "occupied_points": Metric("-", "control points in occupied cells of a grid", True, partial(_of_path_on_grid, _occupied_points)),
+    "violation": Metric("-", "mean depth of the samples below the circles, as a share of the radius, summed over circles", False),
+    "collisions_a": Metric("particles", "colliding particles an iteration, of 20, the first swarm included", False),
+    "collisions_b": Metric("samples", "colliding samples a path that was evaluated, summed over circles", False),
+    "collisions_c": Metric("samples", "colliding samples of the best path, added over iterations", False),
+    "collisions_d": Metric("iterations", "iterations whose best path collides", False),
+    "collisions_e": Metric("-", "whether the final path collides, by the planner's own test", False),
+    "collisions_f": Metric("-", "paths evaluated that collide", False),
     "bad_samples": Metric("-", "samples of the path that the planner punished", False),
     "fine_bad": Metric("-", f"samples of {FINE_SAMPLES} in occupied cells of a grid", False, partial(_of_path_on_grid, _fine_bad)),
 }

@@ -13,7 +13,8 @@ import pyarrow.parquet as parquet
 
 from bezierplan.exact.region import blocks, region
 from bezierplan.problem import Problem, Workspace
-from bezierplan.workspaces import files
+from bezierplan.workspaces import files, random_circles
+from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 
 
@@ -52,9 +53,21 @@ def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, st
 
     Map files are sought in a folder. Raises ValueError for a fault in any of them.
     """
-    workspaces = {name: files.load(description, folder) for name, description in job["workspaces"].items()}
-    homes = {name: description["workspace"] for name, description in job["problems"].items()}
-    return {name: build(name, job["problems"][name], workspaces[home]) for name, home in homes.items()}, homes
+    fixed = {name: files.load(each, folder) for name, each in job["workspaces"].items() if each["kind"] != "random_circles"}
+    layouts: dict[tuple[str, int], Circles] = {}
+    problems = {}
+    for name, description in job["problems"].items():
+        home = description["workspace"]
+        if home in fixed:
+            workspace = fixed[home]
+        else:
+            key = home, description["layout"]
+            if key not in layouts:
+                ends = [tuple(map(float, description[end])) for end in ("start", "target")]
+                layouts[key] = random_circles.layout(job["workspaces"][home], f"{job['study']}/{home}", description["layout"], ends)
+            workspace = random_circles.first(layouts[key], description["obstacles"])
+        problems[name] = build(name, description, workspace)
+    return problems, {name: description["workspace"] for name, description in job["problems"].items()}
 
 
 def write(problems: dict[str, Problem], workspaces: dict[str, str], file: str) -> None:

@@ -33,7 +33,7 @@ def replay(name: str, studies: dict[str, Study]) -> results.Results:
     if not repeat.isdecimal():
         raise Fault(f"{name}: repeat: {repeat}; expected a whole number")
 
-    made, _ = problems.build_all(problems_job(study, experiment), study.folder)
+    made, _ = problems.build_all(problems_job(study, experiment, "full"), study.folder)
     problem = {condition.problem: made[condition.problem]}
     plan = running.run(described, condition, int(repeat), made[condition.problem])
     row = running.row(described, condition, int(repeat), plan, region(made[condition.problem].workspace))

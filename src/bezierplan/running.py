@@ -4,9 +4,11 @@ A job is a mapping with these keys, all of them names and plain values (`study.j
 
     study, experiment, method    names
     planner, settings            the planner and its settings, by name
-    problems                     problem name -> name of its workspace
-    vary                         setting -> list of values; every combination of problems and values is a condition
-    seeds                        `own`: a run's seed comes from its id; `shared`: from its id without the method
+    problems                     problem name -> its workspace's name, and where it is drawn its layout and obstacles
+    vary                         setting or level -> list of values; every combination of problems and values is a condition
+    levels                       level -> value, as text -> settings that go with it
+    seeds                        a run's seed comes from its id (`own`), from its id without the method (`shared`), or from study,
+                                 experiment, layout and repeat alone (`common`: all methods and conditions share their random numbers)
     repeats                      [first, last): the repeats to run
 """
 
@@ -24,7 +26,7 @@ import pyarrow as pa
 from bezierplan import curves
 from bezierplan.exact import checker
 from bezierplan.exact.region import region
-from bezierplan.problem import Plan, Problem, planner_module
+from bezierplan.problem import Plan, Problem, planner_module, planner_settings
 
 logger = logging.getLogger(__name__)
 
@@ -68,17 +70,33 @@ def run_id(job: dict, condition: Condition, repeat: int) -> str:
     return f"{job['study']}/{job['experiment']}/{condition.name}/{job['method']}/{repeat}"
 
 
+def settings_in(job: dict, condition: Condition) -> dict[str, Any]:
+    """The settings of the job's method under a condition. Levels stand for the settings that go with them; what is varied and is no setting
+    of the planner is left out.
+    """
+    settings = dict(job["settings"])
+    for name, value in condition.values.items():
+        settings |= job["levels"][name][str(value).lower()] if name in job["levels"] else {name: value}
+    accepted = planner_settings(planner_module(job["planner"]))
+    return {name: value for name, value in settings.items() if name in accepted}
+
+
 def generator(job: dict, condition: Condition, repeat: int) -> np.random.Generator:
     """The random generator of a run, from names only, so that nothing depends on order, cores or chunks."""
-    method = "" if job["seeds"] == "shared" else f"/{job['method']}"
-    name = f"{job['study']}/{job['experiment']}/{condition.name}{method}/{repeat}"
+    layout = job["problems"][condition.problem].get("layout", "")
+    parts = {
+        "own": [condition.name, job["method"]],
+        "shared": [condition.name],
+        "common": [str(layout)],
+    }
+    name = "/".join([job["study"], job["experiment"], *parts[job["seeds"]], str(repeat)])
     return np.random.default_rng(int.from_bytes(hashlib.sha256(name.encode()).digest()))
 
 
 def run(job: dict, condition: Condition, repeat: int, problem: Problem) -> Plan:
     """The plan of one run."""
     plan = planner_module(job["planner"]).plan
-    return plan(problem, generator(job, condition, repeat), **(job["settings"] | condition.values))
+    return plan(problem, generator(job, condition, repeat), **settings_in(job, condition))
 
 
 def row(job: dict, condition: Condition, repeat: int, plan: Plan, blocked: Any) -> dict[str, Any]:
@@ -91,11 +109,11 @@ def row(job: dict, condition: Condition, repeat: int, plan: Plan, blocked: Any) 
         "experiment": job["experiment"],
         "condition": condition.name,
         "problem": condition.problem,
-        "workspace": job["problems"][condition.problem],
+        **job["problems"][condition.problem],
         "method": job["method"],
         "repeat": repeat,
         "planner": job["planner"],
-        **job["settings"],
+        **settings_in(job, condition),
         **condition.values,
         "objective": float(plan.objective),
         "length": math.nan if path is None else curves.length(path),

@@ -31,6 +31,7 @@ class Study:
     methods: dict[str, dict]
     controls: frozenset[str]
     settings: dict[str, Any]
+    levels: dict[str, dict[str, dict]]
     workspaces: dict[str, dict]
     problems: dict[str, dict]
     experiments: dict[str, dict]
@@ -54,7 +55,7 @@ class Study:
     def methods_of(self, experiment: str) -> list[str]:
         """Methods of an experiment, and behind them the controls that serve all its workspaces."""
         content = self.experiments[experiment]
-        kinds = {self.workspaces[self.problems[problem]["workspace"]]["kind"] for problem in content["problems"]}
+        kinds = {self.kind_of(problem) for problem in content["problems"]}
         return content["methods"] + [name for name in self.methods if name in self.controls and self._serves(name, kinds, content)]
 
     def _serves(self, control: str, kinds: set[str], experiment: dict) -> bool:
@@ -62,6 +63,24 @@ class Study:
         module = planner_module(self.planner(control))
         varied = set(experiment.get("vary", {})) & set(planner_settings(module))
         return kinds <= set(getattr(module, "workspaces", kinds)) and not varied
+
+    def kind_of(self, problem: str) -> str:
+        """The kind of workspace that planners meet in a problem."""
+        kind = self.workspaces[self.problems[problem]["workspace"]]["kind"]
+        return "circles" if kind == "random_circles" else kind
+
+    def problems_of(self, experiment: str, scale: str) -> dict[str, dict]:
+        """Descriptions of an experiment's problems, by name. One with layouts stands for a problem each layout and number of obstacles."""
+        described = {}
+        for name in self.experiments[experiment]["problems"]:
+            problem = self.problems[name]
+            if "layouts" not in problem:
+                described[name] = problem
+                continue
+            ends = {key: problem[key] for key in ("workspace", "start", "target")}
+            for layout, obstacles in itertools.product(range(problem["layouts"][scale]), problem["obstacles"]):
+                described[f"{name}_{layout}_{obstacles}"] = ends | {"layout": layout, "obstacles": obstacles}
+        return described
 
     def maps(self, workspaces: Iterable[str]) -> list[str]:
         """Map files of workspaces as seen from here, each once."""
@@ -91,11 +110,11 @@ def relative(path: Path) -> str:
 # What a script gets to see is a job: plain values only, so that Snakemake can tell whether one changed.
 
 
-def problems_job(study: Study, experiment: str) -> dict:
+def problems_job(study: Study, experiment: str, scale: str) -> dict:
     """What the problems of an experiment depend on, the content of map files apart."""
-    described = {name: study.problems[name] for name in study.experiments[experiment]["problems"]}
+    described = study.problems_of(experiment, scale)
     workspaces = {name: study.workspaces[name] for name in sorted({problem["workspace"] for problem in described.values()})}
-    return {"problems": described, "workspaces": workspaces}
+    return {"study": study.key, "problems": described, "workspaces": workspaces}
 
 
 def job(study: Study, experiment: str, method: str, scale: str, chunk: int) -> dict:
@@ -108,11 +127,17 @@ def job(study: Study, experiment: str, method: str, scale: str, chunk: int) -> d
         "method": method,
         "planner": study.planner(method),
         "settings": {name: value for name, value in study.resolved(method).items() if name not in content.get("vary", {})},
-        "problems": {name: study.problems[name]["workspace"] for name in content["problems"]},
+        "problems": {name: _place(problem) for name, problem in study.problems_of(experiment, scale).items()},
         "vary": content.get("vary", {}),
+        "levels": {name: level for name, level in study.levels.items() if name in content.get("vary", {})},
         "seeds": content.get("seeds", "own"),
         "repeats": [chunk * size, (chunk + 1) * size],
     }
+
+
+def _place(problem: dict) -> dict:
+    """What the runs table says of a problem's place."""
+    return {key: problem[key] for key in ("workspace", "layout", "obstacles") if key in problem}
 
 
 def chunks(study: Study, experiment: str, scale: str) -> range:

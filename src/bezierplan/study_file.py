@@ -13,9 +13,9 @@ from bezierplan import checked, metrics, problems
 from bezierplan.analysis import statistics
 from bezierplan.checked import Fault, closest
 from bezierplan.digest import PACKAGE
-from bezierplan.problem import Workspace, known_planners, planner_module, planner_settings, setting_fault
-from bezierplan.running import RUN_COLUMNS, conditions
-from bezierplan.study import Study, alternatives, methods_changed, relative, with_alternative
+from bezierplan.problem import known_planners, planner_module, planner_settings, setting_fault
+from bezierplan.running import RUN_COLUMNS, conditions, settings_in
+from bezierplan.study import Study, alternatives, job, methods_changed, relative, with_alternative
 from bezierplan.workspaces import files
 
 PUBLISHED_COLUMNS = ("metric", "statistic", "n", "unit", "value")
@@ -57,6 +57,7 @@ def _read(folder: Path) -> Study:
     experiments = checked.read(_shown(folder / "experiments.yaml"), "experiments")
     artefacts = checked.read(_shown(folder / "artefacts.yaml"), "artefacts") if (folder / "artefacts.yaml").is_file() else {}
     controls = experiments.pop("controls", {})
+    experiments.setdefault("levels", {})
     for name in controls:
         if name in experiments["methods"]:
             raise Fault(f"{relative(folder / 'experiments.yaml')}: controls: {name}: a method has this name already")
@@ -93,15 +94,13 @@ def _check(study: Study) -> None:
             raise Fault(f"{place}: settings: {setting}: no planner of this study has this setting{closest(setting, used)}")
     for name in study.methods:
         _check_settings(planner_module(study.planner(name)), study.resolved(name), f"{place}: methods: {name}")
-    workspaces = {name: _workspace(study, name, place) for name in study.workspaces}
+    for name in study.workspaces:
+        _check_workspace(study, name, place)
     for name, problem in study.problems.items():
         _known(problem["workspace"], study.workspaces, f"{place}: problems: {name}: workspace")
-        try:
-            problems.build(name, problem, workspaces[problem["workspace"]])
-        except ValueError as error:
-            raise Fault(f"{place}: problems: {name}: {error}") from None
-    for name, experiment in study.experiments.items():
-        _check_experiment(study, experiment, f"{place}: experiments: {name}")
+        _check_problem(study, name, problem, f"{place}: problems: {name}")
+    for name in study.experiments:
+        _check_experiment(study, name, f"{place}: experiments: {name}")
     place = relative(study.folder / "artefacts.yaml")
     for name, table in study.tables.items():
         _check_table(study, table, f"{place}: tables: {name}")
@@ -204,36 +203,63 @@ def _check_settings(module: Any, settings: dict[str, Any], place: str) -> None:
             raise Fault(f"{place}: settings: {error}") from None
 
 
-def _workspace(study: Study, name: str, place: str) -> Workspace:
+def _check_workspace(study: Study, name: str, place: str) -> None:
+    """A fixed workspace can be loaded; random ones are drawn with the problems."""
+    if study.workspaces[name]["kind"] != "random_circles":
+        try:
+            files.load(study.workspaces[name], study.folder)
+        except ValueError as error:
+            raise Fault(f"{place}: workspaces: {name}: {error}") from None
+
+
+def _check_problem(study: Study, name: str, problem: dict, place: str) -> None:
+    """Start and target are free, in the first layout where the workspace is drawn."""
+    home = study.workspaces[problem["workspace"]]
+    drawn = home["kind"] == "random_circles"
+    if drawn != ("layouts" in problem):
+        needed = "layouts and obstacles are needed" if drawn else "layouts and obstacles need a workspace of kind random_circles"
+        raise Fault(f"{place}: workspace: {problem['workspace']}: {needed}")
+    if drawn and max(problem["obstacles"]) > home["circles"]:
+        raise Fault(f"{place}: obstacles: {max(problem['obstacles'])}; expected at most {home['circles']}, the circles of the workspace")
+    described = problem | ({"layout": 0, "obstacles": max(problem["obstacles"])} if drawn else {})
     try:
-        return files.load(study.workspaces[name], study.folder)
+        problems.build_all({"study": study.key, "problems": {name: described}, "workspaces": {problem["workspace"]: home}}, study.folder)
     except ValueError as error:
-        raise Fault(f"{place}: workspaces: {name}: {error}") from None
+        raise Fault(f"{place}: {error}") from None
 
 
-def _check_experiment(study: Study, experiment: dict, place: str) -> None:
+def _check_experiment(study: Study, name: str, place: str) -> None:
+    experiment = study.experiments[name]
     for problem in experiment["problems"]:
         _known(problem, study.problems, f"{place}: problems")
     for method in experiment["methods"]:
         _known(method, study.methods.keys() - study.controls, f"{place}: methods")
+    accepted = {setting for method in experiment["methods"] for setting in planner_settings(planner_module(study.planner(method)))}
+    for setting, values in experiment.get("vary", {}).items():
+        _known(setting, accepted | set(study.levels), f"{place}: vary")
+        for value in values if setting in study.levels else []:
+            _known(str(value).lower(), study.levels[setting], f"{place}: vary: {setting}")
+    for method in experiment["methods"]:
         module = planner_module(study.planner(method))
         for problem in experiment["problems"]:
-            kind = study.workspaces[study.problems[problem]["workspace"]]["kind"]
+            kind = study.kind_of(problem)
             if kind not in getattr(module, "workspaces", (kind,)):
                 served = ", ".join(module.workspaces)
-                raise Fault(
-                    f"{place}: methods: {method}: its planner does not serve a workspace of kind {kind} ({problem}); it serves {served}"
-                )
-        for setting in experiment.get("vary", {}):
-            _known(setting, planner_settings(module), f"{place}: vary")
-        for condition in conditions(experiment["problems"][:1], experiment.get("vary", {})):
-            _check_settings(module, study.resolved(method) | condition.values, f"{place}: vary" if condition.values else place)
+                raise Fault(f"{place}: methods: {method}: its planner serves workspaces of kind {served}, not {kind} ({problem})")
+        described = job(study, name, method, "full", 0)
+        for condition in conditions(list(described["problems"])[:1], experiment.get("vary", {})):
+            where = f"{place}: vary: {condition.name}: {method}" if condition.values else f"{place}: methods: {method}"
+            _check_settings(module, settings_in(described, condition), where)
 
 
 def _columns(study: Study, experiment: str) -> set[str]:
     """Columns of the runs table of an experiment that a selection may name."""
     methods = study.methods_of(experiment)
-    return {"straight_line", "bound", *RUN_COLUMNS, *(setting for name in methods for setting in study.resolved(name))}
+    places = {
+        key for name in study.experiments[experiment]["problems"] for key in ("layout", "obstacles") if "layouts" in study.problems[name]
+    }
+    varied = study.experiments[experiment].get("vary", {})
+    return {"straight_line", "bound", *RUN_COLUMNS, *places, *varied, *(setting for name in methods for setting in study.resolved(name))}
 
 
 def _check_where(study: Study, experiment: str, where: dict, place: str) -> None:
@@ -243,7 +269,7 @@ def _check_where(study: Study, experiment: str, where: dict, place: str) -> None
             if column == "method":
                 _known(value, study.methods_of(experiment), f"{place}: method")
             if column == "problem":
-                _known(value, study.experiments[experiment]["problems"], f"{place}: problem")
+                _known(value, study.problems_of(experiment, "full"), f"{place}: problem")
 
 
 def _check_table(study: Study, table: dict, place: str) -> None:
@@ -287,7 +313,7 @@ def _check_published(study: Study, experiment: str, file: Path, place: str) -> N
             if "method" in row:
                 _known(row["method"], study.methods_of(experiment), f"{where}: method")
             if "problem" in row:
-                _known(row["problem"], study.experiments[experiment]["problems"], f"{where}: problem")
+                _known(row["problem"], study.problems_of(experiment, "full"), f"{where}: problem")
 
 
 def _is_number(text: str) -> bool:

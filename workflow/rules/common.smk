@@ -40,11 +40,11 @@ def artefact(wildcards):
 
 def problem_maps(wildcards):
     study = STUDIES[wildcards.study]
-    return study.maps(studies.problems_job(study, wildcards.experiment)["workspaces"])
+    return study.maps(studies.problems_job(study, wildcards.experiment, wildcards.scale)["workspaces"])
 
 
 def problems_job(wildcards):
-    return studies.problems_job(STUDIES[wildcards.study], wildcards.experiment)
+    return studies.problems_job(STUDIES[wildcards.study], wildcards.experiment, wildcards.scale)
 
 
 def study_folder(wildcards):

@@ -29,9 +29,15 @@ def read(runs: list[str], repeats: int, problems: str, bounds: str) -> Results:
     Chunks run whole, so a file may hold more repeats than are asked for. Raises ValueError, naming the run, if a feasible path is shorter
     than the shortest path: then the checker or the bound is wrong.
     """
-    table = pd.concat([parquet.read_table(file).to_pandas() for file in runs], ignore_index=True)
+    table = pd.concat([_with_times(file) for file in runs], ignore_index=True)
     table = table[table["repeat"] < repeats].reset_index(drop=True)
     return joined(table, problem_files.read(problems), parquet.read_table(bounds).to_pandas())
+
+
+def _with_times(file: str) -> pd.DataFrame:
+    """A chunk file of runs with the times that stand in a file beside it."""
+    times = parquet.read_table(PurePath(file).with_suffix(".times.parquet")).to_pandas()
+    return parquet.read_table(file).to_pandas().merge(times, on="id", validate="one_to_one")
 
 
 def joined(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFrame) -> Results:

@@ -52,7 +52,7 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
     runs = select(results.runs, spec.get("where", {})).sort_values("id")
     entries = spec["values"]
     wanted = {entry["metric"] for entry in entries} | {"gap"}
-    measured = {name: metrics.values(runs, name, results.problems) for name in sorted(wanted)}
+    measured = {name: _measured(runs, name, results, spec) for name in sorted(wanted)}
     counted = [measured[entry["metric"]].reindex(select(runs, entry.get("where", {})).index).dropna() for entry in entries]
     rows = []
     for key, group in runs.groupby(keys, dropna=False):
@@ -72,6 +72,14 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
     columns = [*keys, "runs", "share_claimed", "share_feasible", "bound", "gap", "value", "metric", "statistic", "decimals", "numbers"]
     # Of type object, so that whole numbers stay whole beside entries without decimals.
     return pd.DataFrame(rows, columns=columns).assign(decimals=pd.Series([row["decimals"] for row in rows], dtype=object))
+
+
+def _measured(runs: pd.DataFrame, metric: str, results: Results, spec: dict) -> pd.Series:
+    """A metric of each run; of one that compares a table's methods, not a number for runs of methods beside the table (`beside`)."""
+    counted = runs
+    if metrics.METRICS[metric].among_rows:
+        counted = runs[~runs["method"].isin(spec.get("beside", []))]
+    return metrics.values(counted, metric, results.problems).reindex(runs.index)
 
 
 def pivot(results: Results, spec: dict, labels: dict[str, str]) -> pd.DataFrame:

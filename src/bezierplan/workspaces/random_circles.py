@@ -1,0 +1,38 @@
+"""Circles at random places: a layout is drawn once, from its names alone, and serves all methods and experiments."""
+
+import hashlib
+import math
+
+import numpy as np
+
+from bezierplan.workspaces.circles import Circles
+
+# Draws of one circle before the layout is given up.
+MOST_DRAWS = 10_000
+
+
+def layout(description: dict, name: str, number: int, ends: list[tuple[float, float]]) -> Circles:
+    """One layout of a description with bounds, radius, circles (how many) and unit.
+
+    Centres are uniform within the bounds; a circle that covers an end, (x, y) in units, is drawn again (tharwat2018, Section 5.6). name: of
+    study and workspace; number: of the layout. Circles may overlap each other. Raises ValueError if no free place is found.
+    """
+    seed = hashlib.sha256(f"{name}/{number}".encode()).digest()
+    rng = np.random.default_rng(int.from_bytes(seed))
+    x_low, x_high, y_low, y_high = map(float, description["bounds"])
+    radius = float(description["radius"])
+    centres = []
+    for _ in range(description["circles"]):
+        for _ in range(MOST_DRAWS):
+            centre = rng.uniform((x_low, y_low), (x_high, y_high))
+            if all(math.dist(centre, end) > radius for end in ends):
+                break
+        else:
+            raise ValueError(f"radius: {radius:g}: no circle leaves start and target free in {MOST_DRAWS} draws")
+        centres.append(centre)
+    return Circles((x_low, x_high, y_low, y_high), np.array(centres), np.full(len(centres), radius), description["unit"])
+
+
+def first(circles: Circles, count: int) -> Circles:
+    """The first circles of a layout, so that layouts of different numbers are nested."""
+    return Circles(circles.bounds, circles.centres[:count], circles.radii[:count], circles.unit)
