@@ -2,7 +2,8 @@
 
 A kind of panel is a module of `bezierplan.figures` with two functions:
 
-    data(source, *, <options>) -> DataFrame         what is drawn; the source is Results, or a Workspace where nothing is planned
+    data(source, *, <options>) -> DataFrame         what is drawn; the source is Results, a Workspace where nothing is planned, the table
+                                                    of a study's function, or None where the options say all
     draw(axes, frame, scene, panel) -> str          draws the rows of its panel, labels its artists for the legend, computes no
                                                     statistics; returns the note printed below the panel's title
 
@@ -14,7 +15,8 @@ import importlib
 import math
 import re
 import string
-from types import ModuleType
+from collections.abc import Callable, Mapping
+from types import MappingProxyType, ModuleType
 from typing import Any, NamedTuple
 
 import matplotlib as mpl
@@ -28,20 +30,21 @@ from bezierplan.analysis.results import Results, select
 from bezierplan.problem import Problem, Workspace
 
 # Keys that a panel of any kind may have beside the options of its kind.
-PANEL_KEYS = ("kind", "title", "experiment", "where", "workspace")
+PANEL_KEYS = ("kind", "title", "experiment", "where", "workspace", "data")
 
 
 class Scene(NamedTuple):
     """What drawings need beside the table of what is drawn.
 
     problems: by experiment, then by name. workspaces: those without an experiment, by name. labels: how names are printed.
-    unit: name of the study's unit of length.
+    unit: name of the study's unit of length. narrow: whether panels are too narrow for more than the shortest of notes; `draw` says so.
     """
 
     problems: dict[str, dict[str, Problem]]
     workspaces: dict[str, Workspace]
     labels: dict[str, str]
     unit: str
+    narrow: bool = False
 
 
 def kind_module(name: str) -> ModuleType:
@@ -49,26 +52,38 @@ def kind_module(name: str) -> ModuleType:
     return importlib.import_module(f"bezierplan.figures.{name}")
 
 
-def data(panels: list[dict[str, Any]], results: dict[str, Results], workspaces: dict[str, Workspace]) -> pd.DataFrame:
+def data(
+    panels: list[dict[str, Any]],
+    results: dict[str, Results],
+    workspaces: dict[str, Workspace],
+    functions: Mapping[str, Callable[[], pd.DataFrame]] = MappingProxyType({}),
+) -> pd.DataFrame:
     """Everything that is drawn: the rows of all panels, the number of the panel (0, 1, ...) in the first column.
 
-    panels: kind, title, experiment with where (as in `analysis.results.select`) or workspace, and options of the kind. results: by
-    experiment. workspaces: by name. Raises ValueError for options or runs that a kind cannot draw.
+    panels: kind, title, experiment or data with where (as in `analysis.results.select`) or workspace, and options of the kind. results: by
+    experiment. workspaces: by name. functions: what `data` may name, each called once, for the table that its panels draw. Raises ValueError
+    for options or runs that a kind cannot draw.
     """
+    tables = {name: functions[name]() for name in {panel["data"] for panel in panels if "data" in panel}}
     frames = []
     for number, panel in enumerate(panels):
         options = {name: value for name, value in panel.items() if name not in PANEL_KEYS}
-        frame = kind_module(panel["kind"]).data(_source(panel, results, workspaces), **options)
+        frame = kind_module(panel["kind"]).data(_source(panel, results, workspaces, tables), **options)
         frame.insert(0, "panel", number)
         frames.append(frame)
     return pd.concat(frames, ignore_index=True)
 
 
-def _source(panel: dict[str, Any], results: dict[str, Results], workspaces: dict[str, Workspace]) -> Results | Workspace:
-    if "experiment" not in panel:
-        return workspaces[panel["workspace"]]
-    found = results[panel["experiment"]]
-    return found._replace(runs=select(found.runs, panel.get("where", {})))
+def _source(
+    panel: dict[str, Any], results: dict[str, Results], workspaces: dict[str, Workspace], tables: dict[str, pd.DataFrame]
+) -> Results | Workspace | pd.DataFrame | None:
+    """What a panel draws from."""
+    if "experiment" in panel:
+        found = results[panel["experiment"]]
+        return found._replace(runs=select(found.runs, panel.get("where", {})))
+    if "data" in panel:
+        return select(tables[panel["data"]], panel.get("where", {})).copy()
+    return workspaces[panel["workspace"]] if "workspace" in panel else None
 
 
 def write_data(frame: pd.DataFrame, file: str) -> None:
@@ -88,6 +103,7 @@ def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, column
     """
     rows = math.ceil(len(panels) / columns)
     width = style.NARROW if columns == 1 else style.WIDE
+    scene = scene._replace(narrow=width / columns < style.NARROW_PANEL)
     with mpl.rc_context(style.SETTINGS):
         figure = Figure(figsize=(width, width * rows / columns))
         grid = figure.subplots(rows, columns, squeeze=False)
@@ -103,15 +119,17 @@ def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, column
             _write_notes(grid.flat[first : first + columns], notes[first : first + columns])
         for axes in grid.flat[len(panels) :]:
             axes.set_visible(False)
+        if scene.narrow:
+            _name_axes_once(grid)
         _lay_out(figure, grid, _draw_legend(figure))
     return figure
 
 
 def _title(panel: dict[str, Any], frame: pd.DataFrame, scene: Scene) -> str:
-    """A panel's title with the method whose runs it shows, where it is one: it tells how the curve is read."""
+    """A panel's title with the method whose runs it shows, where it is one and there is room: it tells how the curve is read."""
     words = [panel["title"]] if "title" in panel else []
     methods = frame["method"].dropna().unique() if "method" in frame else []
-    if len(methods) == 1:
+    if len(methods) == 1 and not (words and scene.narrow):
         words.append(scene.labels.get(methods[0], methods[0]))
     return ", ".join(words)
 
@@ -125,6 +143,19 @@ def _write_notes(row: np.ndarray, notes: list[str]) -> None:
         axes.set_title(axes.get_title(loc="left"), loc="left", pad=top + 3)
         if note:
             axes.annotate(note, linespacing=1.1, **place)
+
+
+def _name_axes_once(grid: np.ndarray) -> None:
+    """Of panels (rows, columns) keep the names of axes at the left and at the lower edge of the sheet, where a row or a column has one name."""
+    for row in grid:
+        if len({axes.get_ylabel() for axes in row if axes.get_visible()}) == 1:
+            for axes in row[1:]:
+                axes.set_ylabel("")
+    for column in grid.T:
+        shown = [axes for axes in column if axes.get_visible()]
+        if len({axes.get_xlabel() for axes in shown}) == 1:
+            for axes in shown[:-1]:
+                axes.set_xlabel("")
 
 
 def _wrapped(text: str, width: float, size: float) -> str:

@@ -150,9 +150,11 @@ def table_job(study: Study, table: str, scale: str) -> dict:
     """What a table depends on beside runs, problems, bounds and the file of published numbers."""
     spec = study.tables[table]
     experiment = study.experiments[spec["experiment"]]
+    # The experiment's own methods unless the table chooses: controls stand in the comparison alone.
+    where = {"method": experiment["methods"]} | spec.get("where", {})
     return {
         "name": f"{study.key}/{table}",
-        "spec": spec,
+        "spec": spec | {"where": where},
         "labels": study.labels,
         "variants": {name: study.methods[name]["variant_of"] for name in experiment["methods"] if "variant_of" in study.methods[name]},
         "controls": [name for name in study.methods_of(spec["experiment"]) if name in study.controls],

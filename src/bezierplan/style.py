@@ -3,6 +3,10 @@
 Colours differ in lightness as well as in hue, and what could be mistaken in a grey print differs in line style, width or mark too.
 """
 
+from typing import Any
+
+import matplotlib as mpl
+
 # Widths of one and of two text columns of a journal, in inches.
 NARROW, WIDE = 85 / 25.4, 174 / 25.4
 
@@ -46,10 +50,47 @@ OURS = {"color": BLUE, "linestyle": "-", "linewidth": 1.3}
 RUN_SHOWN = {"color": RED, "linestyle": "-", "linewidth": 1.8}
 BOUND = {"color": BLACK, "linestyle": (0, (1, 1.2)), "linewidth": 1.0}
 
+# Things side by side, by name: colours of Okabe and Ito and others that differ from them in lightness, each with a line style of its own
+# among those near it in lightness.
+_COLOURS = ("#000000", "#D55E00", "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#6A3D9A", "#7F7F7F", "#8C510A")
+_DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)), (0, (6, 1.5, 1, 1.5)), (0, (2.5, 1)))
+_MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p")
+# Light to dark in the order of the bars, so that neighbours differ in a grey print as well.
+_FILLS = ("#DCE6F2", "#8FB0D6", "#F0C27B", "#D55E00", "#0072B2", "#004488", "#7F7F7F", "#333333")
+_HATCHES = ("", "////", "", "\\\\\\\\", "", "....", "xxxx", "")
+# Numbers take their colours from a scale, the higher the lighter, without its lightest end, which paper swallows.
+_SCALE, _LIGHTEST = "viridis", 0.85
+
+BOX = {"facecolor": LIGHT_BLUE, "edgecolor": BLUE, "linewidth": 0.7}
+PUBLISHED_MARK = {"color": BLACK, "linestyle": "", "marker": "D", "markersize": 4.5, "markerfacecolor": "#FFFFFF", "markeredgewidth": 0.9}
+
 FREE, OCCUPIED, SURPLUS = "#FFFFFF", "0.66", "0.94"
 CELL_LINE = "0.85"
 SURPLUS_HATCH = {"hatch": "/////", "hatchcolor": "0.7"}
 
+# A panel narrower than this, in inches, shows the shortest of notes, and names its axes only at the edge of the sheet.
+NARROW_PANEL = 2.0
+
 # Height of a panel with two unlike axes, as a share of its width, and room between panels in inches.
 PANEL_HEIGHT = 0.62
 GAP = 0.1
+
+
+def lines(values: list[Any]) -> list[dict[str, Any]]:
+    """Looks of lines for values side by side, one each: for numbers a scale of colours, for names unlike colours; with dashes and marks."""
+    if len(values) > 1 and not isinstance(values[0], str):
+        scale = mpl.colormaps[_SCALE]
+        colours = [mpl.colors.to_hex(scale(_LIGHTEST * i / (len(values) - 1))) for i in range(len(values))]
+    else:
+        colours = [_COLOURS[i % len(_COLOURS)] for i in range(len(values))]
+    return [
+        {"color": colour, "linestyle": _DASHES[i % len(_DASHES)], "marker": _MARKERS[i % len(_MARKERS)], "linewidth": 1.1, "markersize": 3.5}
+        for i, colour in enumerate(colours)
+    ]
+
+
+def bars(count: int) -> list[dict[str, Any]]:
+    """Looks of so many bars side by side."""
+    return [
+        {"facecolor": _FILLS[i % len(_FILLS)], "hatch": _HATCHES[i % len(_HATCHES)], "edgecolor": BLACK, "linewidth": 0.5} for i in range(count)
+    ]

@@ -11,7 +11,7 @@ with log.job(snakemake.log[0]):
     from bezierplan.analysis import audit
 
     job, files = snakemake.params.job, snakemake.input
-    published = {Path(file).stem: pd.read_csv(file) for file in files.published}
+    published = {Path(file).stem: audit.read_published(file) for file in files.published}
     bounds = {name: pd.read_parquet(file).set_index("problem") for name, file in zip(job["experiments"], files.bounds, strict=True)}
     of_tables = {table: bounds[experiment] for table, experiment in job["tables"].items()}
     rows = audit.below_bound({table: published[table] for table in of_tables}, of_tables)

@@ -1,5 +1,6 @@
-"""The path of one picked run in its workspace, with its control points and the shortest path that there is."""
+"""A path with its control points: of one picked run, in its workspace beside the shortest path that there is, or of given control points."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,9 @@ from bezierplan.problem import Path
 
 # About as many straight steps are drawn for a curve; the ends of its pieces are always among them.
 _STEPS = 600
+
+# Marks in a narrow panel are so much smaller.
+_NARROW_MARK = 0.6
 
 # In the order of the legend.
 _LOOK = {
@@ -70,27 +74,52 @@ def feasible_note(frame: pd.DataFrame) -> str:
     return f"{row['feasible_runs']:g} of {row['runs']:g} runs are feasible"
 
 
-def data(results: Results, *, pick: dict[str, Any]) -> pd.DataFrame:
-    """What is drawn of a run: one row a point, in the order in which points are joined.
+def data(
+    results: Results | None, *, pick: dict[str, Any] | None = None, explicit: dict[str, Any] | None = None, view: Sequence[float] | None = None
+) -> pd.DataFrame:
+    """What is drawn of a path: one row a point, in the order in which points are joined.
 
-    Columns: those of `picked`; part (start, target, bound, hull, control, path, and collision, the first one of a path that has one), x, y
-    (in the workspace's unit). Without a run to show, start and target only.
+    Columns: those of `picked`, for a run; part (start, target, bound, hull, control, path, and collision, the first one of a path that has
+    one), x, y (in the workspace's unit). Without a run to show, start and target only. A hull is of curves only that lie within it; control
+    points that are tangents are left out.
 
-    pick: the run, as in `analysis.results.pick`. Raises ValueError unless all runs are of one problem and one method.
+    pick: the run, as in `analysis.results.pick`. explicit: {curve, points}, a path without a run. view: what is seen of the workspace, as
+    its bounds; all rows are here nevertheless. Raises ValueError unless either pick or explicit is given, if all runs are not of one problem
+    and one method, and if a curve cannot have such points.
     """
+    if (pick is None) == (explicit is None):
+        raise ValueError("a panel of kind paths needs either pick or explicit")
+    if explicit is not None:
+        path = Path(explicit["curve"], np.array(explicit["points"], dtype=float))
+        start, target = path.points[list(curves.ends(path.curve))]
+        return _table({"start": [start], "target": [target]} | _drawn(path))
     run, names = picked(results, pick)
     problem = results.problems[names["problem"]]
     drawn = {"start": [problem.start], "target": [problem.target]}
     path = None if run is None else path_of(run)
     if path is not None:
-        hull = shapely.MultiPoint(path.points).convex_hull
         drawn["bound"] = np.reshape(results.bounds.loc[problem.name, "bound_path"], (-1, 2))
-        drawn |= {"hull": shapely.get_coordinates(hull), "control": path.points, "path": _steps(path)}
+        drawn |= _drawn(path)
         if not run["feasible"]:
             drawn["collision"] = [curves.point_at(path, run["collision_at"])]
-    points = [pd.DataFrame(np.asarray(xy, dtype=float), columns=["x", "y"]).assign(part=part) for part, xy in drawn.items()]
-    frame = pd.concat(points, ignore_index=True).assign(**names)
+    frame = _table(drawn).assign(**names)
     return frame[[*names, "part", "x", "y"]]
+
+
+def _drawn(path: Path) -> dict[str, np.ndarray]:
+    """Points (n, 2) of a path by the part that they make."""
+    drawn = {}
+    if path.curve in curves.B_SPLINES:
+        drawn["hull"] = shapely.get_coordinates(shapely.MultiPoint(path.points).convex_hull)
+    if path.curve != "ferguson":
+        drawn["control"] = path.points
+    return drawn | {"path": _steps(path)}
+
+
+def _table(drawn: dict[str, Sequence]) -> pd.DataFrame:
+    """Points (n, 2) by part as rows."""
+    points = [pd.DataFrame(np.asarray(xy, dtype=float), columns=["x", "y"]).assign(part=part) for part, xy in drawn.items()]
+    return pd.concat(points, ignore_index=True)[["part", "x", "y"]]
 
 
 def _steps(path: Path) -> np.ndarray:
@@ -101,17 +130,40 @@ def _steps(path: Path) -> np.ndarray:
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the rows of `data` in their workspace; returns the note below the panel's title."""
-    row = frame.iloc[0]
-    workspace = scene.problems[panel["experiment"]][row["problem"]].workspace
-    workspaces.shade(axes, workspaces.parts(workspace))
-    workspaces.scale(axes, workspace.unit)
-    drawn = {part: frame.loc[frame["part"] == part, ["x", "y"]] for part in _LOOK}
-    for part, points in drawn.items():
+    """Draw the rows of `data`, in their workspace if they have one; returns the note below the panel's title."""
+    if "explicit" in panel:
+        workspaces.scale(axes, scene.unit)
+        axes.set_aspect("equal")
+        axes.margins(0.06)
+    else:
+        workspace = scene.problems[panel["experiment"]][frame["problem"].iloc[0]].workspace
+        workspaces.shade(axes, workspaces.parts(workspace))
+        workspaces.scale(axes, workspace.unit)
+    _draw_parts(axes, frame, narrow=scene.narrow, clip="view" in panel)
+    if "view" in panel:
+        axes.axis(panel["view"])
+    return "" if "explicit" in panel else _note(frame, workspace.unit, scene.narrow)
+
+
+def _draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> None:
+    """Draw the points of each part; what lies beyond the panel only if they are not clipped."""
+    for part, look in _LOOK.items():
+        points = frame.loc[frame["part"] == part, ["x", "y"]]
         if not points.empty:
-            axes.plot(points["x"], points["y"], clip_on=False, **_LOOK[part])
-    control = drawn["control"]
-    if control.empty:
+            size = {"markersize": _NARROW_MARK * look["markersize"]} if narrow and "markersize" in look else {}
+            axes.plot(points["x"], points["y"], clip_on=clip, **(look | size))
+
+
+def _note(frame: pd.DataFrame, unit: str, narrow: bool) -> str:
+    """Which run it is, and its length; a narrow panel has room for no more."""
+    row = frame.iloc[0]
+    if not (frame["part"] == "path").any():
         return run_note(frame, "no path")
-    length = f"length {row['length']:.1f} {workspace.unit}"
-    return run_note(frame, f"{length}, {len(control.drop_duplicates())} of {len(control)} control points distinct", feasible_note(frame))
+    if narrow:
+        repeat = row["run"].rpartition("/")[2]
+        return f"repeat {repeat}{'' if row['feasible'] else ' (not feasible)'}\nlength {row['length']:.2f} {unit}"
+    control = frame.loc[frame["part"] == "control", ["x", "y"]]
+    words = [f"length {row['length']:.1f} {unit}"]
+    if not control.empty:
+        words.append(f"{len(control.drop_duplicates())} of {len(control)} control points distinct")
+    return run_note(frame, ", ".join(words), feasible_note(frame))

@@ -1,0 +1,62 @@
+"""Grouped bars of a metric's statistic with its interval, the share of feasible runs below each bar, and the shortest path as a line."""
+
+from typing import Any, Literal
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+
+from bezierplan import style
+from bezierplan.analysis.results import Results
+from bezierplan.figures.lines import axis_label, column_name, in_order, printed, summary
+
+# Metrics that the exact shortest length bounds from below.
+_BOUNDED = ("length", "objective")
+
+# Of the room of a group of bars, what the bars take.
+_FILLED = 0.84
+
+
+def data(results: Results, *, x: str, hue: str, metric: str, statistic: Literal["mean", "median", "share"] = "mean") -> pd.DataFrame:
+    """One row a bar; columns: those of `lines.summary`, with x and hue by their own names, and bound.
+
+    bound is the mean exact shortest length of the problems of a group of bars, over all their runs, in units; empty for metrics that it
+    does not bound.
+
+    x: a column, a group of bars for each of its values. hue: a column, a bar in each group for each of its values. Raises KeyError for an
+    unknown metric or column.
+    """
+    frame = summary(results, [x, hue], metric, statistic)
+    bounds = results.runs.sort_values("id").groupby(x)["bound"].mean()
+    return frame.assign(bound=frame[x].map(bounds) if metric in _BOUNDED else np.nan)
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data`; returns the note below the panel's title."""
+    x, hue = panel["x"], panel["hue"]
+    groups, bars = in_order(frame[x], panel), in_order(frame[hue], panel)
+    width = _FILLED / len(bars)
+    for number, (bar, look) in enumerate(zip(bars, style.bars(len(bars)))):
+        own = frame[frame[hue] == bar]
+        at = own[x].map(groups.index).to_numpy() + (number - (len(bars) - 1) / 2) * width
+        _draw_bars(axes, own, at, width, look | {"label": printed(bar, hue, scene.labels)})
+    for at, group in enumerate(groups):
+        bound = frame.loc[frame[x] == group, "bound"].iloc[0]
+        if np.isfinite(bound):
+            axes.plot([at - 0.5, at + 0.5], [bound, bound], label="shortest path possible", zorder=4, **style.BOUND)
+    axes.set_xlim(-0.5, len(groups) - 0.5)
+    axes.set_xticks(range(len(groups)), [scene.labels.get(group, group) if isinstance(group, str) else f"{group:g}" for group in groups])
+    axes.tick_params(axis="x", length=0, pad=22)  # below the shares
+    axes.set_xlabel(f"{column_name(x, scene.labels)} (-)")
+    axes.set_ylabel(axis_label(panel["metric"], scene, panel.get("statistic", "mean")))
+    axes.grid(visible=True, axis="y")
+    return f"feasible runs of {frame['runs'].min():g} to {frame['runs'].max():g} below each bar"
+
+
+def _draw_bars(axes: Axes, frame: pd.DataFrame, at: np.ndarray, width: float, look: dict) -> None:
+    """Bars at places (n,) with their intervals, and below each the share of feasible runs."""
+    axes.bar(at, frame["value"], width, zorder=2, **look)
+    axes.vlines(at, frame["low95"], frame["high95"], color=style.BLACK, linewidth=0.8, zorder=3)
+    for place, runs, feasible in zip(at, frame["runs"], frame["feasible_runs"]):
+        below = {"xycoords": ("data", "axes fraction"), "xytext": (0, -2), "textcoords": "offset points"}
+        axes.annotate(f"{100 * feasible / runs:.0f} %", (place, 0), rotation=90, ha="center", va="top", **below)

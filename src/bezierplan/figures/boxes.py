@@ -1,0 +1,89 @@
+"""Boxes of a metric, one a method or value of a factor, beside the published means."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+
+from bezierplan import metrics, style
+from bezierplan.analysis.results import Results
+from bezierplan.figures.lines import axis_label, constants, in_order, printed, runs_note
+
+# Whiskers end at the last value within so many interquartile ranges of the box.
+_REACH = 1.5
+
+# How a box is called here and in `Axes.bxp`.
+_PARTS = {"low": "whislo", "quartile1": "q1", "median": "med", "quartile3": "q3", "high": "whishi"}
+
+
+def data(results: Results, *, metric: str, by: str = "method") -> pd.DataFrame:
+    """One row a part of a box; columns: those of `lines.constants`, `by` by its own name, runs and feasible_runs (counts), part, value.
+
+    Parts: low and high (where the whiskers end), quartile1, median, quartile3; beyond, a value beyond the whiskers; mean; published, the
+    mean that the paper prints. Values are in the metric's unit, of the runs that have the metric. A group without any has no rows.
+
+    by: a column of the runs table. Raises KeyError for an unknown metric or column.
+    """
+    runs = results.runs.assign(value=metrics.values(results.runs, metric, results.problems))
+    rows = []
+    for group, own in runs.groupby(by):
+        named = constants(runs) | {by: group, "runs": len(own), "feasible_runs": int(own["feasible"].sum())}
+        parts = _box(np.sort(own["value"].dropna().to_numpy())) + [("published", mean) for mean in _published_means(results, own, metric)]
+        rows += [named | {"part": part, "value": value} for part, value in parts]
+    return pd.DataFrame(rows)
+
+
+def _box(values: np.ndarray) -> list[tuple[str, float]]:
+    """Parts of the box of sorted values (n,) and where they lie; none without values."""
+    if not len(values):
+        return []
+    first, median, third = np.quantile(values, [0.25, 0.5, 0.75])
+    reach = _REACH * (third - first)
+    inside = (values >= first - reach) & (values <= third + reach)
+    low, high = values[inside][[0, -1]]
+    box = [("low", low), ("quartile1", first), ("median", median), ("quartile3", third), ("high", high), ("mean", values.mean())]
+    return box + [("beyond", value) for value in values[~inside]]
+
+
+def _published_means(results: Results, runs: pd.DataFrame, metric: str) -> list[float]:
+    """Means of a metric that the paper prints for the problem, method and settings of runs; a row's empty keys fit all runs."""
+    found = results.published
+    if found is None:
+        return []
+    found = found[(found["metric"] == metric) & (found["statistic"] == "mean")]
+    for column in found.columns.intersection(runs.columns).difference(["value"]):
+        found = found[found[column].isna() | found[column].isin(runs[column])]
+    return found["value"].tolist()
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data`, the first box on top; returns the note below the panel's title."""
+    by = panel.get("by", "method")
+    groups = in_order(frame[by], panel)
+    own = [frame[frame[by] == group].groupby("part")["value"].apply(list).to_dict() for group in groups]
+    _draw_boxes(axes, own)
+    marks = {
+        "beyond": {"color": style.BLUE, "marker": ".", "markersize": 1.6, "label": f"beyond {_REACH} interquartile ranges", "zorder": 1},
+        "mean": {"color": style.RED, "marker": "x", "markersize": 4, "label": "mean", "zorder": 4},
+        "published": {**style.PUBLISHED_MARK, "label": "published mean", "zorder": 5},
+    }
+    for part, look in marks.items():
+        points = [(value, height) for height, parts in enumerate(own) for value in parts.get(part, [])]
+        if points:
+            axes.plot(*zip(*points), **({"linestyle": ""} | look))
+    axes.set_ylim(len(groups) - 0.4, -0.6)
+    axes.set_yticks(range(len(groups)), [printed(group, by, scene.labels) for group in groups])
+    axes.tick_params(axis="y", length=0)
+    axes.set_xlabel(axis_label(panel["metric"], scene))
+    axes.grid(visible=True, axis="x")
+    return runs_note(frame, "box", "method" if by == "method" else "row")
+
+
+def _draw_boxes(axes: Axes, groups: list[dict[str, list[float]]]) -> None:
+    """One box a group of values by part, at heights 0, 1, ..."""
+    there = {height: parts for height, parts in enumerate(groups) if "median" in parts}
+    boxes = [{name: parts[part][0] for part, name in _PARTS.items()} for parts in there.values()]
+    thin = {"color": style.BLUE, "linewidth": 0.7}
+    looks = {"boxprops": style.BOX, "whiskerprops": thin, "capprops": thin, "medianprops": {"color": style.BLUE, "linewidth": 1.6}}
+    axes.bxp(boxes, list(there), orientation="horizontal", widths=0.6, patch_artist=True, showfliers=False, manage_ticks=False, **looks)

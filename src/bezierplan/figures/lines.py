@@ -1,0 +1,142 @@
+"""A metric's statistic against a numeric factor, with its interval and single repeats; or two columns of a table against each other."""
+
+from collections.abc import Sequence
+from typing import Any, Literal
+
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+
+from bezierplan import metrics, style
+from bezierplan.analysis import statistics
+from bezierplan.analysis.results import Results
+
+# Of more points than this only the points are drawn: lines between values that jump would cover the panel.
+_MOST_JOINED = 100
+
+
+def data(
+    source: Results | pd.DataFrame,
+    *,
+    x: str,
+    metric: str,
+    statistic: Literal["mean", "median", "share"] = "mean",
+    hue: str | None = None,
+    repeats: Sequence[int] = (),
+) -> pd.DataFrame:
+    """One row a point; columns: hue (if one is given) and x, both by their own names; part (statistic, repeat or value), value.
+
+    Of runs: the columns of `summary` for the statistic, and repeat, the number of a single run. Of a table: the column `metric` as it is.
+
+    x: a numeric column. hue: a column, a line for each of its values. repeats: which single runs are drawn besides. Raises ValueError if a
+    single repeat has several runs at one place, and KeyError for an unknown metric or column.
+    """
+    keys = [x] if hue is None else [hue, x]
+    if isinstance(source, pd.DataFrame):
+        return source[[*keys, metric]].rename(columns={metric: "value"}).assign(part="value")
+    frame = summary(source, keys, metric, statistic).assign(part="statistic")
+    single = source.runs[source.runs["repeat"].isin(repeats)]
+    if single.duplicated([*keys, "repeat"]).any():
+        raise ValueError(f"repeats: several runs of one repeat have equal {' and '.join(keys)}; see the panel's `where`")
+    values = metrics.values(source.runs, metric, source.problems).loc[single.index]
+    thin = single[[*keys, "repeat"]].assign(value=values, part="repeat", **constants(source.runs))
+    return pd.concat([frame, thin.sort_values(["repeat", *keys])], ignore_index=True)
+
+
+def summary(results: Results, keys: list[str], metric: str, statistic: str) -> pd.DataFrame:
+    """A statistic of a metric for each group of runs with equal keys.
+
+    Columns: those of `constants`; the keys; runs and feasible_runs (counts), n (runs that have the metric), value, low95 and high95 (its
+    95 % bootstrap interval), in the metric's unit.
+    """
+    runs = results.runs.assign(value=metrics.values(results.runs, metric, results.problems))
+    rows = []
+    for key, own in runs.groupby(keys):
+        # Sorted, so that nothing depends on the order in which chunks were read.
+        numbers = np.sort(own["value"].dropna().to_numpy())
+        named = dict(zip(keys, key))
+        name = "/".join([metric, statistic, *(f"{column}={value}" for column, value in named.items())])
+        low, high = statistics.interval(statistic, numbers, statistics.generator(name))
+        counts = {"runs": len(own), "feasible_runs": int(own["feasible"].sum()), "n": len(numbers)}
+        rows.append(constants(runs) | named | counts | {"value": statistics.statistic(statistic, numbers), "low95": low, "high95": high})
+    return pd.DataFrame(rows)
+
+
+def constants(runs: pd.DataFrame) -> dict[str, Any]:
+    """Problem and method of runs, where they are of one only."""
+    return {column: runs[column].iloc[0] for column in ("problem", "method") if runs[column].nunique() == 1}
+
+
+def in_order(values: pd.Series, panel: dict) -> list[Any]:
+    """The different values of a column: those that the panel's `where` lists in its order, then the others sorted."""
+    wanted = panel.get("where", {}).get(values.name)
+    listed = wanted if isinstance(wanted, list) else []
+    present = values.dropna().unique().tolist()
+    return [value for value in listed if value in present] + sorted(set(present) - set(listed))
+
+
+def printed(value: Any, column: str, labels: dict[str, str]) -> str:
+    """How a value of a column is printed: a name by its label, a number behind the column's."""
+    return labels.get(value, value) if isinstance(value, str) else f"{column_name(column, labels)} = {value:g}"
+
+
+def column_name(column: str, labels: dict[str, str]) -> str:
+    """How a column or a metric is printed."""
+    return labels.get(column, column.replace("_", " "))
+
+
+def axis_label(column: str, scene: Any, statistic: str = "") -> str:
+    """Name and unit of what an axis shows; a column that is no metric counts something, or has no unit."""
+    unit = metrics.unit(column, scene.unit) if column in metrics.METRICS else "-"
+    return f"{statistic} {column_name(column, scene.labels)} ({unit})".lstrip()
+
+
+def runs_note(frame: pd.DataFrame, statistic: str, where: str) -> str:
+    """How many runs a statistic is of, from the columns of `summary`, and which share of them is feasible."""
+    fewest, most = frame["runs"].min(), frame["runs"].max()
+    share = 100 * frame["feasible_runs"] / frame["runs"]
+    low, high = f"{share.min():.0f}", f"{share.max():.0f}"
+    counted = f"{fewest:g}" if fewest == most else f"{fewest:g} to {most:g}"
+    return f"{statistic} of {counted} runs a {where}, {low if low == high else f'{low} to {high}'} % of them feasible"
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data`; returns the note below the panel's title."""
+    x, hue = panel["x"], panel.get("hue")
+    of_runs = "experiment" in panel
+    statistic = panel.get("statistic", "mean") if of_runs else ""
+    groups = [None] if hue is None else in_order(frame[hue], panel)
+    for group, look in zip(groups, style.lines(groups)):
+        own = frame if hue is None else frame[frame[hue] == group]
+        label = statistic if hue is None else printed(group, hue, scene.labels)
+        if of_runs:
+            _draw_statistic(axes, own[own["part"] == "statistic"], x, look | {"label": label})
+            _draw_repeats(axes, own[own["part"] == "repeat"], x, None if hue is None else look["color"])
+        else:
+            axes.plot(own[x], own["value"], label=label or None, **_joined(look, len(own)))
+    axes.set_xlabel(axis_label(x, scene))
+    axes.set_ylabel(axis_label(panel["metric"], scene, statistic))
+    axes.grid(visible=True)
+    return runs_note(frame[frame["part"] == "statistic"], statistic, "point") if of_runs else ""
+
+
+def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict) -> None:
+    """A line with marks in a band, the interval of its points."""
+    band = {"color": look["color"], "alpha": 0.22, "linewidth": 0, "zorder": 1.5}
+    axes.fill_between(frame[x], frame["low95"], frame["high95"], **band)
+    axes.plot(frame[x], frame["value"], zorder=3, **look)
+
+
+def _draw_repeats(axes: Axes, frame: pd.DataFrame, x: str, colour: str | None) -> None:
+    """A thin line for each single repeat; without a colour each gets one of its own and a name."""
+    repeats = frame["repeat"].unique()
+    looks = style.lines([str(repeat) for repeat in range(len(repeats) + 1)])[1:]  # the first look is the statistic's
+    for repeat, look in zip(repeats, looks):
+        own = frame[frame["repeat"] == repeat]
+        thin = look | {"linewidth": 0.6, "markersize": 2.2, "zorder": 2.5}
+        axes.plot(own[x], own["value"], **(thin | ({"color": colour} if colour else {"label": f"repeat {repeat:g}"})))
+
+
+def _joined(look: dict, points: int) -> dict:
+    """The look of a line through so many points of a table."""
+    return look | ({"marker": ""} if points <= _MOST_JOINED else {"linestyle": "", "marker": ".", "markersize": 1.2})

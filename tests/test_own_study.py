@@ -1,0 +1,130 @@
+"""A study of a reader's own, outside of the repository: a map, a planner, a table, a figure, claims, and a wrong published number."""
+
+import math
+import subprocess
+import sys
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+PLANNER = """
+import numpy as np
+from bezierplan import curves
+from bezierplan.problem import Path, Plan
+
+workspaces = ("circles",)
+
+def plan(problem, rng, *, bend: float):
+    middle = (np.array(problem.start) + problem.target) / 2 + [0, bend + rng.normal(0, 0.01)]
+    path = Path("bezier", np.array([problem.start, middle, problem.target]))
+    length = curves.length(path)
+    return Plan(path, length, claimed_feasible=True, evaluations=1, history=np.array([length]), stop="one", extra={})
+"""
+
+EXPERIMENTS = """
+title: A bend round a disc
+methods:
+  low: {planner: bend.py, settings: {bend: 3.0}}
+  high: {planner: bend.py, settings: {bend: 5.0}}
+  line: {planner: straight_line}
+controls:
+  shortest_path: {planner: shortest_path}
+settings: {}
+workspaces:
+  disc: {kind: circles, unit: m, bounds: [-5, 5, -5, 5], circles: [[0, 0, 1]]}
+problems:
+  across: {workspace: disc, start: [-4, 0], target: [4, 0]}
+experiments:
+  bends:
+    problems: [across]
+    methods: [low, high, line]
+    repeats: {smoke: 2, full: 30, extended: 60}
+    chunk: {smoke: 2, full: 30, extended: 30}
+"""
+
+ARTEFACTS = """
+tables:
+  lengths:
+    {title: Lengths, kind: pivot, experiment: bends, published: lengths.csv, index: [method], columns: [value], values: [
+      {metric: length, statistic: mean, label: length, decimals: 2}, {metric: feasible, statistic: share, label: feasible, decimals: 2}]}
+figures:
+  paths: {title: One bend, columns: 1, panels: [{kind: paths, experiment: bends, where: {method: low}, pick: {lowest: length}}]}
+"""
+
+CLAIMS = """
+claims:
+  - id: C1
+    place: invented
+    statement: The low bend is shorter than the high one.
+    artefact: lengths
+    checks: [{test: lower, experiment: bends, metric: length, groups: [low], than: [high], direction: lower, margin: 0.01}]
+  - id: C2
+    place: invented
+    statement: The high bend is shorter than the low one, which is false.
+    artefact: lengths
+    checks: [{test: lower, experiment: bends, metric: length, groups: [high], than: [low], direction: lower, margin: 0.01}]
+"""
+
+# The first is the length of the parabola of height 1.5 over a base of 8; the second is shorter than any path round the disc.
+LOW = math.sqrt(64 + 16 * 1.5**2) / 2 + 64 / (8 * 1.5) * math.asinh(4 * 1.5 / 8)
+PUBLISHED = f"problem,method,metric,statistic,n,unit,value\nacross,low,length,mean,30,m,{LOW:.2f}\nacross,high,length,mean,30,m,8.00\n"
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    """The folder of results of the invented study, made from a working folder that holds nothing else."""
+    folder = tmp_path_factory.mktemp("own")
+    study = folder / "bends"
+    (study / "published").mkdir(parents=True)
+    for name, text in {
+        "bend.py": PLANNER,
+        "experiments.yaml": EXPERIMENTS,
+        "artefacts.yaml": ARTEFACTS,
+        "claims.yaml": CLAIMS,
+        "published/lengths.csv": PUBLISHED,
+    }.items():
+        (study / name).write_text(text)
+    command = [sys.executable, "-m", "snakemake", "-s", str(ROOT / "Snakefile"), "--workflow-profile", "none", "--cores", "2"]
+    done = subprocess.run([*command, "--config", f"studies=[{study}]"], cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return folder / "results" / "full" / "bends"
+
+
+def test_own_planner_stands_in_the_table_and_the_comparison(results):
+    table = pd.read_csv(results / "tables" / "lengths.csv").set_index("method")
+    assert list(table.index) == ["low", "high", "line"]
+    assert table.loc["line", "feasible"] == 0
+    assert pd.isna(table.loc["line", "length"])
+    assert table.loc["low", "feasible"] == 1
+    comparison = pd.read_csv(results / "tables" / "lengths.comparison.csv")
+    assert "shortest_path" in set(comparison["method"])
+
+
+def test_wrong_published_number_is_flagged(results):
+    comparison = pd.read_csv(results / "tables" / "lengths.comparison.csv").query("metric == 'length'").set_index("method")
+    assert comparison.loc["low", "reproduced"]
+    assert not comparison.loc["high", "reproduced"]
+
+
+def test_published_length_below_the_bound_is_audited(results):
+    audit = pd.read_csv(results / "audit.csv")
+    assert audit.set_index("place")["consistent"].to_dict() == {"problem=across, method=low": True, "problem=across, method=high": False}
+
+
+def test_claim_that_is_false_is_contradicted_and_its_contrary_supported(results):
+    claims = pd.read_csv(results / "claims.csv").set_index("id")
+    assert claims.loc["C1", "verdict"] == "supported"
+    assert claims.loc["C2", "verdict"] == "contradicted"
+
+
+def test_figure_shows_the_own_planner(results):
+    assert {"low"} == set(pd.read_csv(results / "figures" / "paths.csv")["method"])
+    assert (results / "figures" / "paths.svg").stat().st_size > 1000
+
+
+def test_summary_counts_the_study(results):
+    summary = (results.parent / "summary.md").read_text()
+    assert "| bends | 2 | 1 | 1 | 0 | 1 | 0 | 0 | 0 |" in summary
