@@ -117,6 +117,13 @@ def test_no_free_gene_leaves_the_straight_line(curve):
     assert found.evaluations == 1
 
 
+def test_start_and_target_need_not_be_centres_of_cells():
+    anywhere = Problem("test", OPEN, (1.0, 2.5), (159.0, 30.0))
+    found = binary_genetic.plan(anywhere, np.random.default_rng(0), **SETTINGS)
+    assert np.array_equal(found.path.points[[0, -1]], [anywhere.start, anywhere.target])
+    assert found.objective == pytest.approx(reference(found.path, OPEN, 601)[0])
+
+
 def test_no_generation_leaves_the_best_of_the_first():
     assert plan(generations=0).objective == plan(generations=5).history[0]
 

@@ -1,4 +1,4 @@
-"""The command line: `python -m bezierplan list`, `replay RUN`, `digest FOLDER` and `outcome`."""
+"""The command line: `python -m bezierplan list`, `replay RUN`, `digest FOLDER`, `check-planner FILE`, `outcome`."""
 
 import argparse
 import sys
@@ -18,6 +18,12 @@ def main(words: list[str]) -> None:
     replayer = commands.add_parser("replay", help="one run again, bit-equal, with its picture")
     replayer.add_argument("run", help="its name: study/experiment/condition/method/repeat")
     replayer.set_defaults(do=lambda given: replay_run(given.run))
+    contract = commands.add_parser("check-planner", help="the contract tests of a planner, on small and degenerate problems")
+    contract.add_argument("planner", help="its name, or the path of its file")
+    contract.add_argument(
+        "--settings", default="{}", metavar="'{NAME: VALUE, ...}'", help="a value for each of its settings, as in a study"
+    )
+    contract.set_defaults(do=lambda given: check_planner(given.planner, given.settings))
     keeper = commands.add_parser("outcome", help="copy the outcome of results/full to docs/outcome and into the README")
     keeper.set_defaults(do=lambda given: keep_outcome())
     given = parser.parse_args(words)
@@ -62,6 +68,23 @@ def replay_run(name: str) -> None:
     picture = Path("results/replay") / f"{name}.svg"
     replay.draw(made, studies[run["study"]], picture)
     print(f"{'picture':18}{picture}")
+
+
+def check_planner(planner: str, text: str) -> None:
+    """Print what the contract tests find on a planner, with the settings of a YAML text; end with 1 if a fact failed. Raises Fault."""
+    from bezierplan import checked, contract
+
+    settings = checked.parse(text, "--settings")
+    if not isinstance(settings, dict):
+        raise checked.Fault(f"--settings: {text}: expected '{{name: value, ...}}'")
+    failed = total = 0
+    for finding in contract.check_planner(planner, settings):
+        print(finding, flush=True)
+        total += 1
+        failed += not finding.passed
+    print(f"{total - failed} of {total} facts hold")
+    if failed:
+        sys.exit(1)
 
 
 def keep_outcome() -> None:

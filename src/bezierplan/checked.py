@@ -46,14 +46,21 @@ _Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
 def read(file: Path, schema: str) -> dict[str, Any]:
     """The content of a YAML file that fits the schema of that name. Raises Fault."""
     try:
-        content = yaml.load(file.read_text(encoding="utf-8"), _Loader)
+        text = file.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise Fault(f"{file}: cannot be read ({type(error).__name__})") from None
-    except yaml.MarkedYAMLError as error:
-        line = f"line {error.problem_mark.line + 1}: " if error.problem_mark else ""
-        raise Fault(f"{file}: {line}{error.problem}") from None
+    content = parse(text, str(file))
     check(content, schema, str(file))
     return content
+
+
+def parse(text: str, place: str) -> Any:
+    """The content of YAML text, read strictly. Raises Fault, beginning with a place."""
+    try:
+        return yaml.load(text, _Loader)
+    except yaml.MarkedYAMLError as error:
+        line = f"line {error.problem_mark.line + 1}: " if error.problem_mark else ""
+        raise Fault(f"{place}: {line}{error.problem}") from None
 
 
 def check(content: Any, schema: str, place: str) -> None:

@@ -61,8 +61,8 @@ def data(
     """Everything that is drawn: the rows of all panels, the number of the panel (0, 1, ...) in the first column.
 
     panels: kind, title, experiment or data with where (as in `analysis.results.select`) or workspace, and options of the kind. results: by
-    experiment. workspaces: by name. functions: what `data` may name, each called once, for the table that its panels draw. Raises ValueError
-    for options or runs that a kind cannot draw.
+    experiment. workspaces: by name. functions: what `data` may name; each is called once, for the table that its panels draw. Raises
+    ValueError for options or runs that a kind cannot draw.
     """
     tables = {name: functions[name]() for name in {panel["data"] for panel in panels if "data" in panel}}
     frames = []
@@ -146,7 +146,7 @@ def _write_notes(row: np.ndarray, notes: list[str]) -> None:
 
 
 def _name_axes_once(grid: np.ndarray) -> None:
-    """Of panels (rows, columns) keep the names of axes at the left and at the lower edge of the sheet, where a row or a column has one name."""
+    """Keep axes' names at the left and lower edge of the panels (rows, columns) only, where they are the same for a row or a column."""
     for row in grid:
         if len({axes.get_ylabel() for axes in row if axes.get_visible()}) == 1:
             for axes in row[1:]:

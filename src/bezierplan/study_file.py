@@ -183,8 +183,12 @@ def _check_planner(study: Study, name: str, place: str) -> None:
         _known(planner, known_planners(), f"{place}: planner")
     if "variant_of" in method:
         _known(method["variant_of"], study.methods, f"{place}: variant_of")
+    accepted = planner_settings(planner_module(study.planner(name)))
+    for setting in accepted:
+        if setting in RUN_COLUMNS:
+            raise Fault(f"{place}: planner: {planner}: its setting {setting} is a column of the runs table; give it another name")
     for setting in method.get("settings", {}):
-        _known(setting, planner_settings(planner_module(study.planner(name))), f"{place}: settings")
+        _known(setting, accepted, f"{place}: settings")
 
 
 def _check_settings(module: Any, settings: dict[str, Any], place: str) -> None:

@@ -84,7 +84,13 @@ def lines(values: list[Any]) -> list[dict[str, Any]]:
     else:
         colours = [_COLOURS[i % len(_COLOURS)] for i in range(len(values))]
     return [
-        {"color": colour, "linestyle": _DASHES[i % len(_DASHES)], "marker": _MARKERS[i % len(_MARKERS)], "linewidth": 1.1, "markersize": 3.5}
+        {
+            "color": colour,
+            "linestyle": _DASHES[i % len(_DASHES)],
+            "marker": _MARKERS[i % len(_MARKERS)],
+            "linewidth": 1.1,
+            "markersize": 3.5,
+        }
         for i, colour in enumerate(colours)
     ]
 
@@ -92,5 +98,6 @@ def lines(values: list[Any]) -> list[dict[str, Any]]:
 def bars(count: int) -> list[dict[str, Any]]:
     """Looks of so many bars side by side."""
     return [
-        {"facecolor": _FILLS[i % len(_FILLS)], "hatch": _HATCHES[i % len(_HATCHES)], "edgecolor": BLACK, "linewidth": 0.5} for i in range(count)
+        {"facecolor": _FILLS[i % len(_FILLS)], "hatch": _HATCHES[i % len(_HATCHES)], "edgecolor": BLACK, "linewidth": 0.5}
+        for i in range(count)
     ]

@@ -86,7 +86,8 @@ def blocks(region: Region, point: tuple[float, float], tolerance: float = 1e-9) 
     if isinstance(region, CircleRegion):
         left, right, bottom, top = region.bounds
         deepest = max(left - x, x - right, bottom - y, y - top)
-        return max(deepest, *(region.radii - np.hypot(x - region.centres[:, 0], y - region.centres[:, 1]))) > tolerance
+        in_discs = region.radii - np.hypot(x - region.centres[:, 0], y - region.centres[:, 1])
+        return in_discs.max(initial=deepest) > tolerance
     begin, end = region.edges[:, :2], region.edges[:, 2:]
     along = end - begin
     share = np.clip(((point - begin) * along).sum(axis=1) / (along**2).sum(axis=1), 0, 1)

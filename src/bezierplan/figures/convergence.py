@@ -1,4 +1,4 @@
-"""The best objective of each generation: one picked run with median and spread of all runs, or a line for each method or value of a factor."""
+"""The best objective of each generation: one picked run with median and spread of all runs, or a line a method or value of a factor."""
 
 from typing import Any, Literal
 

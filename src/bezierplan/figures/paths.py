@@ -1,4 +1,4 @@
-"""A path with its control points: of one picked run, in its workspace beside the shortest path that there is, or of given control points."""
+"""A path with its control points: of one picked run, in its workspace beside the shortest path possible, or one that is given."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -75,7 +75,11 @@ def feasible_note(frame: pd.DataFrame) -> str:
 
 
 def data(
-    results: Results | None, *, pick: dict[str, Any] | None = None, explicit: dict[str, Any] | None = None, view: Sequence[float] | None = None
+    results: Results | None,
+    *,
+    pick: dict[str, Any] | None = None,
+    explicit: dict[str, Any] | None = None,
+    view: Sequence[float] | None = None,
 ) -> pd.DataFrame:
     """What is drawn of a path: one row a point, in the order in which points are joined.
 
@@ -84,7 +88,7 @@ def data(
     points that are tangents are left out.
 
     pick: the run, as in `analysis.results.pick`. explicit: {curve, points}, a path without a run. view: what is seen of the workspace, as
-    its bounds; all rows are here nevertheless. Raises ValueError unless either pick or explicit is given, if all runs are not of one problem
+    its bounds; all rows are here nevertheless. Raises ValueError unless either pick or explicit is given and all runs are of one problem
     and one method, and if a curve cannot have such points.
     """
     if (pick is None) == (explicit is None):

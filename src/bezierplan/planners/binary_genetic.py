@@ -71,7 +71,10 @@ def plan(
     """
     grid = problem.workspace
     occupied = embed(grid.occupied)
-    ends = [np.ravel_multi_index(grid.cell_of(*point), occupied.shape) for point in (problem.start, problem.target)]
+    # Start and target, which need not be centres of cells, are two further cells with numbers of their own.
+    row, column = np.indices(occupied.shape).reshape(2, -1)
+    places = np.vstack([np.column_stack([column, row]) + 0.5, np.array([problem.start, problem.target]) / grid.cell])
+    ends = [occupied.size, occupied.size + 1]
     starts, moves = rng.spawn(2)
     if genes == 0 or problem.start == problem.target:
         # Nothing to search: one chromosome, the straight line or the point.
@@ -88,6 +91,7 @@ def plan(
         moves,
         cells,
         occupied,
+        places,
         np.ascontiguousarray(basis.T),
         np.array([[0, genes + 1, 0, samples - 1]]) if spacing == "arc_length" else stretches(basis),
         spacing == "arc_length",
@@ -101,9 +105,10 @@ def plan(
         penalty_for == "each_sample",
         occupied_point_penalty / grid.cell,
     )
-    rows, columns = np.divmod(best, occupied.shape[1])
+    points = places[best] * grid.cell
+    points[[0, -1]] = problem.start, problem.target
     return Plan(
-        path=Path(curve, (np.column_stack([columns, rows]) + 0.5) * grid.cell),
+        path=Path(curve, points),
         objective=history[-1] * grid.cell,
         claimed_feasible=best_bad == 0,
         evaluations=population * (generations + 1),
@@ -131,6 +136,7 @@ def _search(
     rng,
     cells,
     occupied,
+    places,
     basis,
     stretches,
     by_arc_length,
@@ -144,7 +150,10 @@ def _search(
     penalty_for_each,
     occupied_point_penalty,
 ):
-    """Cells (control points,) of the best chromosome, its samples in occupied cells, and the best objective so far (generations + 1,)."""
+    """Cells (control points,) of the best chromosome, its samples in occupied cells, and the best objective so far (generations + 1,).
+
+    cells: (population, control points) numbers of cells. places: (cells + 2, 2) their centres, and start and target, in cells.
+    """
     population, points = cells.shape
     genes = points - 2
     bits = int(np.log2(occupied.size) + 0.5)
@@ -166,13 +175,13 @@ def _search(
                 elif _same(cells[i], parents[father], first, last):
                     lengths[i, k], bad[i, k] = parent_lengths[father, k], parent_bad[father, k]
                 elif by_arc_length:
-                    lengths[i, k], bad[i, k] = _measure_by_arc_length(cells[i], occupied, len(x))
+                    lengths[i, k], bad[i, k] = _measure_by_arc_length(cells[i], occupied, places, len(x))
                 else:
-                    lengths[i, k], bad[i, k] = _measure(cells[i], occupied, basis, stretches[k], x, y)
+                    lengths[i, k], bad[i, k] = _measure(cells[i], occupied, places, basis, stretches[k], x, y)
             count = bad[i].sum()
             objective[i] = lengths[i].sum() + penalty * (count if penalty_for_each else min(count, 1))
             if occupied_point_penalty > 0:
-                for cell in cells[i]:
+                for cell in cells[i, 1:-1]:
                     objective[i] += occupied_point_penalty * occupied.flat[cell]
             if objective[i] < best_objective:
                 _copy(cells[i], best)
@@ -231,19 +240,18 @@ def _mutate(rng, genes, bits, probability, mutation):
 
 
 @njit(cache=True)
-def _measure(cells, occupied, basis, stretch, x, y):
+def _measure(cells, occupied, places, basis, stretch, x, y):
     """Length in cells of one stretch of a curve and the number of its samples in occupied cells, its first sample not counted.
 
     basis: (control points, samples). x, y: (samples,) scratch. Start and target lie in free cells, so no sample goes uncounted.
     """
     first_point, last_point, first, last = stretch
-    columns = occupied.shape[1]
     samples = last - first + 1
     for s in range(samples):
         x[s] = y[s] = 0.0
     for p in range(first_point, last_point + 1):
         weights = basis[p, first : last + 1]
-        column, row = cells[p] % columns + 0.5, cells[p] // columns + 0.5
+        column, row = places[cells[p], 0], places[cells[p], 1]
         for s in range(samples):
             x[s] += weights[s] * column
             y[s] += weights[s] * row
@@ -260,13 +268,12 @@ def _measure(cells, occupied, basis, stretch, x, y):
 
 
 @njit(cache=True)
-def _measure_by_arc_length(cells, occupied, samples):
-    """Length in cells of a polyline through cell centres and the number of its occupied samples, which are equally spaced along it."""
-    columns = occupied.shape[1]
+def _measure_by_arc_length(cells, occupied, places, samples):
+    """Length in cells of a polyline and the number of its occupied samples, which are equally spaced along it."""
     points = len(cells)
     x, y, passed = np.empty(points), np.empty(points), np.zeros(points)
     for p in range(points):
-        x[p], y[p] = cells[p] % columns + 0.5, cells[p] // columns + 0.5
+        x[p], y[p] = places[cells[p], 0], places[cells[p], 1]
         if p:
             passed[p] = passed[p - 1] + np.sqrt((x[p] - x[p - 1]) ** 2 + (y[p] - y[p - 1]) ** 2)
     bad = 0

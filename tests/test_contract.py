@@ -1,0 +1,260 @@
+"""The contract tests: planners of the package pass, bad ones fail for exactly the right fact, bad input ends in one line."""
+
+import random
+import re
+
+import numpy as np
+import pytest
+
+from bezierplan import contract
+from bezierplan.checked import Fault
+from bezierplan.exact import bounds, checker
+from bezierplan.exact.region import region
+from bezierplan.problem import known_planners
+
+SETTINGS = {
+    "binary_genetic": {
+        "curve": "piecewise_quadratic",
+        "genes": 6,
+        "samples": 601,
+        "spacing": "parameter",
+        "population": 20,
+        "generations": 10,
+        "crossover_probability": 0.5,
+        "cut": "bit",
+        "mutation_probability": 0.1,
+        "mutation": "one_bit",
+        "elitism": 1,
+        "penalty": 10.0,
+        "penalty_for": "each_sample",
+        "occupied_point_penalty": 0.0,
+    },
+    "chaotic_pso": {
+        "curve": "bezier",
+        "control_points": 3,
+        "samples": 100,
+        "penalty": "multiply",
+        "beta": 100.0,
+        "d_min": 0.0,
+        "particles": 20,
+        "iterations": 60,
+        "stall_limit": 10,
+        "straight_line_particle": False,
+        "c1": 1.5,
+        "c2": 1.5,
+        "inertia": 1.0,
+        "inertia_damping": 1.0,
+        "velocity_limit": 1.0,
+        "bound_rule": "mirror",
+        "random_numbers": "dimension",
+        "update": "asynchronous",
+        "chaotic_term": "social",
+        "chaotic_map": "singer",
+        "chaotic_start_rule": "random",
+        "chaotic_start": 0.7,
+        "zeta_for": "iteration",
+        "singer_mu": 1.07,
+        "singer_x4": 13.302875,
+        "sine_a": 4.0,
+        "piecewise_p": 0.4,
+        "sinusoidal_a": 2.3,
+        "count_collisions": True,
+    },
+    "prm": {"nodes": 50, "links": "visible", "neighbours": 10, "d_min": 0.0},
+    "shortest_path": {},
+    "straight_line": {},
+}
+
+WALK = """
+import math
+import random
+from typing import Annotated, Literal
+
+import numpy as np
+from numba import njit
+
+from bezierplan.exact import bounds
+from bezierplan.problem import Path, Plan, Range
+
+KEPT = np.random.default_rng(0)
+
+
+def plan(problem, rng, *, evaluations: Annotated[int, Range(1)]):
+    start, target = problem.start, problem.target
+    middles = rng.uniform(0, 1, (evaluations, 2)) + start
+    lengths = np.hypot(*(middles - start).T) + np.hypot(*(middles - target).T)
+    history = np.minimum.accumulate(lengths)
+    path = Path("polyline", np.array([start, middles[lengths.argmin()], target]))
+    return Plan(path, history[-1], claimed_feasible=True, evaluations=evaluations, history=history, stop="evaluations", extra={"tries": 1})
+"""
+DRAWN = "rng.uniform(0, 1, (evaluations, 2)) + start"
+RETURN = "    return Plan("
+
+# A fault of a planner: what stands in WALK, what stands there instead, and the fact that fails.
+BAD = {
+    "draws from numpy": (DRAWN, "np.random.uniform(0, 1, (evaluations, 2)) + start", "global generators"),
+    "draws from random": (DRAWN, f"{DRAWN} + random.random()", "global generators"),
+    "seeds numpy": ("    start, target", "    np.random.seed(5)\n    start, target", "global generators"),
+    "draws from numba's generator": (DRAWN, f"{DRAWN} + njit(lambda: np.random.random())()", "global generators"),
+    "draws from a generator of its own": (DRAWN, f"{DRAWN} + KEPT.random()", "same bits"),
+    "draws from entropy": ("rng.uniform", "np.random.default_rng().uniform", "same bits"),
+    "changes an array of the problem": (
+        "    start, target",
+        "    problem.workspace.radii[:] *= 0.5\n    start, target",
+        "problem unchanged",
+    ),
+    "starts elsewhere": ("np.array([start,", "np.array([np.add(start, 1e-9),", "path"),
+    "ends elsewhere": ("target])", "np.add(target, 1e-9)])", "path"),
+    "its history rises": ("np.minimum.accumulate(lengths)", "np.sort(lengths)", "history"),
+    "its history has a gap": (RETURN, f"    history[0] = np.nan\n{RETURN}", "history"),
+    "its history ends with something else": ("history[-1],", "history[-1] + 1,", "history"),
+    "claims wrongly and to be exact": ("KEPT =", "exact = True\nKEPT =", "claims"),
+    "uses too many evaluations": ("evaluations=evaluations", "evaluations=evaluations + 1", "budget"),
+    "counts fewer evaluations than its history": ("evaluations=evaluations", "evaluations=evaluations - 1", "budget"),
+    "an extra column has a taken name": ('"tries"', '"length"', "extra columns"),
+    "an extra column has the name of a setting": ('"tries"', '"evaluations"', "extra columns"),
+    "an extra column is there at times": ('{"tries": 1}', '{"tries": 1} if start == target else {}', "extra columns"),
+    "raises": ("rng.uniform", "rng.unifrom", "plan"),
+    "claims without a path": ("Plan(path,", "Plan(None,", "plan"),
+    "its objective is not a number": ("history[-1],", "math.nan,", "plan"),
+    "its objective is text": ("history[-1],", "str(history[-1]),", "plan"),
+    "its claim is a word": ("claimed_feasible=True", 'claimed_feasible="yes"', "plan"),
+    "its evaluations are no whole number": ("evaluations=evaluations", "evaluations=1.0 * evaluations", "plan"),
+    "its history is a list": ("history=history", "history=history.tolist()", "plan"),
+    "its history is empty": ("history=history", "history=history[:0]", "plan"),
+    "its extra is text": ('{"tries": 1}', '{"tries": "one"}', "plan"),
+    "its curve is unknown": ('"polyline"', '"polylines"', "plan"),
+    "its path is no Path": ('Path("polyline", ', '("polyline", ', "plan"),
+    "its points are not finite": ("target])", "target]) * math.inf", "plan"),
+    "its points are flat": ("target])", "target]).ravel()", "plan"),
+    "returns a path": (RETURN, f"    return path\n{RETURN}", "plan"),
+    "check changes the settings": (
+        "def plan(",
+        'def check(settings):\n    settings["evaluations"] = 1\n\n\ndef plan(',
+        "settings unchanged",
+    ),
+}
+
+
+def changed(old, new):
+    """WALK with another text in one place."""
+    assert old in WALK
+    return WALK.replace(old, new, 1)
+
+
+def written(folder, source, workspaces=("circles",)):
+    file = folder / "walk.py"
+    file.write_text(f"workspaces = {workspaces}\n{source}")
+    return str(file)
+
+
+def failed(planner, settings):
+    findings = list(contract.check_planner(planner, settings))
+    assert not any("\n" in str(finding) for finding in findings)
+    return [finding for finding in findings if not finding.passed]
+
+
+@pytest.mark.parametrize("planner", known_planners())
+def test_planners_of_the_package_pass(planner):
+    assert not failed(planner, SETTINGS[planner])
+
+
+def test_a_planner_in_a_file_passes_on_every_kind_of_workspace(tmp_path):
+    file = written(tmp_path, WALK, ("grid", "circles", "polygons"))
+    findings = list(contract.check_planner(file, {"evaluations": 20}))
+    assert all(finding.passed for finding in findings)
+    assert {finding.problem.split(":")[0] for finding in findings} == {"grid", "circles", "polygons"}
+    assert contract.Finding("circles: open", "budget", True, "20 evaluations") in findings
+
+
+@pytest.mark.parametrize("fault", BAD, ids=str)
+def test_bad_planner_fails_for_its_fault_alone(fault, tmp_path):
+    old, new, fact = BAD[fault]
+    assert {finding.fact for finding in failed(written(tmp_path, changed(old, new)), {"evaluations": 20})} == {fact}
+
+
+def test_planner_that_raises_without_a_way_fails_there_alone(tmp_path):
+    source = changed(
+        "    start, target",
+        '    if math.isinf(bounds.shortest_path(problem).length):\n        raise RuntimeError("no\\nway")\n    start, target',
+    )
+    assert failed(written(tmp_path, source), {"evaluations": 20}) == [
+        contract.Finding("circles: sealed target", "plan", False, "raises RuntimeError: no way")
+    ]
+
+
+def test_feasible_path_to_a_sealed_target_fails(tmp_path):
+    """Such a path ends elsewhere, which is told as well."""
+    source = changed("middles[lengths.argmin()], target]", "start]")
+    assert ("circles: sealed target", "no way") in [finding[:2] for finding in failed(written(tmp_path, source), {"evaluations": 20})]
+
+
+def test_wrong_claims_of_a_planner_that_is_not_exact_are_counted():
+    findings = {finding[:2]: finding for finding in contract.check_planner("straight_line", {})}
+    assert findings["grid: obstacle in the way", "claims"].passed
+    assert findings["grid: obstacle in the way", "claims"].detail == "3 paths claimed feasible, 0 by the checker"
+    assert findings["grid: open", "claims"].detail == "3 paths claimed feasible, 3 by the checker"
+
+
+def test_global_generators_get_their_state_back(tmp_path):
+    old, new, _ = BAD["draws from numpy"]
+    random.seed(1)
+    np.random.seed(1)  # noqa: NPY002
+    before = random.getstate(), np.random.get_state()[1].tolist()  # noqa: NPY002
+    failed(written(tmp_path, changed(old, new)), {"evaluations": 20})
+    assert (random.getstate(), np.random.get_state()[1].tolist()) == before  # noqa: NPY002
+
+
+@pytest.mark.parametrize("kind", contract.PROBLEMS)
+def test_problems_are_legal_and_only_the_sealed_one_has_no_way(kind):
+    for problem in contract.PROBLEMS[kind]():
+        blocked = region(problem.workspace)
+        for point in (problem.start, problem.target):
+            assert checker.check(np.array([[point, point]]), blocked).feasible
+        assert np.isinf(bounds.shortest_path(problem).length) == problem.name.endswith("sealed target")
+
+
+CHECK = 'def check(settings):\n    raise ValueError("evaluations: 20; an odd number is needed")\n\n\ndef plan('
+FAULTS = {
+    "missing setting": ("plan(", "plan(", {}, "settings are missing: evaluations: a whole number at least 1"),
+    "several missing settings": (
+        "Range(1)]",
+        'Range(1)], share: Annotated[float, Range(0, 1)], rule: Literal["a", "b"], quick: bool',
+        {"quick": True},
+        "missing: evaluations: a whole number at least 1; share: a number from 0 to 1; rule: one of a, b",
+    ),
+    "unknown setting": ("plan(", "plan(", {"evaluation": 20}, "settings: evaluation: unknown; did you mean evaluations?"),
+    "wrong type": ("plan(", "plan(", {"evaluations": "many"}, "settings: evaluations: 'many'; expected a whole number"),
+    "out of range": ("plan(", "plan(", {"evaluations": 0}, "settings: evaluations: 0; expected a whole number at least 1"),
+    "settings that do not fit": ("def plan(", CHECK, {"evaluations": 20}, "settings: evaluations: 20; an odd number is needed"),
+    "default value": ("Range(1)]", "Range(1)] = 20", {}, "setting evaluations: has a default value"),
+    "no annotation": ("evaluations: Annotated[int, Range(1)]", "evaluations", {}, "setting evaluations: has no annotation"),
+    "wrong annotation": ("Annotated[int, Range(1)]", "str", {}, "setting evaluations: is annotated with str; expected bool, int,"),
+    "no function": ("def plan(", "def plant(", {}, "has no function plan(problem, rng, *, <settings>)"),
+    "not Python": ("def plan(", "def plan((", {}, "cannot be loaded (SyntaxError: "),
+    "unknown workspace": ("KEPT =", 'workspaces = ("gird",)\nKEPT =', {}, "workspaces: gird: unknown; did you mean grid?"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS, ids=str)
+def test_fault_is_told_in_one_line_before_anything_runs(fault, tmp_path):
+    old, new, settings, told = FAULTS[fault]
+    file = written(tmp_path, changed(old, new))
+    with pytest.raises(Fault) as caught:
+        contract.check_planner(file, settings)
+    message = str(caught.value)
+    assert told in message
+    assert message.startswith(file)
+    assert "\n" not in message
+
+
+@pytest.mark.parametrize(
+    ("planner", "told"),
+    [
+        ("strait_line", "strait_line: unknown planner, and not the path of a file that ends in .py; did you mean straight_line?"),
+        ("nowhere/walk.py", "nowhere/walk.py: cannot be loaded (FileNotFoundError: "),
+    ],
+)
+def test_planner_that_is_not_there_is_told(planner, told):
+    with pytest.raises(Fault, match=re.escape(told)):
+        contract.check_planner(planner, {})
