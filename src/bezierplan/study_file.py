@@ -185,7 +185,8 @@ def _check_planner(study: Study, name: str, place: str) -> None:
         _known(method["variant_of"], study.methods, f"{place}: variant_of")
     accepted = planner_settings(planner_module(study.planner(name)))
     for setting in accepted:
-        if setting in RUN_COLUMNS:
+        # The column `generations` holds how many were really done, beside which a setting of that name says nothing more.
+        if setting in RUN_COLUMNS and setting != "generations":
             raise Fault(f"{place}: planner: {planner}: its setting {setting} is a column of the runs table; give it another name")
     for setting in method.get("settings", {}):
         _known(setting, accepted, f"{place}: settings")
