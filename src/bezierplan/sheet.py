@@ -160,7 +160,7 @@ def _name_axes_once(grid: np.ndarray) -> None:
 
 def _wrapped(text: str, width: float, size: float) -> str:
     """Text broken after spaces, commas and slashes, short enough for a panel of a width in inches; size of the text in points."""
-    beside = 36  # points that the labels of an upright axis take
+    beside = 36 if width >= style.NARROW_PANEL else 30  # points that the labels of an upright axis take
     most = int((72 * width - beside) / (0.57 * size))  # on average a character of this font is a little less wide than this
     lines = []
     for paragraph in text.splitlines():
@@ -223,7 +223,9 @@ def _margins(axes: Axes) -> tuple[float, float, float, float]:
 
 
 def _shape(axes: Axes) -> float:
-    """Height of a panel as a share of its width: to scale where the kind asks for it, else the same for all."""
+    """Height of a panel as a share of its width: to scale or as the kind asks for it, else the same for all."""
+    if axes.get_box_aspect() is not None:
+        return axes.get_box_aspect()
     return style.PANEL_HEIGHT if axes.get_aspect() == "auto" else axes.get_data_ratio() * axes.get_aspect()
 
 

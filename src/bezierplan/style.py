@@ -50,17 +50,17 @@ OURS = {"color": BLUE, "linestyle": "-", "linewidth": 1.3}
 RUN_SHOWN = {"color": RED, "linestyle": "-", "linewidth": 1.8}
 BOUND = {"color": BLACK, "linestyle": (0, (1, 1.2)), "linewidth": 1.0}
 
-# Things side by side, by name: colours of Okabe and Ito and others that differ from them in lightness, each with a line style of its own
-# among those near it in lightness.
-_COLOURS = ("#000000", "#D55E00", "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#6A3D9A", "#7F7F7F", "#8C510A")
-_DASHES = ("-", (0, (5, 1.5)), (0, (1, 1)), (0, (6, 1.5, 1, 1.5)), (0, (2.5, 1)))
+# Lines side by side, by name: the colours of Okabe and Ito first. Two that share their dashes (every fifth) differ in lightness.
+_COLOURS = ("#000000", "#D55E00", "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#4B0055", "#56B4E9", "#8C510A", "#B5B5B5")
+_DASHES = ("-", (0, (5, 1.5)), (0, (2, 1)), (0, (6, 1.5, 1, 1.5)), (0, (8, 1, 1, 1, 1, 1)))
 _MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p")
-# Light to dark in the order of the bars, so that neighbours differ in a grey print as well.
-_FILLS = ("#DCE6F2", "#8FB0D6", "#F0C27B", "#D55E00", "#0072B2", "#004488", "#7F7F7F", "#333333")
-_HATCHES = ("", "////", "", "\\\\\\\\", "", "....", "xxxx", "")
+# Bars side by side: neighbours differ in lightness and in hatching.
+_FILLS = ("#DCE6F2", "#8FB0D6", "#D55E00", "#F7DDB5", "#0072B2", "#FFFFFF", "#333333", "#BDBDBD")
+_HATCHES = ("", "////", "", "\\\\\\\\", "", "....", "", "xxxx")
 # Numbers take their colours from a scale, the higher the lighter, without its lightest end, which paper swallows.
-_SCALE, _LIGHTEST = "viridis", 0.85
+_SCALE, _LIGHTEST = "viridis", 0.8
 
+INTERVAL_BAND = {"color": "0.5", "alpha": 0.3, "linewidth": 0}
 BOX = {"facecolor": LIGHT_BLUE, "edgecolor": BLUE, "linewidth": 0.7}
 PUBLISHED_MARK = {"color": BLACK, "linestyle": "", "marker": "D", "markersize": 4.5, "markerfacecolor": "#FFFFFF", "markeredgewidth": 0.9}
 
@@ -71,8 +71,10 @@ SURPLUS_HATCH = {"hatch": "/////", "hatchcolor": "0.7"}
 # A panel narrower than this, in inches, shows the shortest of notes, and names its axes only at the edge of the sheet.
 NARROW_PANEL = 2.0
 
-# Height of a panel with two unlike axes, as a share of its width, and room between panels in inches.
+# Height of a panel with two unlike axes, as a share of its width: usually, and where names beside it need height and leave little width.
+# Room between panels, in inches.
 PANEL_HEIGHT = 0.62
+HIGH_PANEL_HEIGHT = 0.9
 GAP = 0.1
 
 

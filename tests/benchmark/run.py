@@ -1,12 +1,16 @@
 """Speed of the inner loops: `make benchmark`. CPU seconds of one core, the best of several rounds; ratios carry over to other machines.
 
 binary_genetic is set beside the bare minimum of work that its runs ask for: a compiled loop that evaluates as many curves of the same kind,
-with the same sparsity, measures them and looks up the same number of cells, and does nothing else.
+with the same sparsity, measures them and looks up the same number of cells, and does nothing else. Checks and bounds are timed by kind and
+size of workspace, start-up in processes of its own.
 """
 
+import os
+import resource
+import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "src"))
@@ -15,11 +19,17 @@ import numpy as np
 from numba import njit
 
 from bezierplan import curves, study_file
+from bezierplan.exact import bounds, checker
+from bezierplan.exact.region import region
 from bezierplan.planners import binary_genetic
-from bezierplan.problem import Problem
+from bezierplan.problem import Path as Curve
+from bezierplan.problem import Problem, Workspace
 from bezierplan.workspaces import files
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import Grid
 
 ROUNDS = 5
+SOURCE = sys.path[0]
 
 
 def cpu_seconds(work: Callable[[], object]) -> float:
@@ -63,7 +73,7 @@ def benchmark_binary_genetic() -> None:
     problem = Problem("0_240", grid, grid.centre(0), grid.centre(240))
     runs = 20
     print(f"{'binary_genetic':16}{'evaluations/s':>16}{'ms a run':>12}{'bare minimum/s':>16}{'times the minimum':>20}")
-    for method in study.methods:
+    for method in study.experiments["routes"]["methods"]:
         settings = study.resolved(method)
         evaluations = runs * settings["population"] * (settings["generations"] + 1)
         seconds = cpu_seconds(lambda: [binary_genetic.plan(problem, np.random.default_rng(seed), **settings) for seed in range(runs)])  # noqa: B023
@@ -78,5 +88,74 @@ def benchmark_binary_genetic() -> None:
         print(f"  {method:14}{rates}{seconds / least:20.2f}")
 
 
+def random_grid(side: int, rng: np.random.Generator) -> Grid:
+    """A grid of that many rows and columns with 25 rectangular blocks, two corners free."""
+    occupied = np.zeros((side, side), dtype=bool)
+    for row, column in rng.integers(1, side - 1, (25, 2)):
+        height, width = rng.integers(1, max(2, side // 8), 2)
+        occupied[row : row + height, column : column + width] = True
+    occupied[0, 0] = occupied[-1, -1] = False
+    return Grid(occupied, 1.0, "cell")
+
+
+def random_discs(count: int, rng: np.random.Generator) -> Circles:
+    """Discs in a square, two corners free."""
+    centres = rng.uniform(2, 18, (count, 2))
+    return Circles((0.0, 20.0, 0.0, 20.0), centres, rng.uniform(0.3, 1.0, count), "unit")
+
+
+def workspaces() -> Iterator[tuple[str, Workspace]]:
+    """Workspaces of every kind, small and large, by name."""
+    rng = np.random.default_rng(0)
+    for count in (3, 10, 25):
+        yield f"circles {count}", random_discs(count, rng)
+    for side in (16, 20, 100, 200):
+        yield f"cells {side} x {side}", random_grid(side, rng)
+    for file in sorted((Path(__file__).parents[1] / "data" / "maps" / "imr").glob("*.geojson")):
+        yield f"polygons {file.stem}", files.polygons_from_geojson(file.read_text(), "m")
+
+
+def benchmark_geometry() -> None:
+    """Microseconds a check (median over random curves, half of them short) and milliseconds a bound from corner to corner."""
+    print(f"\n{'workspace':26}{'check: median us':>18}{'99 % us':>10}{'colliding':>11}{'bound: ms':>12}")
+    rng = np.random.default_rng(1)
+    for name, workspace in workspaces():
+        blocked = region(workspace)
+        x_low, x_high, y_low, y_high = workspace.bounds
+        seconds, colliding = [], 0
+        for trial in range(401):
+            first = rng.uniform((x_low, y_low), (x_high, y_high))
+            reach = (x_high - x_low) * (0.05 if trial % 2 else 1.0)
+            points = np.clip(first + rng.uniform(-reach, reach, (6, 2)), (x_low, y_low), (x_high, y_high))
+            pieces = curves.bezier_pieces(Curve(("bezier", "piecewise_quadratic")[trial // 2 % 2], points))
+            before = time.perf_counter()
+            found = checker.check(pieces, blocked)
+            seconds.append(time.perf_counter() - before)
+            colliding += not found.feasible
+        times = 1e6 * np.array(seconds[1:])
+        inset = 0.5 * getattr(workspace, "cell", 0.02)
+        corners = Problem("bound", workspace, (x_low + inset, y_low + inset), (x_high - inset, y_high - inset))
+        bound = 1e3 * cpu_seconds(lambda: bounds.shortest_path(corners))  # noqa: B023
+        print(f"  {name:24}{np.median(times):18.0f}{np.quantile(times, 0.99):10.0f}{colliding / 401:11.2f}{bound:12.2f}")
+
+
+def benchmark_start() -> None:
+    """CPU seconds of what every run job imports, of the check of the configuration, and of `bezierplan list`."""
+    print(f"\n{'start-up':26}{'CPU s':>18}")
+    for name, command in {
+        "imports of a run job": ["-c", "import pyarrow.parquet; from bezierplan import problems, running"],
+        "bezierplan list": ["-m", "bezierplan", "list"],
+    }.items():
+        seconds = []
+        for _ in range(ROUNDS):
+            before = resource.getrusage(resource.RUSAGE_CHILDREN)
+            subprocess.run([sys.executable, *command], env=os.environ | {"PYTHONPATH": SOURCE}, stdout=subprocess.DEVNULL, check=True)
+            after = resource.getrusage(resource.RUSAGE_CHILDREN)
+            seconds.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+        print(f"  {name:24}{min(seconds):18.2f}")
+
+
 if __name__ == "__main__":
     benchmark_binary_genetic()
+    benchmark_geometry()
+    benchmark_start()

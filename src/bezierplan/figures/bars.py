@@ -15,6 +15,8 @@ _BOUNDED = ("length", "objective")
 
 # Of the room of a group of bars, what the bars take.
 _FILLED = 0.84
+# How far the line of the shortest path goes to either side of a group's middle.
+_REACH = 0.47
 
 
 def data(results: Results, *, x: str, hue: str, metric: str, statistic: Literal["mean", "median", "share"] = "mean") -> pd.DataFrame:
@@ -43,20 +45,20 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     for at, group in enumerate(groups):
         bound = frame.loc[frame[x] == group, "bound"].iloc[0]
         if np.isfinite(bound):
-            axes.plot([at - 0.5, at + 0.5], [bound, bound], label="shortest path possible", zorder=4, **style.BOUND)
+            axes.plot([at - _REACH, at + _REACH], [bound, bound], label="shortest path possible", zorder=4, **style.BOUND)
     axes.set_xlim(-0.5, len(groups) - 0.5)
     axes.set_xticks(range(len(groups)), [scene.labels.get(group, group) if isinstance(group, str) else f"{group:g}" for group in groups])
     axes.tick_params(axis="x", length=0, pad=22)  # below the shares
     axes.set_xlabel(f"{column_name(x, scene.labels)} (-)")
     axes.set_ylabel(axis_label(panel["metric"], scene, panel.get("statistic", "mean")))
     axes.grid(visible=True, axis="y")
-    return f"feasible runs of {frame['runs'].min():g} to {frame['runs'].max():g} below each bar"
+    return "below each bar: share of feasible runs"
 
 
 def _draw_bars(axes: Axes, frame: pd.DataFrame, at: np.ndarray, width: float, look: dict) -> None:
     """Bars at places (n,) with their intervals, and below each the share of feasible runs."""
     axes.bar(at, frame["value"], width, zorder=2, **look)
-    axes.vlines(at, frame["low95"], frame["high95"], color=style.BLACK, linewidth=0.8, zorder=3)
+    axes.vlines(at, frame["low95"], frame["high95"], color=style.BLACK, linewidth=0.8, zorder=3, label="95 % interval")
     for place, runs, feasible in zip(at, frame["runs"], frame["feasible_runs"]):
         below = {"xycoords": ("data", "axes fraction"), "xytext": (0, -2), "textcoords": "offset points"}
         axes.annotate(f"{100 * feasible / runs:.0f} %", (place, 0), rotation=90, ha="center", va="top", **below)

@@ -14,7 +14,10 @@ from bezierplan.figures.lines import constants, in_order, printed, runs_note
 from bezierplan.figures.paths import feasible_note, picked, run_note
 
 # Least distance of names beside a panel, as a share of its height: a line of text where two panels stand side by side.
-_NAME_GAP = 0.095
+_NAME_GAP = 0.08
+
+# Marks on a line of a group, at other generations than those of the other lines.
+_MARKS = 5
 
 
 def data(
@@ -93,11 +96,13 @@ def _draw_one_run(axes: Axes, frame: pd.DataFrame) -> None:
 def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     hue, statistic = panel["hue"], panel.get("statistic", "mean")
     groups = in_order(frame[hue], panel)
-    looks = [look | {"marker": ""} for look in style.lines(groups)]
+    looks = style.lines(groups)
     lines = [frame.loc[frame[hue] == group] for group in groups]
-    for own, look in zip(lines, looks):
-        axes.plot(own["generation"], own["objective"], **look)
+    for number, (own, look) in enumerate(zip(lines, looks)):
+        step = max(1, len(own) // _MARKS)
+        axes.plot(own["generation"], own["objective"], markevery=(number * step // len(groups), step), **look)
     axes.set_ylabel(f"{statistic} objective ({scene.unit})")
+    axes.set_box_aspect(style.HIGH_PANEL_HEIGHT)
     _name_lines(axes, [own["objective"].iloc[-1] for own in lines], [printed(group, hue, scene.labels) for group in groups], looks)
     return runs_note(frame, statistic, "line")
 
@@ -111,8 +116,8 @@ def _name_lines(axes: Axes, ends: list[float], names: list[str], looks: list[dic
     for i, end, height in zip(order, ends, _apart(ends)):
         beside = {"transform": axes.transAxes, "clip_on": False}
         axes.plot([1, 1.05], [end, height], **beside, color=looks[i]["color"], linewidth=0.5)
-        axes.plot([1.05, 1.15], [height, height], **beside, **looks[i])
-        axes.text(1.17, height, names[i], va="center_baseline", transform=axes.transAxes)
+        axes.plot([1.05, 1.12, 1.19], [height] * 3, markevery=[1], **beside, **looks[i])
+        axes.text(1.21, height, names[i], va="center_baseline", transform=axes.transAxes)
 
 
 def _apart(heights: np.ndarray) -> np.ndarray:

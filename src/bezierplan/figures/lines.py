@@ -97,7 +97,7 @@ def runs_note(frame: pd.DataFrame, statistic: str, where: str) -> str:
     share = 100 * frame["feasible_runs"] / frame["runs"]
     low, high = f"{share.min():.0f}", f"{share.max():.0f}"
     counted = f"{fewest:g}" if fewest == most else f"{fewest:g} to {most:g}"
-    return f"{statistic} of {counted} runs a {where}, {low if low == high else f'{low} to {high}'} % of them feasible"
+    return f"{statistic} of {counted} runs a {where}; {low if low == high else f'{low} to {high}'} % feasible"
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
@@ -122,8 +122,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 
 def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict) -> None:
     """A line with marks in a band, the interval of its points."""
-    band = {"color": look["color"], "alpha": 0.22, "linewidth": 0, "zorder": 1.5}
-    axes.fill_between(frame[x], frame["low95"], frame["high95"], **band)
+    axes.fill_between(frame[x], frame["low95"], frame["high95"], label="95 % interval", zorder=1.5, **style.INTERVAL_BAND)
     axes.plot(frame[x], frame["value"], zorder=3, **look)
 
 

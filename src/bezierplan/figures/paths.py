@@ -1,7 +1,7 @@
 """A path with its control points: of one picked run, in its workspace beside the shortest path possible, or one that is given."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pandas as pd
@@ -20,19 +20,13 @@ _STEPS = 600
 # Marks in a narrow panel are so much smaller.
 _NARROW_MARK = 0.6
 
+_CONTROL_POINT = {"color": style.BLUE, "marker": "o", "markersize": 4.5, "markerfacecolor": style.FREE, "zorder": 5}
+
 # In the order of the legend.
 _LOOK = {
     "path": {**style.RUN_SHOWN, "label": "path", "zorder": 3},
-    "control": {
-        "color": style.BLUE,
-        "linewidth": 0.7,
-        "linestyle": (0, (4, 2)),
-        "marker": "o",
-        "markersize": 4.5,
-        "markerfacecolor": style.FREE,
-        "label": "control points and polygon",
-        "zorder": 5,
-    },
+    "control": {**_CONTROL_POINT, "linewidth": 0.7, "linestyle": (0, (4, 2)), "label": "control points and polygon"},
+    "points": {**_CONTROL_POINT, "linestyle": "", "label": "control points"},
     "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull of the control points", "zorder": 2},
     "bound": {**style.BOUND, "label": "shortest path possible", "zorder": 4},
     "collision": {"color": style.BLACK, "linestyle": "", "marker": "X", "markersize": 8, "label": "first collision", "zorder": 6},
@@ -79,44 +73,46 @@ def data(
     *,
     pick: dict[str, Any] | None = None,
     explicit: dict[str, Any] | None = None,
+    control: Literal["all", "points", "none"] = "all",
     view: Sequence[float] | None = None,
 ) -> pd.DataFrame:
     """What is drawn of a path: one row a point, in the order in which points are joined.
 
-    Columns: those of `picked`, for a run; part (start, target, bound, hull, control, path, and collision, the first one of a path that has
-    one), x, y (in the workspace's unit). Without a run to show, start and target only. A hull is of curves only that lie within it; control
-    points that are tangents are left out.
+    Columns: those of `picked`, for a run; part (start, target, bound, hull, control or points, path, and collision, the first one of a path
+    that has one), x, y (in the workspace's unit). Without a run to show, start and target only. Only curves that lie within it have a hull,
+    and control points are left out where some are tangents.
 
-    pick: the run, as in `analysis.results.pick`. explicit: {curve, points}, a path without a run. view: what is seen of the workspace, as
-    its bounds; all rows are here nevertheless. Raises ValueError unless either pick or explicit is given and all runs are of one problem
-    and one method, and if a curve cannot have such points.
+    pick: the run, as in `analysis.results.pick`. explicit: {curve, points}, a path without a run. control: whether control points are drawn
+    with their polygon and hull, alone, or not at all. view: what is seen of the workspace, as its bounds; all rows are here nevertheless.
+    Raises ValueError unless either pick or explicit is given and all runs are of one problem and one method, and if a curve cannot have such
+    points.
     """
     if (pick is None) == (explicit is None):
         raise ValueError("a panel of kind paths needs either pick or explicit")
     if explicit is not None:
         path = Path(explicit["curve"], np.array(explicit["points"], dtype=float))
         start, target = path.points[list(curves.ends(path.curve))]
-        return _table({"start": [start], "target": [target]} | _drawn(path))
+        return _table({"start": [start], "target": [target]} | _drawn(path, control))
     run, names = picked(results, pick)
     problem = results.problems[names["problem"]]
     drawn = {"start": [problem.start], "target": [problem.target]}
     path = None if run is None else path_of(run)
     if path is not None:
         drawn["bound"] = np.reshape(results.bounds.loc[problem.name, "bound_path"], (-1, 2))
-        drawn |= _drawn(path)
+        drawn |= _drawn(path, control)
         if not run["feasible"]:
             drawn["collision"] = [curves.point_at(path, run["collision_at"])]
     frame = _table(drawn).assign(**names)
     return frame[[*names, "part", "x", "y"]]
 
 
-def _drawn(path: Path) -> dict[str, np.ndarray]:
+def _drawn(path: Path, control: str) -> dict[str, np.ndarray]:
     """Points (n, 2) of a path by the part that they make."""
     drawn = {}
-    if path.curve in curves.B_SPLINES:
+    if path.curve in curves.B_SPLINES and control == "all":
         drawn["hull"] = shapely.get_coordinates(shapely.MultiPoint(path.points).convex_hull)
-    if path.curve != "ferguson":
-        drawn["control"] = path.points
+    if path.curve != "ferguson" and control != "none":
+        drawn["control" if control == "all" else "points"] = path.points
     return drawn | {"path": _steps(path)}
 
 
@@ -146,6 +142,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     _draw_parts(axes, frame, narrow=scene.narrow, clip="view" in panel)
     if "view" in panel:
         axes.axis(panel["view"])
+    if scene.narrow:
+        axes.locator_params(nbins=4, integer=True)
     return "" if "explicit" in panel else _note(frame, workspace.unit, scene.narrow)
 
 
@@ -166,7 +164,7 @@ def _note(frame: pd.DataFrame, unit: str, narrow: bool) -> str:
     if narrow:
         repeat = row["run"].rpartition("/")[2]
         return f"repeat {repeat}{'' if row['feasible'] else ' (not feasible)'}\nlength {row['length']:.2f} {unit}"
-    control = frame.loc[frame["part"] == "control", ["x", "y"]]
+    control = frame.loc[frame["part"].isin(["control", "points"]), ["x", "y"]]
     words = [f"length {row['length']:.1f} {unit}"]
     if not control.empty:
         words.append(f"{len(control.drop_duplicates())} of {len(control)} control points distinct")

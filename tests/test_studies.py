@@ -1,0 +1,253 @@
+"""What only one study needs: its functions for claims, its data for figures, and its audit; and that its files name what exists."""
+
+import math
+from pathlib import Path as File
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from bezierplan import checked, problems
+from bezierplan.analysis import audit
+from bezierplan.analysis.results import Results
+from bezierplan.planners import chaotic_pso
+from bezierplan.problem import Path, planner_module, planner_settings, setting_fault
+from bezierplan.search import chaotic_maps
+from bezierplan.studies import song2016, tharwat2018
+from bezierplan.workspaces import files
+
+STUDIES = File(__file__).parents[1] / "config" / "studies"
+THARWAT = checked.read(STUDIES / "tharwat2018" / "experiments.yaml", "experiments")
+# Of the planner's settings in force.
+SAMPLES, BETA = 100, 100.0
+
+
+def published(study):
+    return {file.stem: pd.read_csv(file) for file in (STUDIES / study / "published").glob("*.csv")}
+
+
+def problem(name):
+    """A problem of tharwat2018 in a fixed workspace."""
+    described = THARWAT["problems"][name]
+    return problems.build(name, described, files.load(THARWAT["workspaces"][described["workspace"]], STUDIES / "tharwat2018"))
+
+
+def faults(rows):
+    return {(row["item"], row["place"], row["rule"]) for row in rows if not row["consistent"]}
+
+
+def test_genes_stay_in_range():
+    assert song2016.genes_in_range({}, {}, {}) == ("+", 0.0, None, song2016.TRIALS)
+
+
+def test_genes_out_of_range_are_counted(monkeypatch):
+    monkeypatch.setattr(song2016, "TRIALS", 3)
+    monkeypatch.setattr(song2016, "complement_bit", lambda genes, bit, bits: genes.fill(256))
+    assert song2016.genes_in_range({}, {}, {}) == ("-", 3.0 * song2016.GENES, None, 3)
+
+
+def test_audit_of_song2016():
+    rows = song2016.audit(published("song2016"))
+    assert len(rows) == 8
+    assert not faults(rows)
+    late = published("song2016")["table1"].replace({"value": {26.0: 101.0}})
+    assert len(faults(song2016.audit({"table1": late}))) == (late["value"] == 101).sum() > 0
+
+
+def test_chaotic_sequences():
+    table = tharwat2018.chaotic_sequences()
+    assert table.groupby("map").size().to_dict() == dict.fromkeys(tharwat2018.CHAOTIC, 500)
+    assert table["value"].between(0, 1).all()
+    for name, own in table.groupby("map"):
+        again = chaotic_maps.sequence(name, own["value"].iloc[0], 500, tharwat2018.PARAMETERS)
+        assert again.values.tolist() == own["value"].to_list()
+        assert again.collapsed_at == 0
+
+
+def test_parameters_of_the_maps_are_those_in_force():
+    assert {name: THARWAT["settings"][name] for name in tharwat2018.PARAMETERS._fields} == tharwat2018.PARAMETERS._asdict()
+
+
+def test_gauss_above():
+    """The exact share is 1 - log2(1.7)."""
+    mark, share, (low, high), sequences = tharwat2018.gauss_above({}, {}, {})
+    assert (mark, sequences) == ("-", tharwat2018.SEQUENCES)
+    assert low < 1 - math.log2(1.7) < high
+    assert low < share < high
+    assert high - low < 0.01
+
+
+# Control points x, then y, and the fitness in both workspaces.
+FIXED = {
+    "straight": ([1, 2, 3], [1.5, 3, 4.5], 118.766232, 95.050708),
+    "far": ([6, 6, 6], [0, 3, 6], 10.665079, 10.665079),
+    "loop": ([-4, -2, 2], [2, 8, 8], 12.543342, 12.543342),
+    "public best": ([0.7197, -0.1836, 2.2284], [2.1662, 2.8501, 1.1334], 113.744577, 7.518209),
+    "corner": ([10, 10, 10], [-10, -10, -10], 32.359578, 27.685773),
+}
+
+
+@pytest.mark.parametrize("name", FIXED)
+@pytest.mark.parametrize(("world", "column"), [("equal", 2), ("public", 3)])
+def test_fitness(name, world, column):
+    x, y, *_ = FIXED[name]
+    path = np.array([[(0, 0), *zip(x, y), (4, 6)]], dtype=float)
+    assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(FIXED[name][column], abs=2e-6)
+
+
+def test_fitness_is_that_of_the_planner():
+    settings = THARWAT["settings"] | {"chaotic_term": "none"}
+    for seed in range(5):
+        plan = chaotic_pso.plan(problem("equal"), np.random.default_rng(seed), **settings | {"particles": 5, "iterations": 2})
+        assert tharwat2018.fitness(plan.path.points[None], problem("equal"), SAMPLES, BETA)[0] == pytest.approx(plan.objective, rel=1e-12)
+
+
+@pytest.mark.parametrize(("world", "best"), [("equal", 7.7263), ("public", 7.5182)])
+def test_best_known_curves(world, best):
+    path = np.array([[(0, 0), *tharwat2018.BEST_KNOWN[world], (4, 6)]], dtype=float)
+    assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(best, abs=3e-4)  # their coordinates are rounded
+
+
+def test_local_minima():
+    assert tharwat2018.local_minima(np.add.outer(np.arange(-4, 5) ** 2, np.arange(-3, 6) ** 2)) == 1
+    assert tharwat2018.local_minima(-np.outer([0, 1, 0, 1, 0], [0, 1, 0, 1, 0]).astype(float)) == 4
+    assert tharwat2018.local_minima(np.zeros((5, 5))) == 0  # not strict
+    assert tharwat2018.local_minima(np.add.outer(np.arange(5), np.arange(5))) == 0  # at the edge
+
+
+def surface_of(values):
+    side = np.linspace(-10, 10, len(values))
+    x, y = np.meshgrid(side, side, indexing="ij")
+    return pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "fitness": values.ravel()})
+
+
+@pytest.mark.parametrize(("world", "minima", "correlation"), [("equal", 7, -0.30), ("public", 5, -0.15)])
+def test_landscape(world, minima, correlation):
+    """Numbers of an independent computation; the correlation is that of `bowl_with_local_minima`."""
+    surface = tharwat2018.landscape(problem(world), world, SAMPLES, BETA)
+    side = tharwat2018.GRID
+    assert len(surface) == side**2
+    values = surface["fitness"].to_numpy().reshape(side, side)
+    assert values.min() >= math.dist((0, 0), (4, 6))
+    assert tharwat2018.local_minima(values) == minima
+    place = surface.iloc[[17 * side + 150]]
+    points = np.array(tharwat2018.BEST_KNOWN[world])
+    points[tharwat2018.MOVED] = place[["x", "y"]].to_numpy()[0]
+    path = np.array([[(0, 0), *points, (4, 6)]], dtype=float)
+    assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(place["fitness"].iloc[0], rel=1e-12)
+    runs = pd.DataFrame([{"planner": "chaotic_pso", "problem": world, "workspace": world, "samples": SAMPLES, "beta": BETA}])
+    check = {"experiment": "maps", "where": {"workspace": world}}
+    found = Results(runs, {world: problem(world)}, pd.DataFrame())
+    mark, effect, interval, nodes = tharwat2018.bowl_with_local_minima(check, {"maps": found}, {})
+    assert (mark, interval, nodes) == ("-", None, side**2)
+    assert effect == pytest.approx(correlation, abs=0.01)
+
+
+@pytest.mark.parametrize(("waves", "mark"), [(0.0, "-"), (30.0, "+")])
+def test_a_bowl_holds_only_with_several_minima(monkeypatch, waves, mark):
+    side = np.linspace(-10, 10, tharwat2018.GRID)
+    values = np.add.outer(side**2 - waves * np.cos(3 * side), side**2)
+    monkeypatch.setattr(tharwat2018, "landscape", lambda *given: surface_of(values))
+    runs = pd.DataFrame([{"planner": "chaotic_pso", "problem": "p", "workspace": "p", "samples": SAMPLES, "beta": BETA}])
+    answer = tharwat2018.bowl_with_local_minima({"experiment": "maps"}, {"maps": Results(runs, {"p": None}, pd.DataFrame())}, {})
+    assert answer[0] == mark
+    assert answer[1] > 0.5
+
+
+# Round the circles of the workspace `equal`: above all, below all, and between them as the best known one.
+WAYS = {"above": [(-4, 2), (-2, 8), (2, 8)], "below": [(6, 0), (6, 3), (6, 6)], "between": list(tharwat2018.BEST_KNOWN["equal"])}
+
+
+def run(way, feasible=True, curve="bezier"):
+    points = [(0, 0), *WAYS[way], (4, 6)]
+    flat = [float(number) for point in points for number in point]
+    return {"problem": "equal", "feasible": feasible, "path_curve": curve, "path_points": flat}
+
+
+def test_homotopy_class():
+    """A circle to the left of the path is swept counterclockwise. Circle 0 is the upper one, 1 the right one, 2 the one near the start."""
+    found = {
+        way: tharwat2018.homotopy_class(Path("bezier", np.array([(0, 0), *WAYS[way], (4, 6)], dtype=float)), problem("equal"))
+        for way in WAYS
+    }
+    assert found["above"] == (False, False, False)
+    assert found["below"] == (True, True, True)
+    assert len(set(found.values())) == 3
+
+
+@pytest.mark.parametrize(
+    ("runs", "mark", "classes", "counted"),
+    [
+        ([run("above"), run("above")], "-", 1, 2),
+        ([run("above"), run("below"), run("between"), run("above")], "+", 3, 4),
+        ([run("above"), run("below", feasible=False)], "-", 1, 1),
+    ],
+)
+def test_several_homotopy_classes(runs, mark, classes, counted):
+    check = {"experiment": "maps", "where": {"feasible": True}}
+    found = Results(pd.DataFrame(runs), {"equal": problem("equal")}, pd.DataFrame())
+    assert tharwat2018.several_homotopy_classes(check, {"maps": found}, {}) == (mark, classes, None, counted)
+
+
+def test_audit_of_tharwat2018():
+    rows = audit.table("tharwat2018", tharwat2018.audit(published("tharwat2018")))
+    wrong = rows[~rows["consistent"].astype(bool)]
+    sums = rows[rows["place"] == "all rows"].set_index("item")
+    assert sums["printed"].round(1).to_dict() == {"table3": 36.0, "table4": 36.1, "table5": 13.8, "table6": 32.2}
+    assert sums["limit"].to_dict() == {"table3": 36, "table4": 36, "table5": 15, "table6": 55}
+    assert sums["consistent"].to_dict() == {"table3": True, "table4": True, "table5": False, "table6": False}
+    below_one = wrong[wrong["rule"] == "a rank is at least 1"]
+    assert below_one["place"].to_list() == [f"method=cpso2_singer, obstacles={k}, metric=rank" for k in (1, 2)]
+    above = wrong[wrong["rule"].str.startswith("of 20 particles")]
+    assert above["printed"].to_list() == [23.2, 22.6, 21.1, 22.9, 20.9, 22.6]
+    said = wrong[wrong["rule"].str.startswith("the text")]
+    # Logistic before Sine; Circle and Sinusoidal before Piecewise; CPSO-II Gauss and Piecewise before CPSO-I.
+    assert len(said) == 5
+    assert len(wrong) == 2 + 2 + 6 + 5 + 1
+    assert rows["rule"].str.startswith("Table 5 has").sum() == 8
+
+
+@pytest.mark.parametrize(("table", "metric"), [("table3", "objective"), ("table5", "collisions_a"), ("table6", "objective")])
+def test_audit_sees_a_changed_number(table, metric):
+    numbers = published("tharwat2018")
+    before = faults(tharwat2018.audit(numbers))
+    changed = numbers[table].copy()
+    changed.loc[changed.index[changed["metric"] == metric][-1], "value"] = 7.0
+    assert len(faults(tharwat2018.audit(numbers | {table: changed})) - before) > 0
+
+
+def test_published_numbers_of_tharwat2018():
+    tables = published("tharwat2018")
+    assert [len(tables[name]) for name in tharwat2018.RANKED] == [3 * rows for rows in tharwat2018.RANKED.values()]
+    best = tables["table4"].query("metric == 'objective'").set_index("method")["value"]
+    assert (best["cpso2_gauss"], best["cpso2_singer"]) == (14.90, 10.21)
+    for name in tharwat2018.RANKED:
+        assert set(tables[name]["method"]) <= THARWAT["methods"].keys()
+        assert (tables[name]["n"] == 10).all()
+
+
+def test_methods_of_tharwat2018():
+    """Eight maps in each variant, of which the Tent map has a fixed start of its own; the collapsed sequence never moves."""
+    for variant, term in (("cpso1", "cognitive"), ("cpso2", "social")):
+        for name in tharwat2018.CHAOTIC:
+            own = THARWAT["methods"][f"{variant}_{name}"]["settings"]
+            assert own == {"chaotic_term": term, "chaotic_map": name} | ({"chaotic_start": 0.6} if name == "tent" else {})
+    frozen = THARWAT["settings"] | THARWAT["methods"]["cpso2_gauss_collapsed"]["settings"]
+    plan = chaotic_pso.plan(problem("equal"), np.random.default_rng(0), **frozen)
+    assert plan.extra["zeta_collapsed_at"] == 1
+    assert set(plan.history.tolist()) == {plan.objective}
+
+
+def test_assumptions_of_tharwat2018():
+    """With a setting, the default is the value in force, and every alternative is legal."""
+    assumptions = checked.read(STUDIES / "tharwat2018" / "assumptions.yaml", "assumptions")["assumptions"]
+    governed = [assumption for assumption in assumptions if "setting" in assumption]
+    assert len(governed) >= 15
+    for assumption in governed:
+        setting, default = assumption["setting"], assumption["default"]
+        for method, value in default.items() if isinstance(default, dict) else [("pso", default)]:
+            described = THARWAT["methods"][method]
+            annotation = planner_settings(planner_module(described["planner"]))[setting]
+            assert (THARWAT["settings"] | described["settings"])[setting] == value, assumption["id"]
+            for alternative in assumption["alternatives"]:
+                assert setting_fault(annotation, alternative) is None, assumption["id"]
