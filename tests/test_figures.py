@@ -16,7 +16,7 @@ from matplotlib.text import Text
 from bezierplan import curves, figures, sheet, style
 from bezierplan.analysis.results import Results
 from bezierplan.checked import SCHEMAS
-from bezierplan.figures import along_path, convergence, paths, workspace
+from bezierplan.figures import along_path, bars, boxes, convergence, lines, paths, workspace
 from bezierplan.problem import Path, Problem, Workspace
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid, from_lines
@@ -77,10 +77,79 @@ def panels() -> list[dict]:
     ]
 
 
+def comparison(published: pd.DataFrame | None = None) -> Results:
+    """Runs of three methods with two, three and five points, in a workspace of circles; objectives are methods' bases plus the repeat."""
+    problem = Problem("field", other_workspaces()["circles"], (-9.0, 0.0), (9.0, 0.0))
+    points = np.array([problem.start, (0.0, 9.0), problem.target])
+    runs = pd.DataFrame(
+        {
+            "id": f"study/routes/field,points={number}/{method}/{repeat:02}",
+            "problem": "field",
+            "method": method,
+            "points": number,
+            "repeat": repeat,
+            "objective": base + number + repeat,
+            "length": base + number + repeat,
+            "feasible": repeat % 4 > 0,
+            "collision_at": np.nan if repeat % 4 else 0.5,
+            "bound": 18.5,
+            "history": [base + number + repeat + 9.0, *([base + number + repeat] * (1 + repeat % 2))],
+            "path_curve": "bezier",
+            "path_points": points.ravel().tolist(),
+        }
+        for method, base in (("smooth", 30.0), ("coarse", 20.0), ("random", 40.0))
+        for number in (2, 3, 5)
+        for repeat in range(8)
+    )
+    bounds = pd.DataFrame({"bound_path": [[-9.0, 0.0, 9.0, 0.0]]}, index=["field"])
+    return Results(runs, {"field": problem}, bounds, published)
+
+
+def printed_means() -> pd.DataFrame:
+    """Published numbers: a mean of a method, one of a method with five points, and what is no mean of the objective."""
+    return pd.DataFrame(
+        {
+            "method": ["smooth", "smooth", "coarse", "coarse"],
+            "points": [np.nan, 5, np.nan, np.nan],
+            "metric": ["objective", "objective", "length", "objective"],
+            "statistic": ["mean", "mean", "mean", "median"],
+            "n": 10,
+            "unit": "m",
+            "value": [36.5, 38.0, 1.0, 2.0],
+        }
+    )
+
+
+def sequence() -> pd.DataFrame:
+    """A table of a study's function: two sequences of numbers, one of them long."""
+    short, long = pd.DataFrame({"map": "short", "k": range(9)}), pd.DataFrame({"map": "long", "k": range(300)})
+    return pd.concat([short, long]).assign(value=lambda table: np.sin(table["k"]))
+
+
+def comparing_panels() -> list[dict]:
+    runs = {"experiment": "routes", "where": {"method": ["smooth", "coarse", "random"]}}
+    smooth = {"experiment": "routes", "where": {"method": "smooth"}}
+    return [
+        {"kind": "convergence", "title": "methods", **runs, "hue": "method"},
+        {"kind": "convergence", "title": "points", **smooth, "hue": "points", "statistic": "median"},
+        {"kind": "lines", "title": "points", **smooth, "x": "points", "metric": "objective", "repeats": [0, 1]},
+        {"kind": "lines", "title": "methods", **runs, "x": "points", "metric": "length", "hue": "method"},
+        {"kind": "lines", "title": "sequence", "data": "sequence", "where": {"map": "long"}, "x": "k", "metric": "value"},
+        {"kind": "bars", "title": "points", **runs, "x": "points", "hue": "method", "metric": "length"},
+        {"kind": "paths", "title": "explicit", "explicit": {"curve": "bezier", "points": [[0, 0], [1, 2], [3, 0]]}},
+        {"kind": "boxes", "title": "methods", **runs, "metric": "objective"},
+    ]
+
+
+def gallery(panels: int) -> list[dict]:
+    run = {"experiment": "routes", "where": {"method": "smooth", "points": 3}, "pick": {"median": "length"}}
+    return [{"kind": "paths", "title": f"n = {n}", **run, "control": "points", "view": [-9, 9, -4, 5]} for n in range(panels)]
+
+
 def drawn(found: Results, own: list[dict], columns: int, folder: File) -> Figure:
     """A figure as the workflow makes it: by way of the csv."""
     file = str(folder / "figure.csv")
-    sheet.write_data(sheet.data(own, {"routes": found}, scene(found).workspaces), file)
+    sheet.write_data(sheet.data(own, {"routes": found}, scene(found).workspaces, {"sequence": sequence}), file)
     return sheet.draw(own, sheet.read_data(file), scene(found), columns)
 
 
@@ -123,6 +192,149 @@ def test_convergence_prolongs_runs_that_stopped_early():
     assert list(frame["objective"]) == [90, 70, 59]
     assert frame["median"].iloc[2] == 60
     np.testing.assert_allclose(frame["quantile90"].iloc[2], np.quantile([60, 59, 70], 0.9))
+
+
+def test_convergence_of_groups_holds_last_values():
+    frame = convergence.data(comparison(), hue="method")
+    assert set(frame["method"]) == {"smooth", "coarse", "random"}
+    assert list(frame["problem"].unique()) == ["field"]
+    assert set(frame["runs"]) == {24}
+    assert set(frame["feasible_runs"]) == {18}
+    coarse = frame.loc[frame["method"] == "coarse", "objective"]
+    middle = 20 + np.mean([2, 3, 5]) + np.mean(range(8))
+    np.testing.assert_allclose(coarse, [middle + 9, middle, middle])
+    median = convergence.data(comparison(), hue="points", statistic="median")
+    np.testing.assert_allclose(median.loc[median["points"] == 3, "objective"].iloc[-1], 33 + 3.5)
+
+
+def test_names_beside_lines_are_in_the_order_of_the_last_values(tmp_path):
+    figure = drawn(comparison(), comparing_panels()[:2], 2, tmp_path)
+    figure.draw_without_rendering()
+    for axes, names in zip(figure.axes, (["random", "smooth (quadratic pieces)", "coarse"], ["points = 5", "points = 3", "points = 2"])):
+        places = [next(text for text in axes.texts if text.get_text() == name).get_window_extent() for name in names]
+        assert all(upper.y0 >= lower.y1 - 1 for upper, lower in zip(places, places[1:])), "names neither overlap nor swap"
+
+
+def test_names_beside_lines_stay_where_there_is_room():
+    np.testing.assert_allclose(convergence._apart(np.array([0.1, 0.5, 0.9])), [0.1, 0.5, 0.9])
+    equal = convergence._apart(np.full(5, 0.02))
+    assert equal[0] == 0
+    assert (np.diff(equal) > 0.05).all()
+    assert convergence._apart(np.full(40, 0.9)).max() <= 1 + 1e-9
+
+
+@pytest.mark.parametrize("options", [{}, {"pick": LOWEST, "hue": "method"}])
+def test_convergence_needs_pick_or_hue(options):
+    with pytest.raises(ValueError, match="either pick or hue"):
+        convergence.data(comparison(), **options)
+
+
+def test_lines_have_intervals_and_single_repeats():
+    frame = lines.data(comparison(), x="points", metric="length", hue="method", repeats=[1])
+    statistic = frame[frame["part"] == "statistic"]
+    assert len(statistic) == 9
+    assert set(statistic["n"]) == {6}, "lengths are of feasible runs"
+    assert (statistic["low95"] < statistic["value"]).all()
+    assert (statistic["value"] < statistic["high95"]).all()
+    coarse = frame[(frame["part"] == "repeat") & (frame["method"] == "coarse")]
+    assert list(coarse["value"]) == [23, 24, 26]
+    with pytest.raises(ValueError, match="equal points"):
+        lines.data(comparison(), x="points", metric="length", repeats=[1])
+
+
+def test_order_of_runs_changes_no_bit():
+    found = comparison()
+    other = found._replace(runs=found.runs.sample(frac=1, random_state=1).reset_index(drop=True))
+    for kind, options in ((lines, {"x": "points", "hue": "method"}), (bars, {"x": "points", "hue": "method"}), (boxes, {})):
+        pd.testing.assert_frame_equal(kind.data(found, metric="objective", **options), kind.data(other, metric="objective", **options))
+    pd.testing.assert_frame_equal(convergence.data(found, hue="method"), convergence.data(other, hue="method"))
+
+
+def test_lines_draw_the_table_of_a_function(tmp_path):
+    own = [comparing_panels()[4] | {"where": {"map": name}} for name in ("short", "long")]
+    figure = drawn(comparison(), own, 2, tmp_path)
+    joined = [axes.lines[0].get_linestyle() for axes in figure.axes]
+    assert [len(axes.lines[0].get_xdata()) for axes in figure.axes] == [9, 300]
+    assert joined == ["-", "None"], "many points are not joined"
+
+
+def test_boxes_end_at_the_last_value_within_reach():
+    found = comparison()
+    values = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 90.0])
+    found.runs["objective"] = np.tile(values, 9)
+    frame = boxes.data(found, metric="objective")
+    parts = frame[frame["method"] == "smooth"].groupby("part")["value"].agg(list)
+    assert parts["quartile1"] == [pytest.approx(np.quantile(np.tile(values, 3), 0.25))]
+    assert (parts["low"], parts["high"], parts["beyond"]) == ([0], [6], [90] * 3)
+    assert parts["mean"] == [values.mean()]
+
+
+def test_boxes_show_the_published_means_of_their_runs(tmp_path):
+    found = comparison(printed_means())
+    frame = boxes.data(found, metric="objective")
+    assert frame.loc[frame["part"] == "published", ["method", "value"]].to_numpy().tolist() == [["smooth", 36.5], ["smooth", 38.0]]
+    three = found._replace(runs=found.runs[found.runs["points"] == 3])
+    assert list(boxes.data(three, metric="objective").query("part == 'published'")["value"]) == [36.5]
+    assert "published" not in set(boxes.data(comparison(), metric="objective")["part"])
+    figure = drawn(found, comparing_panels()[7:], 1, tmp_path)
+    assert "published mean" in words(figure)
+
+
+def test_bars_count_feasible_runs_and_know_the_bound(tmp_path):
+    found = comparison()
+    found.runs.loc[found.runs["method"] == "random", "feasible"] = False
+    frame = bars.data(found, x="points", hue="method", metric="length")
+    assert len(frame) == 9
+    assert set(frame["bound"]) == {18.5}
+    assert frame.loc[frame["method"] == "random", "value"].isna().all()
+    assert bars.data(found, x="points", hue="method", metric="feasible", statistic="share")["bound"].isna().all()
+    figure = drawn(found, comparing_panels()[5:6], 1, tmp_path)
+    assert sum(text == "75 %" for text in words(figure)) == 6
+    assert sum(text == "0 %" for text in words(figure)) == 3
+
+
+def test_bars_and_lines_keep_the_order_of_where(tmp_path):
+    figure = drawn(comparison(), comparing_panels()[5:6], 1, tmp_path)
+    named = [text for text in words(figure) if text in ("smooth (quadratic pieces)", "coarse", "random")]
+    assert named == ["smooth (quadratic pieces)", "coarse", "random"]
+
+
+def test_tangents_are_no_control_points(tmp_path):
+    found = results(curve="ferguson")
+    found.runs["path_points"] = [[5, 5, 30, 0, 5, 25, 0, 30, 35, 35, 30, 0.0]] * 3
+    assert set(paths.data(found, pick=LOWEST)["part"]) == {"start", "target", "bound", "path"}
+    drawing = words(drawn(found, panels()[:1], 1, tmp_path))
+    assert not any("no path" in text or "distinct" in text for text in drawing)
+    assert "hull" not in set(paths.data(results(curve="spline"), pick=LOWEST)["part"])
+
+
+def test_control_points_alone_or_not_at_all():
+    parts = {control: set(paths.data(results(), pick=LOWEST, control=control)["part"]) for control in ("all", "points", "none")}
+    assert parts["all"] - parts["none"] == {"control", "hull"}
+    assert parts["points"] - parts["none"] == {"points"}
+
+
+def test_explicit_path_needs_no_run(tmp_path):
+    frame = paths.data(None, explicit={"curve": "bezier", "points": [[0, 0], [1, 2], [3, 0]]})
+    assert frame.loc[frame["part"] == "target", ["x", "y"]].to_numpy().tolist() == [[3, 0]]
+    figure = drawn(comparison(), comparing_panels()[6:7], 1, tmp_path)
+    assert figure.axes[0].get_xlabel() == "x (unit)"
+    with pytest.raises(ValueError, match="either pick or explicit"):
+        paths.data(results())
+
+
+def test_view_cuts_what_is_drawn_but_not_what_is_listed(tmp_path):
+    figure = drawn(comparison(), gallery(1), 1, tmp_path)
+    assert (*figure.axes[0].get_xlim(), *figure.axes[0].get_ylim()) == (-9, 9, -4, 5)
+    assert all(line.get_clip_on() for line in figure.axes[0].lines)
+
+
+def test_narrow_panels_have_short_notes_and_name_axes_once(tmp_path):
+    figure = drawn(comparison(), gallery(10), 5, tmp_path)
+    assert sum("repeat 3\nlength 36.00 m" in text for text in words(figure)) == 10
+    assert [axes.get_ylabel() for axes in figure.axes] == [*["y (m)", "", "", "", ""] * 2]
+    assert [axes.get_xlabel() for axes in figure.axes] == [""] * 5 + ["x (m)"] * 5
+    assert figure.axes[0].get_title(loc="left") == "(a) n = 0"
 
 
 def test_along_path_leaves_out_where_the_curve_stands_still(tmp_path):
@@ -227,9 +439,16 @@ def test_peak_far_above_the_limit_is_cut_and_said(tmp_path):
     assert any(f"highest {highest:.3g} 1/unit" in text for text in words(figure))
 
 
-@pytest.mark.parametrize(("columns", "width"), [(1, 85), (2, 174), (3, 174)])
-def test_every_sheet_is_fit_for_print(columns, width, tmp_path):
-    figure = drawn(results(), panels(), columns, tmp_path)
+@pytest.mark.parametrize(
+    ("found", "own", "columns", "width"),
+    [
+        *((results(), panels(), columns, width) for columns, width in ((1, 85), (2, 174), (3, 174))),
+        *((comparison(printed_means()), comparing_panels(), columns, width) for columns, width in ((1, 85), (2, 174))),
+        *((comparison(), gallery(10), columns, 174) for columns in (4, 5)),
+    ],
+)
+def test_every_sheet_is_fit_for_print(found, own, columns, width, tmp_path):
+    figure = drawn(found, own, columns, tmp_path)
     assert figure.get_figwidth() * 25.4 == pytest.approx(width)
     figure.draw_without_rendering()
     seen = [text for text in figure.findobj(Text) if text.get_text() and text.get_visible()]

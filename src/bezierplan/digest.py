@@ -44,7 +44,13 @@ def _imports(module: str, tree: ast.Module) -> set[str]:
             found.add(base)
             found.update(f"{base}.{alias.name}" for alias in node.names)
     ours = {name for name in found if name.split(".")[0] == ROOT and _module_file(name)}
-    return ours | {".".join(name.split(".")[:n]) for name in ours for n in range(1, name.count(".") + 1)}
+    return ours.union(*map(_parents, ours))
+
+
+def _parents(module: str) -> set[str]:
+    """Names of the packages that a module lies in."""
+    parts = module.split(".")
+    return {".".join(parts[:n]) for n in range(1, len(parts))}
 
 
 def source_digest(*modules: str) -> str:
@@ -53,7 +59,8 @@ def source_digest(*modules: str) -> str:
     A module is a dotted name of this package or the path of a planner's file. Comments and layout do not count: the digest is
     taken over syntax trees.
     """
-    todo, trees = list(modules), {}
+    own = [module for module in modules if not module.endswith(".py")]
+    todo, trees = [*modules, *set().union(*map(_parents, own))], {}
     while todo:
         module = todo.pop()
         if module in trees:

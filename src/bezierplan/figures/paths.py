@@ -84,8 +84,8 @@ def data(
 
     pick: the run, as in `analysis.results.pick`. explicit: {curve, points}, a path without a run. control: whether control points are drawn
     with their polygon and hull, alone, or not at all. view: what is seen of the workspace, as its bounds; all rows are here nevertheless.
-    Raises ValueError unless either pick or explicit is given and all runs are of one problem and one method, and if a curve cannot have such
-    points.
+    Raises ValueError unless either pick or explicit is given and all runs are of one problem and one method, and if a curve cannot have
+    such points.
     """
     if (pick is None) == (explicit is None):
         raise ValueError("a panel of kind paths needs either pick or explicit")

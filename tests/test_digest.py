@@ -1,0 +1,61 @@
+"""Digests of code: what counts and what does not."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+SOURCE = Path(__file__).parents[1] / "src"
+ASK = "from bezierplan.digest import source_digest; print(source_digest(*{modules!r}))"
+
+
+@pytest.fixture
+def tree(tmp_path):
+    return Path(shutil.copytree(SOURCE, tmp_path / "src", ignore=shutil.ignore_patterns("__pycache__")))
+
+
+def digest(tree, *modules):
+    command = [sys.executable, "-c", ASK.format(modules=modules)]
+    return subprocess.run(command, env={"PYTHONPATH": str(tree)}, capture_output=True, text=True, check=True).stdout
+
+
+def append(file, text):
+    file.write_text(file.read_text() + text)
+
+
+def test_comment_and_layout_do_not_count(tree):
+    before = digest(tree, "bezierplan.running")
+    append(tree / "bezierplan" / "running.py", "\n\n# a comment\n")
+    assert digest(tree, "bezierplan.running") == before
+
+
+def test_code_of_a_module_that_is_imported_by_way_of_others_counts(tree):
+    before = digest(tree, "bezierplan.running"), digest(tree, "bezierplan.search.genetic")
+    append(tree / "bezierplan" / "workspaces" / "grid.py", "\nNEW = 1\n")
+    assert digest(tree, "bezierplan.running") != before[0]
+    assert digest(tree, "bezierplan.search.genetic") == before[1]
+
+
+def test_package_above_a_module_counts(tree):
+    before = digest(tree, "bezierplan.search.genetic")
+    append(tree / "bezierplan" / "search" / "__init__.py", "\nNEW = 1\n")
+    assert digest(tree, "bezierplan.search.genetic") != before
+
+
+def test_planner_is_named_to_it(tree):
+    before = digest(tree, "bezierplan.running")
+    append(tree / "bezierplan" / "planners" / "binary_genetic.py", "\nNEW = 1\n")
+    assert digest(tree, "bezierplan.running") == before
+    assert digest(tree, "bezierplan.running", "bezierplan.planners.binary_genetic") != before
+
+
+def test_own_planner_counts_with_what_it_imports(tree, tmp_path):
+    planner = tmp_path / "mine.py"
+    planner.write_text("from bezierplan.search import genetic\n")
+    before = digest(tree, str(planner))
+    append(tree / "bezierplan" / "search" / "genetic.py", "\nNEW = 1\n")
+    after = digest(tree, str(planner))
+    append(planner, "NEW = 1\n")
+    assert len({before, after, digest(tree, str(planner))}) == 3

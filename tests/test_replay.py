@@ -1,0 +1,47 @@
+"""One run again, from its name alone."""
+
+import pytest
+
+from bezierplan import problems, replay, running, study_file
+from bezierplan.checked import Fault
+from bezierplan.study import job, problems_job
+
+STUDIES = study_file.load(study_file.read_config({"studies": ["song2016"]}))
+
+
+def test_run_made_again_equals_the_row_of_its_chunk(tmp_path):
+    study = STUDIES["song2016"]
+    described = job(study, "routes", "straight_line", "smoke", 0)
+    made, _ = problems.build_all(problems_job(study, "routes", "smoke"), study.folder)
+    runs, _ = running.run_chunk(made, described)
+    for row in runs.to_pylist():
+        assert replay.equal(replay.replay(row["id"], STUDIES).runs.iloc[0], row)
+
+
+def test_run_made_again_differs_from_another(tmp_path):
+    one, other = (replay.replay(f"song2016/routes/0_15/random_search/{repeat}", STUDIES).runs.iloc[0] for repeat in (0, 1))
+    assert replay.equal(one, one.to_dict())
+    assert not replay.equal(one, other.to_dict())
+
+
+def test_picture_shows_the_first_collision(tmp_path):
+    made = replay.replay("song2016/routes/0_15/straight_line/0", STUDIES)
+    replay.draw(made, STUDIES["song2016"], tmp_path / "deep" / "run.svg")
+    assert "first collision" in (tmp_path / "deep" / "run.svg").read_text()
+    assert "collision" in (tmp_path / "deep" / "run.csv").read_text()
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("song2016/routes/0_15/smooth", "expected study/experiment/condition/method/repeat"),
+        ("song2061/routes/0_15/smooth/0", "study: song2061: unknown; did you mean song2016"),
+        ("song2016/route/0_15/smooth/0", "experiment: route: unknown; did you mean routes"),
+        ("song2016/routes/0_16/smooth/0", "condition: 0_16: unknown; did you mean 0_15"),
+        ("song2016/routes/0_15/smoth/0", "method: smoth: unknown; did you mean smooth"),
+        ("song2016/routes/0_15/smooth/first", "repeat: first; expected a whole number"),
+    ],
+)
+def test_unknown_part_of_a_name_is_told(name, told):
+    with pytest.raises(Fault, match=told):
+        replay.replay(name, STUDIES)
