@@ -14,6 +14,7 @@ import importlib.util
 import inspect
 import math
 import typing
+from functools import cache
 from pathlib import Path as File
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -68,6 +69,7 @@ class Range(NamedTuple):
         return f"from {self.low:g} to {self.high:g}"
 
 
+@cache
 def planner_module(planner: str) -> ModuleType:
     """The module of a planner: `name` is planners/name.py of this package, `folder/name.py` a file of the reader's own.
 
@@ -86,8 +88,9 @@ def known_planners() -> list[str]:
     return sorted(file.stem for file in (File(__file__).parent / "planners").glob("*.py") if file.stem != "__init__")
 
 
+@cache
 def planner_settings(module: ModuleType) -> dict[str, Any]:
-    """Settings of a planner: name -> annotation, in the order of its signature."""
+    """Settings of a planner: name -> annotation, in the order of its signature. Not to be changed."""
     hints = typing.get_type_hints(module.plan, include_extras=True)
     parameters = inspect.signature(module.plan).parameters.values()
     return {p.name: hints[p.name] for p in parameters if p.kind is inspect.Parameter.KEYWORD_ONLY}
