@@ -61,8 +61,7 @@ def report(numbers: pd.DataFrame, claims: pd.DataFrame, titles: dict[str, str], 
 
 def with_block(text: str, name: str, block: str) -> str:
     """A text whose part between `<!-- name -->` and `<!-- /name -->` is replaced. Raises ValueError if it has no such part."""
-    begin, end = f"<!-- {name} -->\n", f"\n<!-- /{name} -->"
-    if begin not in text or end not in text:
-        raise ValueError(f"no part between {begin.strip()} and {end.strip()}")
-    head, rest = text.split(begin, 1)
-    return head + begin + block + end + rest.split(end, 1)[1]
+    begin, end = f"<!-- {name} -->", f"<!-- /{name} -->"
+    if not 0 <= text.find(begin) < text.find(end):
+        raise ValueError(f"no part between {begin} and {end}")
+    return f"{text[: text.find(begin)]}{begin}\n{block}\n{text[text.find(end) :]}"
