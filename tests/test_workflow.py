@@ -66,9 +66,11 @@ def runs(number, methods=METHODS):
     return {f"runs {method}": number for method in methods}
 
 
-TABLES = {"table table1": 1, "table feasibility": 1}
+TABLES = {"table table1": 1, "table feasibility": 1, "claims": 1, "summary": 1}
 ARTEFACTS_OF_RUNS = TABLES | {"figure figure3": 1, "figure figure4": 1, "figure figure5": 1}
-ALL_ARTEFACTS = ARTEFACTS_OF_RUNS | {"figure figure1": 1, "figure figure2": 1}
+
+OF_PUBLISHED = {"table table1": 1, "claims": 1, "audit": 1, "summary": 1}
+OF_LABELS = {name: 1 for name in [*ARTEFACTS_OF_RUNS, "figure figure1", "figure figure2"] if name != "claims"}
 
 
 @pytest.fixture(scope="module")
@@ -106,28 +108,31 @@ EDITS = {
         "history[generation] = best_objective + 0",
         runs(2, GENETIC) | ARTEFACTS_OF_RUNS,
     ),
+    # The audit reads the study's own file, which tries the operators.
     "code of an operator": (
         "src/bezierplan/search/genetic.py",
         "wheel = np.cumsum(fitness)",
         "wheel = np.cumsum(fitness + 0)",
-        runs(2, GENETIC) | ARTEFACTS_OF_RUNS,
+        runs(2, GENETIC) | ARTEFACTS_OF_RUNS | {"audit": 1},
     ),
     "a comment": ("src/bezierplan/search/genetic.py", "# A draw next to 1", "# Hence a draw next to 1", {}),
     "a metric": ("src/bezierplan/metrics.py", "FINE_SAMPLES = 4001", "FINE_SAMPLES = 4002", TABLES),
     "a kind of figure": ("src/bezierplan/figures/convergence.py", "return", "0\n    return", {"figure figure4": 1}),
     "a setting of one method": (EXPERIMENTS, "samples: 701", "samples: 1401", runs(2, ["nonsmooth"]) | TABLES),
     "a setting of all methods": (EXPERIMENTS, "penalty: 10.0", "penalty: 11.0", runs(2, GENETIC) | ARTEFACTS_OF_RUNS),
-    "a published number": ("config/studies/song2016/published/table1.csv", "225.4982", "225.5982", {"table table1": 1}),
+    "a published number": ("config/studies/song2016/published/table1.csv", "225.4982", "225.5982", OF_PUBLISHED),
     "a map": (
         "config/studies/song2016/workspaces/figure2.txt",
         "....##....######\n",
         "....##.....#####\n",
-        {"problems": 1, "bounds": 1, "figure figure2": 1} | runs(2) | ARTEFACTS_OF_RUNS,
+        {"problems": 1, "bounds": 1, "figure figure2": 1, "audit": 1} | runs(2) | ARTEFACTS_OF_RUNS,
     ),
     "the seed rule": (EXPERIMENTS, "    repeats: {smoke", "    seeds: shared\n    repeats: {smoke", runs(2) | ARTEFACTS_OF_RUNS),
     "more repeats": (EXPERIMENTS, "full: 4,", "full: 6,", runs(1) | ARTEFACTS_OF_RUNS),
     "fewer repeats": (EXPERIMENTS, "full: 4,", "full: 3,", ARTEFACTS_OF_RUNS),
-    "a label": ("config/studies/song2016/artefacts.yaml", "0_15: 0 to 15", "0_15: from 0 to 15", ALL_ARTEFACTS),
+    "a label": ("config/studies/song2016/artefacts.yaml", "0_15: 0 to 15", "0_15: from 0 to 15", OF_LABELS),
+    "a claim": ("config/studies/song2016/claims.yaml", "margin: 0.1,", "margin: 0.2,", {"claims": 1, "summary": 1}),
+    "an alternative": ("config/studies/song2016/assumptions.yaml", "[20, 50, 101, 401]", "[20, 50, 401]", {}),
 }
 
 
