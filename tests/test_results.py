@@ -1,0 +1,49 @@
+"""Results read back: which runs, and that none of them beats the bound."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from bezierplan.analysis import results
+from bezierplan.problem import Problem
+from bezierplan.workspaces.circles import Circles
+
+DISC = Problem("disc", Circles((-5.0, 5.0, -5.0, 5.0), np.array([[0.0, 0.0]]), np.array([1.0]), "m"), (-2.0, 0.0), (2.0, 0.0))
+BOUND = 2 * np.sqrt(3) + np.pi / 3
+BOUNDS = pd.DataFrame({"problem": ["disc"], "straight_line": 4.0, "bound": BOUND, "least_length": BOUND - 1e-8, "bound_path": [[]]})
+
+
+def runs(lengths, feasible=True):
+    rows = {"id": [f"s/e/disc/m/{i}" for i in range(len(lengths))], "problem": "disc", "repeat": range(len(lengths)), "length": lengths}
+    return pd.DataFrame(rows | {"feasible": feasible, "objective": lengths})
+
+
+def test_feasible_path_below_the_bound_stops_with_the_name_of_its_run():
+    with pytest.raises(ValueError, match="run s/e/disc/m/1 is said to be feasible, but its length 4.5 lies below the bound"):
+        results.joined(runs([5.0, 4.5, 6.0]), {"disc": DISC}, BOUNDS)
+
+
+def test_colliding_path_may_be_shorter_than_the_bound():
+    assert len(results.joined(runs([5.0, 4.0], feasible=[True, False]), {"disc": DISC}, BOUNDS).runs) == 2
+
+
+def test_bound_itself_and_what_the_tolerance_leaves_of_it_are_accepted():
+    joined = results.joined(runs([BOUND, BOUND - 5e-9]), {"disc": DISC}, BOUNDS)
+    assert joined.runs["bound"].tolist() == [BOUND, BOUND]
+
+
+@pytest.mark.parametrize(
+    ("which", "repeat"),
+    [({"lowest": "objective"}, 2), ({"median": "objective"}, 0), ({"repeat": 3}, 3)],
+)
+def test_picked_run(which, repeat):
+    table = runs([6.0, 7.0, 5.0, 4.0, 8.0], feasible=[True, True, True, False, True])
+    assert results.pick(table, which)["repeat"] == repeat
+
+
+def test_no_feasible_run_is_no_pick():
+    assert results.pick(runs([5.0], feasible=False), {"lowest": "objective"}) is None
+
+
+def test_of_equal_runs_the_first_repeat_is_picked():
+    assert results.pick(runs([5.0, 5.0]).iloc[::-1], {"lowest": "objective"})["repeat"] == 0
