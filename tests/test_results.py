@@ -19,7 +19,7 @@ def runs(lengths, feasible=True):
 
 
 def test_feasible_path_below_the_bound_stops_with_the_name_of_its_run():
-    with pytest.raises(ValueError, match="run s/e/disc/m/1 is said to be feasible, but its length 4.5 lies below the bound"):
+    with pytest.raises(ValueError, match=r"run s/e/disc/m/1 is said to be feasible, but its length 4\.5 lies below the bound"):
         results.joined(runs([5.0, 4.5, 6.0]), {"disc": DISC}, BOUNDS)
 
 
