@@ -47,7 +47,8 @@ def joined(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFram
     impossible = runs["feasible"] & (runs["length"] < runs["problem"].map(bounds["least_length"]))
     if impossible.any():
         run = runs[impossible].iloc[0]
-        raise ValueError(f"run {run['id']} is said to be feasible, but its length {run["length"]:.12g} lies below the bound {run["bound"]:.12g}")
+        lengths = f"its length {run['length']:.12g} lies below the bound {run['bound']:.12g}"
+        raise ValueError(f"run {run['id']} is said to be feasible, but {lengths}")
     return Results(runs, problems, bounds)
 
 
