@@ -1,6 +1,7 @@
 """Figures: what is drawn stands in the table beside them, and can be read in print."""
 
 import inspect
+import itertools
 import subprocess
 import sys
 from pathlib import Path as File
@@ -212,7 +213,7 @@ def test_names_beside_lines_are_in_the_order_of_the_last_values(tmp_path):
     figure.draw_without_rendering()
     for axes, names in zip(figure.axes, (["random", "smooth (quadratic pieces)", "coarse"], ["points = 5", "points = 3", "points = 2"])):
         places = [next(text for text in axes.texts if text.get_text() == name).get_window_extent() for name in names]
-        assert all(upper.y0 >= lower.y1 - 1 for upper, lower in zip(places, places[1:])), "names neither overlap nor swap"
+        assert all(upper.y0 >= lower.y1 - 1 for upper, lower in itertools.pairwise(places)), "names neither overlap nor swap"
 
 
 def test_names_beside_lines_stay_where_there_is_room():

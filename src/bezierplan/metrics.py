@@ -76,6 +76,23 @@ def _rank(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     return runs.groupby(unit, dropna=False)["objective"].rank().to_numpy()
 
 
+# A value this many interquartile ranges beyond its quartile is an outlier of a box plot.
+_OUTLIER_REACH = 1.5
+
+
+def _outlier(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Whether (n,) a run's objective lies beyond the whiskers of the box of its method under its condition."""
+    grouped = runs.groupby(["condition", "method"], dropna=False)["objective"]
+    first, third = grouped.transform(lambda each: each.quantile(0.25)), grouped.transform(lambda each: each.quantile(0.75))
+    reach = _OUTLIER_REACH * (third - first)
+    return ((runs["objective"] < first - reach) | (runs["objective"] > third + reach)).to_numpy()
+
+
+def _gap_reference(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Length over that of the best known path of the same kind, minus 1 (n,); not a number where none is known."""
+    return runs["length"] / runs["reference"] - 1
+
+
 def _held_history(runs: pd.DataFrame) -> np.ndarray:
     """Best objective so far by generation: (runs, most generations + 1). Runs that stopped early hold their last value."""
     lengths = runs["history"].map(len).to_numpy()
@@ -211,6 +228,8 @@ METRICS: dict[str, Metric] = {
     ),
     "distinct_points": Metric("-", "control points that differ from each other", False, partial(_of_path, _distinct_points)),
     "occupied_points": Metric("-", "control points in occupied cells of a grid", True, partial(_of_path_on_grid, _occupied_points)),
+    "gap_reference": Metric("-", "length / length of the best known path of the same kind - 1", True, _gap_reference),
+    "outlier": Metric("-", "whether the objective lies beyond the whiskers of its method's box", False, _outlier),
     "violation": Metric("-", "mean depth of the samples below the circles, as a share of the radius, summed over circles", False),
     "collisions_a": Metric("particles", "colliding particles an iteration, of 20, the first swarm included", False),
     "collisions_b": Metric("samples", "colliding samples a path that was evaluated, summed over circles", False),

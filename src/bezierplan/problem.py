@@ -6,7 +6,8 @@ A planner is a module with a function
 
 whose keyword-only arguments are its settings, all without default values: annotated with `bool`, `int`, `float`, `Literal[...]`, or
 `Annotated[int, Range(...)]`. It may also have `workspaces`, the kinds of workspace that it serves; `exact = True`, if its own test of
-feasibility is meant to agree with the certified one; and `check(settings)`, which raises ValueError for settings that do not fit together.
+feasibility is meant to agree with the certified one; `deterministic = True`, if it draws no random number; and `check(settings)`, which
+raises ValueError for settings that do not fit together.
 """
 
 import importlib

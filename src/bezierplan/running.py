@@ -139,6 +139,7 @@ def run_chunk(problems: dict[str, Problem], job: dict) -> tuple[pa.Table, pa.Tab
     Raises RuntimeError, naming the run, if a planner fails.
     """
     blocked = {name: region(problem.workspace) for name, problem in problems.items() if name in job["problems"]}
+    deterministic = getattr(planner_module(job["planner"]), "deterministic", False)
     rows, times = [], []
     for condition in conditions(list(job["problems"]), job["vary"]):
         problem = problems[condition.problem]
@@ -146,13 +147,19 @@ def run_chunk(problems: dict[str, Problem], job: dict) -> tuple[pa.Table, pa.Tab
             # The first run of a process pays for loading compiled code; this one is thrown away.
             _guarded_run(job, condition, job["repeats"][0], problem)
         for repeat in range(*job["repeats"]):
+            if repeat > job["repeats"][0] and deterministic:
+                rows.append(rows[-1] | {"id": run_id(job, condition, repeat), "repeat": repeat})
+                times.append(times[-1] | {"id": rows[-1]["id"]})
+                continue
             cpu, wall = time.process_time(), time.perf_counter()
             plan = _guarded_run(job, condition, repeat, problem)
             cpu, wall = time.process_time() - cpu, time.perf_counter() - wall
             rows.append(row(job, condition, repeat, plan, blocked[condition.problem]))
             times.append({"id": rows[-1]["id"], "cpu_s": cpu, "wall_s": wall})
         logger.info("%s: %d runs done", condition.name, len(rows))
-    return pa.Table.from_pylist(rows), pa.Table.from_pylist(times)
+    # Not every condition has the same columns, so they are gathered over all rows.
+    columns = dict.fromkeys(column for each in rows for column in each)
+    return pa.table({column: [each.get(column) for each in rows] for column in columns}), pa.Table.from_pylist(times)
 
 
 def _guarded_run(job: dict, condition: Condition, repeat: int, problem: Problem) -> Plan:

@@ -137,7 +137,7 @@ def job(study: Study, experiment: str, method: str, scale: str, chunk: int) -> d
 
 def _place(problem: dict) -> dict:
     """What the runs table says of a problem's place."""
-    return {key: problem[key] for key in ("workspace", "layout", "obstacles") if key in problem}
+    return {key: problem[key] for key in ("workspace", "reference", "layout", "obstacles") if key in problem}
 
 
 def chunks(study: Study, experiment: str, scale: str) -> range:
@@ -170,10 +170,13 @@ def figure_job(study: Study, figure: str, scale: str) -> dict:
     bare = sorted({panel["workspace"] for panel in spec["panels"] if "workspace" in panel})
     return {
         "spec": spec,
+        "module": study.module(),
         "labels": study.labels,
         "workspaces": {name: study.workspaces[name] for name in bare},
         "repeats": {name: study.experiments[name]["repeats"][scale] for name in experiments},
-        "unit": _unit(study, experiments[0]) if experiments else study.workspaces[bare[0]]["unit"],
+        "unit": _unit(study, experiments[0])
+        if experiments
+        else study.workspaces[bare[0] if bare else next(iter(study.workspaces))]["unit"],
     }
 
 
@@ -220,7 +223,7 @@ def claims_job(study: Study, claims: list[dict]) -> dict:
         "claims": claims,
         "artefacts": study.tables | study.figures,
         "variant_of": {name: method["variant_of"] for name, method in study.methods.items() if "variant_of" in method},
-        "paired": {name: experiment.get("seeds", "own") == "shared" for name, experiment in experiments.items()},
+        "paired": {name: experiment.get("seeds", "own") != "own" for name, experiment in experiments.items()},
         "paper_repeats": {name: experiment["repeats"]["full"] for name, experiment in experiments.items()},
     }
 

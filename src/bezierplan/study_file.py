@@ -115,6 +115,12 @@ def _check(study: Study) -> None:
         _check_assumption(study, assumption, f"{relative(study.folder / 'assumptions.yaml')}: assumptions: {assumption['id']}")
 
 
+def _functions(study: Study) -> list[str]:
+    """Names of the public functions of a study's module."""
+    names = vars(importlib.import_module(study.module())) if study.module() else {}
+    return [name for name, value in names.items() if callable(value) and not name.startswith("_")]
+
+
 def _check_claim(study: Study, claim: dict, place: str) -> None:
     """Names in a claim: of artefacts, experiments, metrics, columns, groups and functions."""
     for artefact in _listed(claim.get("artefact", [])):
@@ -126,7 +132,7 @@ def _check_claim(study: Study, claim: dict, place: str) -> None:
     for number, check in enumerate(claim["checks"]):
         where = f"{place}: checks: {number}"
         if check["test"] == "function":
-            _known(check["name"], vars(importlib.import_module(study.module())) if study.module() else [], f"{where}: name")
+            _known(check["name"], _functions(study), f"{where}: name")
         if "experiment" in check:
             for experiment in _listed(check["experiment"]):
                 _known(experiment, study.experiments, f"{where}: experiment")
@@ -134,7 +140,8 @@ def _check_claim(study: Study, claim: dict, place: str) -> None:
 
 
 def _check_check(study: Study, experiment: str, check: dict, place: str) -> None:
-    _known(check["metric"], metrics.METRICS, f"{place}: metric")
+    if "metric" in check:
+        _known(check["metric"], metrics.METRICS, f"{place}: metric")
     _check_where(study, experiment, check.get("where", {}), f"{place}: where")
     columns = {"experiment", *_columns(study, experiment)}
     for key in ("every", "pool"):
@@ -331,6 +338,9 @@ def _is_number(text: str) -> bool:
 def _check_panel(study: Study, panel: dict, place: str) -> None:
     if "workspace" in panel:
         _known(panel["workspace"], study.workspaces, f"{place}: workspace")
+    if "data" in panel:
+        _known(panel["data"], _functions(study), f"{place}: data")
+    if "experiment" not in panel:
         return
     _known(panel["experiment"], study.experiments, f"{place}: experiment")
     _check_where(study, panel["experiment"], panel.get("where", {}), f"{place}: where")

@@ -101,8 +101,16 @@ def figure_job(wildcards):
 
 
 def figure_code(wildcards):
-    kinds = {panel["kind"] for panel in figure_job(wildcards)["spec"]["panels"]}
-    return source_digest("bezierplan.sheet", *(f"bezierplan.figures.{kind}" for kind in sorted(kinds)))
+    panels = figure_job(wildcards)["spec"]["panels"]
+    kinds = [f"bezierplan.figures.{kind}" for kind in sorted({panel["kind"] for panel in panels})]
+    own = [STUDIES[wildcards.study].module()] if any("data" in panel for panel in panels) else []
+    return source_digest("bezierplan.sheet", *kinds, *own)
+
+
+def figure_published(wildcards):
+    """Published numbers, for the kinds that draw them."""
+    drawn = any(panel["kind"] == "boxes" for panel in figure_job(wildcards)["spec"]["panels"])
+    return published_files(wildcards) if drawn else []
 
 
 def caption(wildcards):

@@ -7,6 +7,7 @@ rule figure:
         problems=artefact_problems,
         bounds=artefact_bounds,
         maps=figure_maps,
+        published=figure_published,
     output:
         svg=report(
             f"{RESULTS}/figures/{{figure}}.svg",

@@ -3,6 +3,7 @@
 from bezierplan import log
 
 with log.job(snakemake.log[0]):
+    import importlib
     from pathlib import Path
 
     from bezierplan import sheet
@@ -11,9 +12,12 @@ with log.job(snakemake.log[0]):
 
     job, inputs, output = snakemake.params.job, snakemake.input, snakemake.output
     found = results.read_all(inputs.runs, job["repeats"], inputs.problems, inputs.bounds)
+    published = results.read_published(inputs.published)
+    found = {name: each._replace(published=published) for name, each in found.items()}
+    functions = vars(importlib.import_module(job["module"])) if job["module"] else {}
     bare = {name: files.load(description, Path(snakemake.params.folder)) for name, description in job["workspaces"].items()}
     panels = job["spec"]["panels"]
-    sheet.write_data(sheet.data(panels, found, bare), output.data)
+    sheet.write_data(sheet.data(panels, found, bare, functions), output.data)
     scene = sheet.Scene({name: each.problems for name, each in found.items()}, bare, job["labels"], job["unit"])
     figure = sheet.draw(panels, sheet.read_data(output.data), scene, job["spec"]["columns"])
     sheet.save(figure, output.svg, output.png)

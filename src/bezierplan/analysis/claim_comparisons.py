@@ -143,7 +143,7 @@ def _measured_runs(check: dict, claim: dict, material: Material) -> pd.DataFrame
     for name in listed(check["experiment"]):
         if name not in material.results:
             raise Untestable(f"the experiment {name} was not run")
-        runs, problems, _ = material.results[name]
+        runs, problems = material.results[name].runs, material.results[name].problems
         if check["metric"] == "rank":
             # A rank is one among the rows of the artefact, whichever of them the check goes on to compare.
             for part in _parts_of_artefact(check, claim, material)[:1]:

@@ -15,12 +15,14 @@ class Results(NamedTuple):
     """Runs, problems and bounds of an experiment.
 
     runs: one row a run, columns as in `running.run_chunk`, with `straight_line` and `bound` of its problem. problems: by name.
-    bounds: one row a problem, its name as index, columns as in `problems.bounds_of`.
+    bounds: one row a problem, its name as index, columns as in `problems.bounds_of`. published: the study's published numbers, where they
+    are asked for.
     """
 
     runs: pd.DataFrame
     problems: dict[str, Problem]
     bounds: pd.DataFrame
+    published: pd.DataFrame | None = None
 
 
 def read(runs: list[str], repeats: int, problems: str, bounds: str) -> Results:
@@ -59,6 +61,13 @@ def read_all(runs: list[str], repeats: dict[str, int], problems: list[str], boun
         own = [file for file in runs if PurePath(file).parts[-3] == experiment]
         found[experiment] = read(own, number, problem_file, bound_file)
     return found
+
+
+def read_published(files: list[str]) -> pd.DataFrame | None:
+    """The published numbers in some files, one below the other; files of another form are left out. None if there is none."""
+    tables = [pd.read_csv(file) for file in files]
+    tidy = [table for table in tables if {"metric", "statistic", "value"} <= set(table)]
+    return pd.concat(tidy, ignore_index=True) if tidy else None
 
 
 def path_of(run: pd.Series) -> Path | None:

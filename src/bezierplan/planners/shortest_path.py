@@ -9,6 +9,8 @@ from bezierplan.problem import Path, Plan, Problem
 
 exact = True
 
+deterministic = True
+
 
 def plan(problem: Problem, rng: np.random.Generator) -> Plan:
     """The shortest path that touches obstacles but enters none; its objective is its length, in units, or infinite without a path.

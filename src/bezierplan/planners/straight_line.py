@@ -6,6 +6,8 @@ import numpy as np
 
 from bezierplan.problem import Path, Plan, Problem
 
+deterministic = True
+
 
 def plan(problem: Problem, rng: np.random.Generator) -> Plan:
     """The straight line; its objective is its length, in units. It looks at no obstacle and takes every path for free."""
