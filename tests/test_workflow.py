@@ -83,6 +83,7 @@ def finished(tmp_path_factory):
         copy = shutil.copytree if source.is_dir() else shutil.copy2
         copy(source, tree / name)
     (tree / ".venv").symlink_to(ROOT / ".venv")
+    (tree / "config" / "config.yaml").write_text("studies: [song2016]\n")
     for old, new in SMALL.items():
         edit(tree / EXPERIMENTS, old, new)
     snakemake(tree)
@@ -116,7 +117,8 @@ EDITS = {
         runs(2, GENETIC) | ARTEFACTS_OF_RUNS | {"audit": 1},
     ),
     "a comment": ("src/bezierplan/search/genetic.py", "# A draw next to 1", "# Hence a draw next to 1", {}),
-    "a metric": ("src/bezierplan/metrics.py", "FINE_SAMPLES = 4001", "FINE_SAMPLES = 4002", TABLES),
+    # Convergence shares code with the kind `lines`, which reads the units of metrics.
+    "a metric": ("src/bezierplan/metrics.py", "FINE_SAMPLES = 4001", "FINE_SAMPLES = 4002", TABLES | {"figure figure4": 1}),
     "a kind of figure": ("src/bezierplan/figures/convergence.py", "return", "0\n    return", {"figure figure4": 1}),
     "a setting of one method": (EXPERIMENTS, "samples: 701", "samples: 1401", runs(2, ["nonsmooth"]) | TABLES),
     "a setting of all methods": (EXPERIMENTS, "penalty: 10.0", "penalty: 11.0", runs(2, GENETIC) | ARTEFACTS_OF_RUNS),

@@ -15,22 +15,21 @@ _BOUNDED = ("length", "objective")
 
 # Of the room of a group of bars, what the bars take.
 _FILLED = 0.84
-# How far the line of the shortest path goes to either side of a group's middle.
-_REACH = 0.47
 
 
 def data(results: Results, *, x: str, hue: str, metric: str, statistic: Literal["mean", "median", "share"] = "mean") -> pd.DataFrame:
     """One row a bar; columns: those of `lines.summary`, with x and hue by their own names, and bound.
 
-    bound is the mean exact shortest length of the problems of a group of bars, over all their runs, in units; empty for metrics that it
-    does not bound.
+    bound is the mean exact shortest length of the problems of a bar's feasible runs, those that count for a length, in units; empty for
+    metrics that it does not bound.
 
     x: a column, a group of bars for each of its values. hue: a column, a bar in each group for each of its values. Raises KeyError for an
     unknown metric or column.
     """
     frame = summary(results, [x, hue], metric, statistic)
-    bounds = results.runs.sort_values("id").groupby(x)["bound"].mean()
-    return frame.assign(bound=frame[x].map(bounds) if metric in _BOUNDED else np.nan)
+    feasible = results.runs[results.runs["feasible"]].sort_values("id")
+    bounds = feasible.groupby([x, hue])["bound"].mean().rename("bound") if metric in _BOUNDED else pd.Series(dtype=float)
+    return frame.assign(bound=[bounds.get(bar, np.nan) for bar in zip(frame[x], frame[hue])])
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
@@ -42,13 +41,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
         own = frame[frame[hue] == bar]
         at = own[x].map(groups.index).to_numpy() + (number - (len(bars) - 1) / 2) * width
         _draw_bars(axes, own, at, width, look | {"label": printed(bar, hue, scene.labels)})
-    for at, group in enumerate(groups):
-        bound = frame.loc[frame[x] == group, "bound"].iloc[0]
-        if np.isfinite(bound):
-            axes.plot([at - _REACH, at + _REACH], [bound, bound], label="shortest path possible", zorder=4, **style.BOUND)
     axes.set_xlim(-0.5, len(groups) - 0.5)
     axes.set_xticks(range(len(groups)), [scene.labels.get(group, group) if isinstance(group, str) else f"{group:g}" for group in groups])
-    axes.tick_params(axis="x", length=0, pad=22)  # below the shares
+    axes.tick_params(axis="x", length=0, pad=32)  # below the shares
     axes.set_xlabel(f"{column_name(x, scene.labels)} (-)")
     axes.set_ylabel(axis_label(panel["metric"], scene, panel.get("statistic", "mean")))
     axes.grid(visible=True, axis="y")
@@ -58,6 +53,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 def _draw_bars(axes: Axes, frame: pd.DataFrame, at: np.ndarray, width: float, look: dict) -> None:
     """Bars at places (n,) with their intervals, and below each the share of feasible runs."""
     axes.bar(at, frame["value"], width, zorder=2, **look)
+    ends = at - width / 2, at + width / 2
+    axes.hlines(frame["bound"], *ends, label="shortest path possible", zorder=4, **style.BOUND)
     axes.vlines(at, frame["low95"], frame["high95"], color=style.BLACK, linewidth=0.8, zorder=3, label="95 % interval")
     for place, runs, feasible in zip(at, frame["runs"], frame["feasible_runs"]):
         below = {"xycoords": ("data", "axes fraction"), "xytext": (0, -2), "textcoords": "offset points"}

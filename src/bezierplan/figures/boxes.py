@@ -17,6 +17,10 @@ _REACH = 1.5
 _PARTS = {"low": "whislo", "quartile1": "q1", "median": "med", "quartile3": "q3", "high": "whishi"}
 
 
+# Columns of published numbers that tell no runs apart.
+_PRINTED = ["metric", "statistic", "n", "unit", "value"]
+
+
 def data(results: Results, *, metric: str, by: str = "method") -> pd.DataFrame:
     """One row a part of a box; columns: those of `lines.constants`, `by` by its own name, runs and feasible_runs (counts), part, value.
 
@@ -47,14 +51,18 @@ def _box(values: np.ndarray) -> list[tuple[str, float]]:
 
 
 def _published_means(results: Results, runs: pd.DataFrame, metric: str) -> list[float]:
-    """Means of a metric that the paper prints for the problem, method and settings of runs; a row's empty keys fit all runs."""
+    """Means of a metric that the paper prints for the problem, method and settings of runs; a row's empty keys fit all runs.
+
+    A number that stands in several tables is one number.
+    """
     found = results.published
     if found is None:
         return []
     found = found[(found["metric"] == metric) & (found["statistic"] == "mean")]
-    for column in found.columns.intersection(runs.columns).difference(["value"]):
-        found = found[found[column].isna() | found[column].isin(runs[column])]
-    return found["value"].tolist()
+    for column in found.columns.difference(_PRINTED):
+        fits = found[column].isin(runs[column]) if column in runs else False
+        found = found[found[column].isna() | fits]
+    return sorted(found["value"].unique())
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
