@@ -295,6 +295,11 @@ def test_bars_count_feasible_runs_and_know_the_bound(tmp_path):
     assert sum(text == "0 %" for text in words(figure)) == 3
 
 
+def test_bars_without_a_bound_name_none(tmp_path):
+    own = comparing_panels()[5] | {"metric": "feasible", "statistic": "share"}
+    assert "shortest path possible" not in words(drawn(comparison(), [own], 1, tmp_path))
+
+
 def test_bars_and_lines_keep_the_order_of_where(tmp_path):
     figure = drawn(comparison(), comparing_panels()[5:6], 1, tmp_path)
     named = [text for text in words(figure) if text in ("smooth (quadratic pieces)", "coarse", "random")]

@@ -233,15 +233,21 @@ def alternatives(study: Study) -> dict[str, tuple[str, Any]]:
     return {
         f"{assumption['id']}_{value}": (assumption["id"], value)
         for assumption in study.assumptions
-        if "claims" in assumption
+        if "setting" in assumption
         for value in assumption["alternatives"]
     }
+
+
+def tried(study: Study) -> list[str]:
+    """Names of the alternatives that are tried on claims."""
+    return [name for name, (identity, _) in alternatives(study).items() if "claims" in assumption_of(study, identity)]
 
 
 def alternatives_described(study: Study) -> dict[str, dict]:
     """What `analysis.sensitivity` prints of each alternative, by its name."""
     described = {}
-    for name, (identity, value) in alternatives(study).items():
+    for name in tried(study):
+        identity, value = alternatives(study)[name]
         assumption = assumption_of(study, identity)
         parts = {key: assumption[key] for key in ("detail", "setting", "default")}
         described[name] = {"study": study.key, "assumption": identity, **parts, "alternative": value}

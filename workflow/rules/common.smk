@@ -30,7 +30,7 @@ wildcard_constraints:
     chunk="[0-9]+",
     table="|".join(sorted({name for study in STUDIES.values() for name in study.tables})) or "(?!)",
     figure="|".join(sorted({name for study in STUDIES.values() for name in study.figures})) or "(?!)",
-    alternative="|".join(re.escape(name) for study in STUDIES.values() for name in studies.alternatives(study)) or "(?!)",
+    alternative="|".join(re.escape(name) for study in STUDIES.values() for name in studies.tried(study)) or "(?!)",
 
 
 def artefact(wildcards):
@@ -188,7 +188,7 @@ def alternative_runs(wildcards):
 
 
 def alternatives_claims(wildcards):
-    return expand(f"{ALTERNATIVE}/claims.csv", **wildcards, alternative=list(studies.alternatives(STUDIES[wildcards.study])))
+    return expand(f"{ALTERNATIVE}/claims.csv", **wildcards, alternative=studies.tried(STUDIES[wildcards.study]))
 
 
 def alternatives_described(wildcards):
@@ -232,7 +232,7 @@ def files_of_summary(scale):
 
 
 def files_of_sensitivity(scale):
-    return [f"results/{scale}/{key}/sensitivity.csv" for key, study in STUDIES.items() if studies.alternatives(study)]
+    return [f"results/{scale}/{key}/sensitivity.csv" for key, study in STUDIES.items() if studies.tried(study)]
 
 
 def files_of_smoke():

@@ -53,8 +53,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 def _draw_bars(axes: Axes, frame: pd.DataFrame, at: np.ndarray, width: float, look: dict) -> None:
     """Bars at places (n,) with their intervals, and below each the share of feasible runs."""
     axes.bar(at, frame["value"], width, zorder=2, **look)
-    ends = at - width / 2, at + width / 2
-    axes.hlines(frame["bound"], *ends, label="shortest path possible", zorder=4, **style.BOUND)
+    if frame["bound"].notna().any():
+        ends = at - width / 2, at + width / 2
+        axes.hlines(frame["bound"], *ends, label="shortest path possible", zorder=4, **style.BOUND)
     axes.vlines(at, frame["low95"], frame["high95"], color=style.BLACK, linewidth=0.8, zorder=3, label="95 % interval")
     for place, runs, feasible in zip(at, frame["runs"], frame["feasible_runs"]):
         below = {"xycoords": ("data", "axes fraction"), "xytext": (0, -2), "textcoords": "offset points"}
