@@ -21,7 +21,7 @@ from numba import njit
 from bezierplan import curves, study_file
 from bezierplan.exact import bounds, checker
 from bezierplan.exact.region import region
-from bezierplan.planners import binary_genetic
+from bezierplan.planners import binary_genetic, chaotic_pso
 from bezierplan.problem import Path as Curve
 from bezierplan.problem import Problem, Workspace
 from bezierplan.workspaces import files
@@ -86,6 +86,20 @@ def benchmark_binary_genetic() -> None:
         least = runs * cpu_seconds(lambda: bare_minimum(*arguments))  # noqa: B023
         rates = f"{evaluations / seconds:16,.0f}{1000 * seconds / runs:12.1f}{evaluations / least:16,.0f}"
         print(f"  {method:14}{rates}{seconds / least:20.2f}")
+
+
+def benchmark_chaotic_pso() -> None:
+    """Methods of tharwat2018 among its three circles, without the early stop."""
+    study = study_file.load(study_file.read_config({"studies": ["tharwat2018"]}))["tharwat2018"]
+    circles = files.load(study.workspaces["equal"], study.folder)
+    problem = Problem("equal", circles, (0.0, 0.0), (4.0, 6.0))
+    runs = 200
+    print(f"\n{'chaotic_pso':16}{'evaluations/s':>16}{'ms a run':>12}")
+    for method in ("pso", "cpso1_singer", "cpso2_singer"):
+        settings = study.resolved(method) | {"stall_limit": 0}
+        evaluations = runs * settings["particles"] * (settings["iterations"] + 1)
+        seconds = cpu_seconds(lambda: [chaotic_pso.plan(problem, np.random.default_rng(seed), **settings) for seed in range(runs)])  # noqa: B023
+        print(f"  {method:14}{evaluations / seconds:16,.0f}{1000 * seconds / runs:12.2f}")
 
 
 def random_grid(side: int, rng: np.random.Generator) -> Grid:
@@ -157,5 +171,6 @@ def benchmark_start() -> None:
 
 if __name__ == "__main__":
     benchmark_binary_genetic()
+    benchmark_chaotic_pso()
     benchmark_geometry()
     benchmark_start()
