@@ -44,6 +44,12 @@ def test_numbers_without_a_published_value_are_left_out():
     assert summary.numbers({("one", "table1"): table}, {"one": []})["method"].tolist() == ["plain"]
 
 
+def test_other_conditions_than_the_deciding_one_are_not_counted():
+    table = comparison([1.0, 9.0], [1.2, 9.0]).assign(workspace=["first", "second"])
+    numbers = summary.numbers({("one", "table1"): table}, {"one": []}, {("one", "table1"): {"workspace": "first"}})
+    assert numbers["decides"].tolist() == [True, False]
+
+
 def test_text_without_the_part_is_told():
     with pytest.raises(ValueError, match="no part between"):
         summary.with_block("nothing here", "outcome", "x")

@@ -287,7 +287,8 @@ def _check_where(study: Study, experiment: str, where: dict, place: str) -> None
 def _check_table(study: Study, table: dict, place: str) -> None:
     _known(table["experiment"], study.experiments, f"{place}: experiment")
     experiment = table["experiment"]
-    _check_where(study, experiment, table.get("where", {}), f"{place}: where")
+    for key in ("where", "decides"):
+        _check_where(study, experiment, table.get(key, {}), f"{place}: {key}")
     for key in ("index", "columns"):
         for column in table.get(key, []):
             _known(column, {"value", "statistic", *_columns(study, experiment)}, f"{place}: {key}")

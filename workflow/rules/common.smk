@@ -206,6 +206,7 @@ def all_claims(wildcards):
 def summary_job(wildcards):
     return {
         "tables": [[key, name] for key, study in STUDIES.items() for name, table in study.tables.items() if "published" in table],
+        "deciding": [table.get("decides", {}) for study in STUDIES.values() for table in study.tables.values() if "published" in table],
         "variants": {key: [name for name, method in study.methods.items() if "variant_of" in method] for key, study in STUDIES.items()},
         "titles": {key: study.title for key, study in STUDIES.items()},
     }

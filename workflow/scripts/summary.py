@@ -11,7 +11,7 @@ with log.job(snakemake.log[0]):
 
     job, files, output = snakemake.params.job, snakemake.input, snakemake.output
     comparisons = {tuple(name): pd.read_csv(file) for name, file in zip(job["tables"], files.comparisons, strict=True)}
-    numbers = summary.numbers(comparisons, job["variants"])
+    numbers = summary.numbers(comparisons, job["variants"], dict(zip(comparisons, job["deciding"], strict=True)))
     claims = pd.concat([pd.read_csv(file) for file in files.claims], ignore_index=True)
     numbers.to_csv(output.numbers, index=False, float_format="%.10g", lineterminator="\n")
     claims.to_csv(output.claims, index=False, float_format="%.10g", lineterminator="\n")

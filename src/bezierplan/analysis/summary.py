@@ -5,16 +5,23 @@ import pandas as pd
 VERDICTS = ("supported", "in part", "contradicted", "no effect", "undecided", "untestable")
 
 
-def numbers(comparisons: dict[tuple[str, str], pd.DataFrame], variants: dict[str, list[str]]) -> pd.DataFrame:
+def numbers(
+    comparisons: dict[tuple[str, str], pd.DataFrame], variants: dict[str, list[str]], deciding: dict[tuple[str, str], dict] | None = None
+) -> pd.DataFrame:
     """Every row of comparisons that has a published number.
 
     comparisons: (study, table) -> `comparison.compare`. variants: study -> its methods that are another reading of a published one.
-    Columns: study, table, decides (the method is not such a reading), then those of the comparisons, key columns first.
+    deciding: (study, table) -> column -> the value whose rows are the paper's reading. Columns: study, table, decides (the row is no other
+    reading), then those of the comparisons, key columns first.
     """
     frames = []
     for (study, table), frame in comparisons.items():
         printed = frame[frame["value_published"].notna()]
-        decides = ~printed["method"].isin(variants[study]) if "method" in printed else True
+        decides = pd.Series(True, index=printed.index)
+        if "method" in printed:
+            decides &= ~printed["method"].isin(variants[study])
+        for column, value in (deciding or {}).get((study, table), {}).items():
+            decides &= printed[column] == value
         frames.append(printed.assign(study=study, table=table, decides=decides))
     everything = pd.concat(frames, ignore_index=True)
     last = list(everything.columns[everything.columns.get_loc("metric") :].drop(["study", "table", "decides"], errors="ignore"))
