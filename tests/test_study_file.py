@@ -25,6 +25,7 @@ def edit(file, old, new):
 
 
 EXPERIMENTS, ARTEFACTS, MAP, TABLE = "experiments.yaml", "artefacts.yaml", "workspaces/figure2.txt", "published/table1.csv"
+CLAIMS, ASSUMPTIONS = "claims.yaml", "assumptions.yaml"
 
 FAULTS = {
     "unknown key at the top": (EXPERIMENTS, "methods:", "methodz:", "methodz: unknown key; did you mean methods?"),
@@ -171,6 +172,32 @@ FAULTS = {
         "generation_one",
         "table1.csv: line 2: metric: generation_one: unknown; did you mean",
     ),
+    "unknown metric in a claim": (
+        CLAIMS,
+        "metric: distinct_points",
+        "metric: distinct_point",
+        "metric: distinct_point: unknown; did you mean",
+    ),
+    "unknown group in a claim": (CLAIMS, "groups: [smooth], than", "groups: [smoth], than", "group: smoth: unknown; did you mean smooth?"),
+    "unknown statistic in a claim": (CLAIMS, "statistic: median", "statistic: medain", "statistic: medain: unknown; did you mean median?"),
+    "unknown experiment in a claim": (
+        CLAIMS,
+        "experiment: routes",
+        "experiment: route",
+        "experiment: route: unknown; did you mean routes?",
+    ),
+    "unknown column in a claim": (CLAIMS, "every: [problem]", "every: [problm]", "every: problm: unknown; did you mean problem?"),
+    "unknown test in a claim": (CLAIMS, "test: share", "test: shar", "test: shar: unknown; did you mean share?"),
+    "unknown function in a claim": (
+        CLAIMS,
+        "name: genes_in_range",
+        "name: genes_in_rang",
+        "name: genes_in_rang: unknown; did you mean genes_in_range?",
+    ),
+    "unknown artefact of a claim": (CLAIMS, "artefact: table1", "artefact: table2", "artefact: table2: unknown; did you mean table1?"),
+    "unknown setting of an assumption": (ASSUMPTIONS, "setting: genes", "setting: gene", "setting: gene: no method has this setting"),
+    "alternative that is no value": (ASSUMPTIONS, "alternatives: [path]", "alternatives: [paths]", "penalty_for: 'paths'; expected one of"),
+    "unknown claim of an assumption": (ASSUMPTIONS, "claims: [C1, C5]", "claims: [C1, C50]", "claims: C50: unknown"),
     "not YAML": (EXPERIMENTS, "methods:", "methods: {", "experiments.yaml: line "),
 }
 
@@ -188,7 +215,7 @@ def test_fault_is_told_in_one_line(fault, folder):
     message = str(caught.value)
     assert told in message
     assert "\n" not in message
-    assert re.search(r"(experiments|artefacts)\.yaml|table1\.csv", message)
+    assert re.search(r"(experiments|artefacts|claims|assumptions)\.yaml|table1\.csv", message)
 
 
 def test_unknown_study_is_told_with_the_closest_name():
