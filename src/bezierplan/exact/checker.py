@@ -209,7 +209,8 @@ def _bulge(points: np.ndarray) -> float:
 
 
 # ---------------------------------------------------------------------------------------------------------------------
-# What the search asks of a region. The kinds of regions follow; which is meant is told by the type, in the overloads.
+# What the search asks of a region. The kinds of regions follow; which is meant is told by the type, in the overloads. The four functions
+# here are only names for numba to attach those overloads to: compiled code never enters their bodies, and plain Python must not.
 
 
 def _is_blocked(x, y, region):
