@@ -17,7 +17,7 @@ from matplotlib.text import Text
 from bezierplan import curves, figures, sheet, style
 from bezierplan.analysis.results import Results
 from bezierplan.checked import SCHEMAS
-from bezierplan.figures import along_path, bars, boxes, convergence, lines, paths, workspace
+from bezierplan.figures import along_path, bars, boxes, convergence, drawing, lines, paths, workspace
 from bezierplan.problem import Path, Problem, Workspace
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid, from_lines
@@ -127,6 +127,22 @@ def sequence() -> pd.DataFrame:
     return pd.concat([short, long]).assign(value=lambda table: np.sin(table["k"]))
 
 
+def marks(home: Workspace | None = None) -> pd.DataFrame:
+    """A drawing of a study's function: every mark once, about the middle of a workspace where there is one."""
+    x, y = (home.bounds[1] / 2, home.bounds[3] / 2) if home else (0.0, 0.0)
+    rows = [
+        {"mark": "cell", "role": "obstacle", "x": x, "y": y, "width": 4.0, "height": 2.0},
+        {"mark": "circle", "role": "accent", "x": x, "y": y, "radius": 1.0, "label": "distance r"},
+        {"mark": "line", "role": "first", "x": x - 3, "y": y, "label": "before"},
+        {"mark": "line", "role": "first", "x": x + 3, "y": y + 2, "label": "before"},
+        {"mark": "arrow", "role": "note", "x": x, "y": y},
+        {"mark": "arrow", "role": "note", "x": x + 2, "y": y + 2},
+        {"mark": "dots", "role": "start", "x": x - 3, "y": y},
+        {"mark": "text", "role": "note", "x": x, "y": y + 1, "text": "7"},
+    ]
+    return pd.DataFrame(rows)
+
+
 def comparing_panels() -> list[dict]:
     runs = {"experiment": "routes", "where": {"method": ["smooth", "coarse", "random"]}}
     smooth = {"experiment": "routes", "where": {"method": "smooth"}}
@@ -139,6 +155,8 @@ def comparing_panels() -> list[dict]:
         {"kind": "bars", "title": "points", **runs, "x": "points", "hue": "method", "metric": "length"},
         {"kind": "paths", "title": "explicit", "explicit": {"curve": "bezier", "points": [[0, 0], [1, 2], [3, 0]]}},
         {"kind": "boxes", "title": "methods", **runs, "metric": "objective"},
+        {"kind": "drawing", "title": "marks", "data": "marks"},
+        {"kind": "drawing", "title": "marks in a field", "data": "marks", "workspace": "circles"},
     ]
 
 
@@ -150,7 +168,7 @@ def gallery(panels: int) -> list[dict]:
 def drawn(found: Results, own: list[dict], columns: int, folder: File) -> Figure:
     """A figure as the workflow makes it: by way of the csv."""
     file = str(folder / "figure.csv")
-    sheet.write_data(sheet.data(own, {"routes": found}, scene(found).workspaces, {"sequence": sequence}), file)
+    sheet.write_data(sheet.data(own, {"routes": found}, scene(found).workspaces, {"sequence": sequence, "marks": marks}), file)
     return sheet.draw(own, sheet.read_data(file), scene(found), columns)
 
 
@@ -490,6 +508,22 @@ def test_panels_have_letters_and_the_reading_of_the_curve(tmp_path):
     figure = drawn(results(), panels(), 2, tmp_path)
     assert "(a) 0 to 15, smooth (quadratic pieces)" in [axes.get_title(loc="left") for axes in figure.axes]
     assert "(e) circles" in words(figure)
+
+
+def test_a_drawing_shows_the_marks_of_its_function_in_their_order(tmp_path):
+    figure = drawn(results(), [{"kind": "drawing", "data": "marks", "workspace": "circles"}], 1, tmp_path)
+    axes = figure.axes[0]
+    assert [text.get_text() for text in axes.texts if text.get_text()] == ["7"]
+    assert [line.get_label() for line in axes.lines][:1] == ["before"]
+    np.testing.assert_allclose(axes.lines[0].get_xydata(), [[2.0, 2.5], [8.0, 4.5]])
+    assert axes.get_xlabel() == "x (m)", "the workspace gives the scale"
+
+
+def test_a_mark_that_cannot_be_drawn_is_told():
+    with pytest.raises(ValueError, match="has no mark star; known: cell"):
+        drawing.data(pd.DataFrame({"mark": ["star"], "x": [0], "y": [0]}))
+    with pytest.raises(ValueError, match="mark circle needs radius"):
+        drawing.data(pd.DataFrame({"mark": ["circle"], "x": [0], "y": [0]}))
 
 
 def save(folder: File) -> None:

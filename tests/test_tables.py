@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import comparison, statistics, tables
+from bezierplan.analysis import comparison, listing, statistics, tables
 from bezierplan.analysis.results import Results
 from bezierplan.problem import Problem
 from bezierplan.workspaces.grid import from_lines
@@ -248,3 +248,17 @@ def test_too_few_runs_are_not_judged():
     table = compare(results(repeats=3))
     assert table["reproduced"].isna().all()
     assert not row(table, "long", "plain", "length")[["quantile_published"]].isna().any()
+
+
+def test_a_transcribed_table_is_printed_as_it_stands(tmp_path):
+    file = tmp_path / "table1.csv"
+    file.write_text("part,value\nmemory,4.0 GB\nNA,\n")
+    table = listing.table({"kind": "transcribed"}, [str(file)], {})
+    assert table.to_csv(index=False) == file.read_text()
+
+
+def test_a_table_of_a_function_is_computed_from_the_published_numbers(tmp_path):
+    file = tmp_path / "table2.csv"
+    file.write_text("method,value\nplain,2.5\n")
+    table = listing.table({"kind": "function", "function": "twice"}, [str(file)], {"twice": lambda tables: 2 * tables["table2"][["value"]]})
+    assert table["value"].tolist() == [5.0]

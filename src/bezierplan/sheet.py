@@ -56,15 +56,16 @@ def data(
     panels: list[dict[str, Any]],
     results: dict[str, Results],
     workspaces: dict[str, Workspace],
-    functions: Mapping[str, Callable[[], pd.DataFrame]] = MappingProxyType({}),
+    functions: Mapping[str, Callable[..., pd.DataFrame]] = MappingProxyType({}),
 ) -> pd.DataFrame:
     """Everything that is drawn: the rows of all panels, the number of the panel (0, 1, ...) in the first column.
 
     panels: kind, title, experiment or data with where (as in `analysis.results.select`) or workspace, and options of the kind. results: by
-    experiment. workspaces: by name. functions: what `data` may name; each is called once, for the table that its panels draw. Raises
-    ValueError for options or runs that a kind cannot draw.
+    experiment. workspaces: by name. functions: what `data` may name; each is called once, for the table that its panels draw, with the
+    workspace of a panel that names one as well. Raises ValueError for options or runs that a kind cannot draw.
     """
-    tables = {name: functions[name]() for name in {panel["data"] for panel in panels if "data" in panel}}
+    wanted = dict.fromkeys((panel["data"], panel.get("workspace")) for panel in panels if "data" in panel)
+    tables = {(name, home): functions[name](*([workspaces[home]] if home else [])) for name, home in wanted}
     frames = []
     for number, panel in enumerate(panels):
         options = {name: value for name, value in panel.items() if name not in PANEL_KEYS}
@@ -75,14 +76,14 @@ def data(
 
 
 def _source(
-    panel: dict[str, Any], results: dict[str, Results], workspaces: dict[str, Workspace], tables: dict[str, pd.DataFrame]
+    panel: dict[str, Any], results: dict[str, Results], workspaces: dict[str, Workspace], tables: dict[tuple[str, str | None], pd.DataFrame]
 ) -> Results | Workspace | pd.DataFrame | None:
     """What a panel draws from."""
     if "experiment" in panel:
         found = results[panel["experiment"]]
         return found._replace(runs=select(found.runs, panel.get("where", {})))
     if "data" in panel:
-        return select(tables[panel["data"]], panel.get("where", {})).copy()
+        return select(tables[panel["data"], panel.get("workspace")], panel.get("where", {})).copy()
     return workspaces[panel["workspace"]] if "workspace" in panel else None
 
 

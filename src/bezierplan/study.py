@@ -86,6 +86,10 @@ class Study:
         """Map files of workspaces as seen from here, each once."""
         return sorted({relative(self.folder / self.workspaces[name]["file"]) for name in workspaces if "file" in self.workspaces[name]})
 
+    def compared(self) -> dict[str, dict]:
+        """The tables of runs, which are compared with published numbers; the others stand for themselves (`listing_job`)."""
+        return {name: table for name, table in self.tables.items() if table["kind"] == "pivot"}
+
     def published_file(self, table: str) -> str | None:
         """The file of a table's published numbers as seen from here, or None."""
         file = self.tables[table].get("published")
@@ -163,6 +167,11 @@ def table_job(study: Study, table: str, scale: str) -> dict:
     }
 
 
+def listing_job(study: Study, table: str) -> dict:
+    """What a table depends on that shows no runs, beside the files of published numbers."""
+    return {"spec": study.tables[table], "module": study.module()}
+
+
 def figure_job(study: Study, figure: str, scale: str) -> dict:
     """What a figure depends on beside runs, problems and bounds, and map files where it draws a workspace without runs."""
     spec = study.figures[figure]
@@ -189,7 +198,7 @@ def _unit(study: Study, experiment: str) -> str:
 def experiments_of(study: Study, artefact: str) -> list[str]:
     """Names of the experiments whose results an artefact shows, each once, in order."""
     if artefact in study.tables:
-        return [study.tables[artefact]["experiment"]]
+        return [study.tables[artefact]["experiment"]] if artefact in study.compared() else []
     return list(dict.fromkeys(panel["experiment"] for panel in study.figures[artefact]["panels"] if "experiment" in panel))
 
 

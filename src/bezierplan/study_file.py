@@ -285,6 +285,12 @@ def _check_where(study: Study, experiment: str, where: dict, place: str) -> None
 
 
 def _check_table(study: Study, table: dict, place: str) -> None:
+    if table["kind"] == "transcribed":
+        _found(study.folder / "published" / table["published"], f"{place}: published")
+        return
+    if table["kind"] == "function":
+        _known(table["function"], _functions(study), f"{place}: function")
+        return
     _known(table["experiment"], study.experiments, f"{place}: experiment")
     experiment = table["experiment"]
     for key in ("where", "decides"):
@@ -300,10 +306,14 @@ def _check_table(study: Study, table: dict, place: str) -> None:
         _check_published(study, experiment, study.folder / "published" / table["published"], place)
 
 
+def _found(file: Path, place: str) -> None:
+    if not file.is_file():
+        raise Fault(f"{place}: {file.name}: no such file in {relative(file.parent)}")
+
+
 def _check_published(study: Study, experiment: str, file: Path, place: str) -> None:
     """A file of published numbers: its columns, its key columns, and in every row known names and numbers. Raises Fault."""
-    if not file.is_file():
-        raise Fault(f"{place}: published: {file.name}: no such file in {relative(file.parent)}")
+    _found(file, f"{place}: published")
     with open(file, encoding="utf-8", newline="") as text:
         reader = csv.DictReader(text, restkey="")
         place = relative(file)

@@ -28,14 +28,15 @@ wildcard_constraints:
     experiment="|".join(sorted({name for study in STUDIES.values() for name in study.experiments})),
     method="|".join(sorted({name for study in STUDIES.values() for name in study.methods})),
     chunk="[0-9]+",
-    table="|".join(sorted({name for study in STUDIES.values() for name in study.tables})) or "(?!)",
+    table="|".join(sorted({name for study in STUDIES.values() for name in study.compared()})) or "(?!)",
+    listing="|".join(sorted({name for study in STUDIES.values() for name in study.tables.keys() - study.compared().keys()})) or "(?!)",
     figure="|".join(sorted({name for study in STUDIES.values() for name in study.figures})) or "(?!)",
     alternative="|".join(re.escape(name) for study in STUDIES.values() for name in studies.tried(study)) or "(?!)",
 
 
 def artefact(wildcards):
     """Name of the table or figure that a file belongs to."""
-    return wildcards.get("table") or wildcards.figure
+    return wildcards.get("table") or wildcards.get("listing") or wildcards.figure
 
 
 def problem_maps(wildcards):
@@ -90,6 +91,20 @@ def table_published(wildcards):
 
 def table_job(wildcards):
     return studies.table_job(STUDIES[wildcards.study], wildcards.table, wildcards.scale)
+
+
+def listing_job(wildcards):
+    return studies.listing_job(STUDIES[wildcards.study], wildcards.listing)
+
+
+def listing_published(wildcards):
+    """The file that a transcribed table shows; all of them for a function of the study."""
+    return STUDIES[wildcards.study].published_file(wildcards.listing) or published_files(wildcards)
+
+
+def listing_code(wildcards):
+    job = listing_job(wildcards)
+    return source_digest("bezierplan.analysis.listing", *([job["module"]] if "function" in job["spec"] else []))
 
 
 def figure_maps(wildcards):
@@ -157,7 +172,7 @@ def published_files(wildcards):
 
 def audit_job(wildcards):
     study = STUDIES[wildcards.study]
-    tables = {Path(spec["published"]).stem: spec["experiment"] for spec in study.tables.values() if "published" in spec}
+    tables = {Path(spec["published"]).stem: spec["experiment"] for spec in study.compared().values() if "published" in spec}
     return {"study": study.key, "module": study.module(), "tables": tables, "experiments": sorted(set(tables.values()))}
 
 
@@ -205,8 +220,8 @@ def all_claims(wildcards):
 
 def summary_job(wildcards):
     return {
-        "tables": [[key, name] for key, study in STUDIES.items() for name, table in study.tables.items() if "published" in table],
-        "deciding": [table.get("decides", {}) for study in STUDIES.values() for table in study.tables.values() if "published" in table],
+        "tables": [[key, name] for key, study in STUDIES.items() for name, table in study.compared().items() if "published" in table],
+        "deciding": [table.get("decides", {}) for study in STUDIES.values() for table in study.compared().values() if "published" in table],
         "variants": {key: [name for name, method in study.methods.items() if "variant_of" in method] for key, study in STUDIES.items()},
         "titles": {key: study.title for key, study in STUDIES.items()},
     }
@@ -215,7 +230,8 @@ def summary_job(wildcards):
 def files_of(scale, study, name):
     """The files of a table or figure."""
     if name in STUDIES[study].tables:
-        return [f"results/{scale}/{study}/tables/{name}{ending}" for ending in (".csv", ".comparison.csv")]
+        endings = (".csv", ".comparison.csv") if name in STUDIES[study].compared() else (".csv",)
+        return [f"results/{scale}/{study}/tables/{name}{ending}" for ending in endings]
     return [f"results/{scale}/{study}/figures/{name}{ending}" for ending in (".svg", ".png", ".csv")]
 
 

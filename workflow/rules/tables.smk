@@ -1,4 +1,4 @@
-# Tables, laid out like the paper's, and the comparison of each with the published numbers.
+# Tables, laid out like the paper's, and the comparison of each with the published numbers; tables without runs stand alone.
 
 
 rule table:
@@ -28,3 +28,23 @@ rule table:
         code=source_digest("bezierplan.analysis.tables", "bezierplan.analysis.comparison"),
     script:
         "../scripts/table.py"
+
+
+rule listing:
+    input:
+        published=listing_published,
+    output:
+        report(
+            f"{RESULTS}/tables/{{listing}}.csv",
+            category="{study}",
+            labels={"item": "{listing}", "shows": "what the paper prints, or what follows from it"},
+            caption="../report/artefact.rst",
+        ),
+    log:
+        f"{RESULTS}/logs/tables/{{listing}}.log",
+    params:
+        job=listing_job,
+        caption=caption,
+        code=listing_code,
+    script:
+        "../scripts/listing.py"

@@ -1,0 +1,13 @@
+"""Make a table that shows no runs."""
+
+from bezierplan import log
+
+with log.job(snakemake.log[0]):
+    import importlib
+
+    from bezierplan.analysis import listing
+
+    job = snakemake.params.job
+    functions = vars(importlib.import_module(job["module"])) if job["module"] else {}
+    table = listing.table(job["spec"], list(snakemake.input.published), functions)
+    table.to_csv(snakemake.output[0], index=False, float_format="%.10g", lineterminator="\n")
