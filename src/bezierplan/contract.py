@@ -23,13 +23,14 @@ from bezierplan.exact import checker
 from bezierplan.exact.region import Region, region
 from bezierplan.problem import Path, Plan, Problem, Range, Workspace, known_planners, planner_module, planner_settings, setting_fault
 from bezierplan.running import RUN_COLUMNS
+from bezierplan.study import PLACE
 from bezierplan.workspaces import grid
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import to_json
 from bezierplan.workspaces.polygons import Polygons
 
 # Names that an extra column cannot have: columns of a runs table, those of drawn workspaces, and those that are joined to it.
-_TAKEN = {*RUN_COLUMNS, "layout", "obstacles", "straight_line", "bound", "cpu_s", "wall_s"}
+_TAKEN = {*RUN_COLUMNS, *PLACE, "straight_line", "bound", "bound8", "cpu_s", "wall_s"}
 
 # A plan is made for each of so many generators.
 _GENERATORS = 3
@@ -151,7 +152,7 @@ _GRIDS = {
     "3 x 5": ("..#..", "S.#.T", "....."),
     _FAR: ("......", "..#...", ".S#.T.", "......"),
 }
-# A grid begins at the origin; what can be far is the end of large cells.
+# A grid of a map file begins at the origin; what can be far is the end of large cells.
 _LARGE_CELL = 15_000.0
 
 # The other workspaces are this field, moved for the problem that lies far from the origin.

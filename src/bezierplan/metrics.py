@@ -172,7 +172,7 @@ def _in_occupied_cells(points: np.ndarray, grid: Grid) -> int:
     song2016's planner may use surplus cells beside a grid that is not a power of two wide (`grid.embed`); they count as occupied.
     """
     occupied = embed(grid.occupied)
-    columns, rows = np.floor(points / grid.cell + ON_LINE).astype(int).T
+    columns, rows = np.floor(grid.in_cells(points) + ON_LINE).astype(int).T
     return int(occupied[np.minimum(rows, occupied.shape[0] - 1), np.minimum(columns, occupied.shape[1] - 1)].sum())
 
 
@@ -184,6 +184,22 @@ def _fine_bad(path: Path, grid: Grid) -> int:
     from bezierplan import curves
 
     return _in_occupied_cells(curves.sample_matrix(path.curve, len(path.points), FINE_SAMPLES) @ path.points, grid)
+
+
+def _cell_length(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
+    """A length that counts cells (`cell_length`). Raises ValueError, naming the run, if one lies below the bound of its problem."""
+    from bezierplan import cell_length
+
+    lengths = _of_path_on_grid(getattr(cell_length, name), runs, problems)
+    for run, length, bound in zip(runs["id"], lengths, runs["bound8"]):
+        if length < bound * (1 - 1e-12):
+            raise ValueError(f"run {run} is said to be feasible, but its length {length:.12g} in cells lies below the bound {bound:.12g}")
+    return lengths
+
+
+def _gap_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """A length that counts cells over the least one of the problem, minus 1 (n,)."""
+    return _cell_length(name, runs, problems) / runs["bound8"] - 1
 
 
 METRICS: dict[str, Metric] = {
@@ -229,6 +245,11 @@ METRICS: dict[str, Metric] = {
     "distinct_points": Metric("-", "control points that differ from each other", False, partial(_of_path, _distinct_points)),
     "occupied_points": Metric("-", "control points in occupied cells of a grid", True, partial(_of_path_on_grid, _occupied_points)),
     "gap_reference": Metric("-", "length / length of the best known path of the same kind - 1", True, _gap_reference),
+    "cells4": Metric("u", "cells that the path touches, 1.5 for a diagonal step", True, partial(_cell_length, "length4")),
+    "cells8": Metric("u", "the same without the corners of the sequence of cells", True, partial(_cell_length, "length8")),
+    "bound8": Metric("u", "least length of a path of free cells, 1.5 for a diagonal step", False),
+    "gap_cells4": Metric("-", "cells4 / bound8 - 1", True, partial(_gap_cells, "length4")),
+    "gap_cells8": Metric("-", "cells8 / bound8 - 1", True, partial(_gap_cells, "length8")),
     "outlier": Metric("-", "whether the objective lies beyond the whiskers of its method's box", False, _outlier),
     "violation": Metric("-", "mean depth of the samples below the circles, as a share of the radius, summed over circles", False),
     "collisions_a": Metric("particles", "colliding particles an iteration, of 20, the first swarm included", False),

@@ -2,7 +2,8 @@
 
 Columns of a problem file: problem, workspace (its name), start_x, start_y, target_x, target_y (units), drawn (the workspace itself, as
 JSON: `workspaces.files.to_json`). Columns of a file of bounds: problem, straight_line, bound (units; infinite without a free path),
-least_length (what the checker's tolerance leaves of it), bound_path (the shortest path, flat as x0, y0, x1, y1, ...).
+least_length (what the checker's tolerance leaves of it), bound_path (the shortest path, flat as x0, y0, x1, y1, ...), bound8 (on grids the
+least of all lengths that count cells, `cell_length`, in units; otherwise not a number).
 """
 
 import math
@@ -11,9 +12,10 @@ from pathlib import Path
 import pyarrow as pa
 import pyarrow.parquet as parquet
 
+from bezierplan import cell_length
 from bezierplan.exact.region import blocks, region
 from bezierplan.problem import Problem, Workspace
-from bezierplan.workspaces import files, random_circles
+from bezierplan.workspaces import files, random_circles, random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 
@@ -53,13 +55,15 @@ def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, st
 
     Map files are sought in a folder. Raises ValueError for a fault in any of them.
     """
-    fixed = {name: files.load(each, folder) for name, each in job["workspaces"].items() if each["kind"] != "random_circles"}
+    fixed = {name: files.load(each, folder) for name, each in job["workspaces"].items() if not each["kind"].startswith("random_")}
     layouts: dict[tuple[str, int], Circles] = {}
     problems = {}
     for name, description in job["problems"].items():
         home = description["workspace"]
         if home in fixed:
             workspace = fixed[home]
+        elif job["workspaces"][home]["kind"] == "random_field":
+            workspace = random_field.field(job["workspaces"][home], description, f"{job['study']}/{name}")
         else:
             key = home, description["layout"]
             if key not in layouts:
@@ -111,6 +115,18 @@ def bounds_of(problems: dict[str, Problem]) -> pa.Table:
                 "bound": bound.length,
                 "least_length": bounds.least_length(bound),
                 "bound_path": bound.points.ravel().tolist(),
+                "bound8": _cell_bound(problem),
             }
         )
     return pa.Table.from_pylist(rows)
+
+
+def _cell_bound(problem: Problem) -> float:
+    """The least length, in units, of a path over free cells with straight and diagonal steps, which may pass between two occupied cells."""
+    from bezierplan.exact import bounds
+
+    grid = problem.workspace
+    if not isinstance(grid, Grid):
+        return math.nan
+    start, target = (grid.cell_of(*end) for end in (problem.start, problem.target))
+    return bounds.lattice_path(grid.occupied, start, target, cell_length.DIAGONAL, "free").length * grid.cell

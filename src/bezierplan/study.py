@@ -16,6 +16,9 @@ from bezierplan.problem import planner_module, planner_settings
 
 SCALES = ("smoke", "full", "extended")
 
+DRAWN = {"random_circles": "circles", "random_field": "grid"}
+"""Kinds of workspace that are drawn at random -> the kind that planners meet."""
+
 
 @dataclass(frozen=True)
 class Study:
@@ -67,7 +70,7 @@ class Study:
     def kind_of(self, problem: str) -> str:
         """The kind of workspace that planners meet in a problem."""
         kind = self.workspaces[self.problems[problem]["workspace"]]["kind"]
-        return "circles" if kind == "random_circles" else kind
+        return DRAWN.get(kind, kind)
 
     def problems_of(self, experiment: str, scale: str) -> dict[str, dict]:
         """Descriptions of an experiment's problems, by name. One with layouts stands for a problem each layout and number of obstacles."""
@@ -77,9 +80,9 @@ class Study:
             if "layouts" not in problem:
                 described[name] = problem
                 continue
-            ends = {key: problem[key] for key in ("workspace", "start", "target")}
+            same = {key: value for key, value in problem.items() if key not in ("layouts", "obstacles")}
             for layout, obstacles in itertools.product(range(problem["layouts"][scale]), problem["obstacles"]):
-                described[f"{name}_{layout}_{obstacles}"] = ends | {"layout": layout, "obstacles": obstacles}
+                described[f"{name}_{layout}_{obstacles}"] = same | {"layout": layout, "obstacles": obstacles}
         return described
 
     def maps(self, workspaces: Iterable[str]) -> list[str]:
@@ -139,9 +142,13 @@ def job(study: Study, experiment: str, method: str, scale: str, chunk: int) -> d
     }
 
 
+PLACE = ("workspace", "reference", "route", "side", "layout", "obstacles")
+"""Keys of a problem that are columns of the runs table."""
+
+
 def _place(problem: dict) -> dict:
     """What the runs table says of a problem's place."""
-    return {key: problem[key] for key in ("workspace", "reference", "layout", "obstacles") if key in problem}
+    return {key: problem[key] for key in PLACE if key in problem}
 
 
 def chunks(study: Study, experiment: str, scale: str) -> range:

@@ -15,7 +15,7 @@ from bezierplan.checked import Fault, closest
 from bezierplan.digest import PACKAGE
 from bezierplan.problem import known_planners, planner_module, planner_settings, setting_fault
 from bezierplan.running import RUN_COLUMNS, conditions, settings_in
-from bezierplan.study import Study, alternatives, job, methods_changed, relative, with_alternative
+from bezierplan.study import DRAWN, PLACE, Study, alternatives, job, methods_changed, relative, with_alternative
 from bezierplan.workspaces import files
 
 PUBLISHED_COLUMNS = ("metric", "statistic", "n", "unit", "value")
@@ -217,7 +217,7 @@ def _check_settings(module: Any, settings: dict[str, Any], place: str) -> None:
 
 def _check_workspace(study: Study, name: str, place: str) -> None:
     """A fixed workspace can be loaded; random ones are drawn with the problems."""
-    if study.workspaces[name]["kind"] != "random_circles":
+    if study.workspaces[name]["kind"] not in DRAWN:
         try:
             files.load(study.workspaces[name], study.folder)
         except ValueError as error:
@@ -227,11 +227,16 @@ def _check_workspace(study: Study, name: str, place: str) -> None:
 def _check_problem(study: Study, name: str, problem: dict, place: str) -> None:
     """Start and target are free, in the first layout where the workspace is drawn."""
     home = study.workspaces[problem["workspace"]]
-    drawn = home["kind"] == "random_circles"
+    drawn = home["kind"] in DRAWN
     if drawn != ("layouts" in problem):
-        needed = "layouts and obstacles are needed" if drawn else "layouts and obstacles need a workspace of kind random_circles"
+        needed = "layouts and obstacles are needed" if drawn else f"layouts and obstacles need a workspace of kind {' or '.join(DRAWN)}"
         raise Fault(f"{place}: workspace: {problem['workspace']}: {needed}")
-    if drawn and max(problem["obstacles"]) > home["circles"]:
+    if drawn and "start" not in problem:
+        raise Fault(f"{place}: start_cell: {problem['start_cell']}: cells of drawn workspaces have no numbers; expected start: [x, y]")
+    if (home["kind"] == "random_field") != ("side" in problem):
+        needed = "side is needed" if "side" not in problem else "side needs a workspace of kind random_field"
+        raise Fault(f"{place}: workspace: {problem['workspace']}: {needed}")
+    if home["kind"] == "random_circles" and max(problem["obstacles"]) > home["circles"]:
         raise Fault(f"{place}: obstacles: {max(problem['obstacles'])}; expected at most {home['circles']}, the circles of the workspace")
     described = problem | ({"layout": 0, "obstacles": max(problem["obstacles"])} if drawn else {})
     try:
@@ -268,10 +273,11 @@ def _columns(study: Study, experiment: str) -> set[str]:
     """Columns of the runs table of an experiment that a selection may name."""
     methods = study.methods_of(experiment)
     places = {
-        key for name in study.experiments[experiment]["problems"] for key in ("layout", "obstacles") if "layouts" in study.problems[name]
+        key for problem in study.problems_of(experiment, "smoke").values() for key in PLACE if key in problem
     }
     varied = study.experiments[experiment].get("vary", {})
-    return {"straight_line", "bound", *RUN_COLUMNS, *places, *varied, *(setting for name in methods for setting in study.resolved(name))}
+    settings = (setting for name in methods for setting in study.resolved(name))
+    return {"straight_line", "bound", "bound8", *RUN_COLUMNS, *places, *varied, *settings}
 
 
 def _check_where(study: Study, experiment: str, where: dict, place: str) -> None:

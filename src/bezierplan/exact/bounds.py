@@ -11,7 +11,7 @@ import numpy as np
 from numba import njit
 
 from bezierplan.exact.checker import TOLERANCE, check, first_collision
-from bezierplan.exact.region import CircleRegion, GridRegion, PolygonRegion, occupied_around, region, walled
+from bezierplan.exact.region import CircleRegion, GridRegion, PolygonRegion, from_origin, occupied_around, region, walled
 from bezierplan.problem import Problem
 from bezierplan.workspaces.grid import Grid
 
@@ -106,12 +106,12 @@ def centre_path(problem: Problem) -> Bound:
     lattice = 2 * cells[:, ::-1] + 1
     anything = np.zeros((len(cells), 2), dtype=np.int64)
     visible = _visible_on_grid(lattice, anything[:, 0], anything, walled(grid.occupied), 2, False)
-    return _shortest_in_graph(lattice * (0.5 * grid.cell), visible)
+    return _moved(_shortest_in_graph(lattice * (0.5 * grid.cell), visible), grid.origin)
 
 
 def _centre_cell(grid: Grid, name: str, point: tuple[float, float]) -> tuple[int, int]:
     """Row and column of the cell whose centre a point is."""
-    column, row = (value / grid.cell - 0.5 for value in point)
+    column, row = grid.in_cells(np.array(point)) - 0.5
     rows, columns = grid.occupied.shape
     is_centre = abs(column - round(column)) <= _CENTRE_TOLERANCE and abs(row - round(row)) <= _CENTRE_TOLERANCE
     if not (is_centre and 0 <= round(row) < rows and 0 <= round(column) < columns):
@@ -161,6 +161,11 @@ def lattice_path(
     length, nodes = _dijkstra(graph, *ends)
     row, column = np.divmod(nodes, cells.shape[1])
     return Bound(length, np.column_stack([column - 0.5, row - 0.5]))
+
+
+def _moved(bound: Bound, by: np.ndarray | tuple[float, float]) -> Bound:
+    """A path measured from a grid's corner, measured from the origin."""
+    return bound._replace(points=bound.points + by)
 
 
 def _no_path() -> Bound:
@@ -213,14 +218,14 @@ def _shortest_on_grid(problem: Problem, blocked: GridRegion, squeeze: str) -> Bo
     """
     cells = np.ascontiguousarray(blocked.blocked[::2, ::2])
     corners, slopes, quadrants = _grid_corners(cells, squeeze == "closed")
-    ends = np.array([problem.start, problem.target], dtype=float)
+    ends = from_origin(np.array([problem.start, problem.target], dtype=float), blocked)
     scale = _lattice(ends / blocked.cell, min(_FINEST_LATTICE, _LARGEST_WHOLE // max(cells.shape)))
     lattice = np.concatenate([np.rint(ends / blocked.cell * scale).astype(np.int64), corners * scale])
     _refuse_large(len(lattice))
     slopes = np.concatenate([[0, 0], slopes])
     quadrants = np.concatenate([np.zeros((2, 2), dtype=np.int64), quadrants])
     visible = _visible_on_grid(lattice, slopes, quadrants, cells, scale, squeeze == "closed")
-    return _shortest_in_graph(np.concatenate([ends, corners * blocked.cell]), visible)
+    return _moved(_shortest_in_graph(np.concatenate([ends, corners * blocked.cell]), visible), blocked.origin)
 
 
 def _grid_corners(cells: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

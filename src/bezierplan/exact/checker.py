@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 from numba.extending import overload
 
-from bezierplan.exact.region import CircleRegion, GridRegion, PolygonRegion, Region
+from bezierplan.exact.region import CircleRegion, GridRegion, PolygonRegion, Region, from_origin
 
 # Depth in units above which a point is certainly blocked.
 TOLERANCE = 1e-9
@@ -86,6 +86,7 @@ def check(pieces: np.ndarray, region: Region, squeeze: Literal["open", "closed"]
     """
     pieces = np.ascontiguousarray(pieces, dtype=float)
     _refuse_unfit(pieces, squeeze)
+    pieces = from_origin(pieces, region)
     collision_at, intervals = first_collision(pieces, region)
     if squeeze == "closed" and isinstance(region, GridRegion):
         squeezed_at = _first_squeeze(pieces, region.pinches, _PINCH_RADIUS * region.cell)

@@ -24,13 +24,15 @@ class GridRegion(NamedTuple):
     A doubled grid has an element for every cell, for every open edge between two cells, and for every vertex between four, each in its
     place: with a ring of cells around the grid that stands for the outside, even indices are cells and odd indices are grid lines.
 
-    cell: side of a cell, in units. blocked: bool (2 rows + 3, 2 columns + 3), whether all cells that touch an element are occupied.
+    cell: side of a cell, in units. origin: (2,) x and y of the grid's lower left corner, in units; everything else is measured from it,
+    paths as well (`from_origin`). blocked: bool (2 rows + 3, 2 columns + 3), whether all cells that touch an element are occupied.
     counts: (2 rows + 4, 2 columns + 4), prefix sums of `blocked`. edges: (n, 4) boundary of the region as x, y, x, y in units, collinear
     edges joined. pinches: (m, 3) x and y in units of the inner vertices at which two occupied cells meet only by a corner, and the sign of
     the slope of the diagonal through their two free cells.
     """
 
     cell: float
+    origin: np.ndarray
     blocked: np.ndarray
     counts: np.ndarray
     edges: np.ndarray
@@ -79,7 +81,7 @@ def region(workspace: Workspace) -> Region:
 def blocks(region: Region, point: tuple[float, float], tolerance: float = 1e-9) -> bool:
     """Whether a point, in units, lies in the blocked region, deeper than a tolerance. For single points: it needs no compiled code."""
     if isinstance(region, GridRegion):
-        column, row = (_element(value / region.cell, tolerance) for value in point)
+        column, row = (_element(value / region.cell, tolerance) for value in from_origin(np.array(point), region))
         inside = 0 <= row < region.blocked.shape[0] and 0 <= column < region.blocked.shape[1]
         return not inside or bool(region.blocked[row, column])
     x, y = point
@@ -96,6 +98,11 @@ def blocks(region: Region, point: tuple[float, float], tolerance: float = 1e-9) 
     across = (begin[:, 1] > y) != (end[:, 1] > y)
     crossing = begin[across, 0] + (y - begin[across, 1]) * along[across, 0] / along[across, 1]
     return nearest > tolerance and int((crossing > x).sum()) % 2 == 0
+
+
+def from_origin(points: np.ndarray, region: Region) -> np.ndarray:
+    """Points (..., 2) in units as the region measures them: on a grid from its lower left corner."""
+    return points - region.origin if isinstance(region, GridRegion) else points
 
 
 def _element(coordinate: float, tolerance: float) -> int:
@@ -144,7 +151,7 @@ def _grid_region(grid: Grid) -> GridRegion:
     rising = ~below_left & ~above_right & below_right & above_left
     row, column = np.nonzero(rising | falling)
     pinches = np.column_stack([column * grid.cell, row * grid.cell, np.where(rising[row, column], 1.0, -1.0)])
-    return GridRegion(float(grid.cell), blocked, counts, edges, pinches)
+    return GridRegion(float(grid.cell), np.array(grid.origin, dtype=float), blocked, counts, edges, pinches)
 
 
 def _runs(boundary: np.ndarray) -> np.ndarray:

@@ -1,5 +1,6 @@
 """A workspace: cells with their numbers, circles or polygons; nothing planned."""
 
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -60,12 +61,13 @@ def _table(bounds: tuple[float, float, float, float], *drawn: pd.DataFrame) -> p
 
 def _cells(grid: Grid, numbers: str, embed: bool) -> pd.DataFrame:
     own_rows, own_columns = grid.occupied.shape
-    whole = Grid(embed_cells(grid.occupied), grid.cell, grid.unit) if embed else grid
+    whole = replace(grid, occupied=embed_cells(grid.occupied)) if embed else grid
     row, column = (index.ravel() for index in np.indices(whole.occupied.shape))
     surplus = (row >= own_rows) | (column >= own_columns)
     part = np.where(surplus, "surplus", np.where(whole.occupied.ravel(), "occupied", "free"))
     shown = {"all": part != "", "free": part == "free", "none": part == ""}[numbers]
-    cells = pd.DataFrame({"part": part, "x": (column + 0.5) * grid.cell, "y": (row + 0.5) * grid.cell, "size": grid.cell})
+    x, y = grid.in_units(np.column_stack([column, row]) + 0.5).T
+    cells = pd.DataFrame({"part": part, "x": x, "y": y, "size": grid.cell})
     cells["number"] = pd.Series(np.arange(len(cells)), dtype="Int64").where(shown)
     return _table(whole.bounds, cells)
 

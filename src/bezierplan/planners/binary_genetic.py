@@ -73,7 +73,7 @@ def plan(
     occupied = embed(grid.occupied)
     # Start and target, which need not be centres of cells, are two further cells with numbers of their own.
     row, column = np.indices(occupied.shape).reshape(2, -1)
-    places = np.vstack([np.column_stack([column, row]) + 0.5, np.array([problem.start, problem.target]) / grid.cell])
+    places = np.vstack([np.column_stack([column, row]) + 0.5, grid.in_cells(np.array([problem.start, problem.target]))])
     ends = [occupied.size, occupied.size + 1]
     starts, moves = rng.spawn(2)
     if genes == 0 or problem.start == problem.target:
@@ -105,7 +105,7 @@ def plan(
         penalty_for == "each_sample",
         occupied_point_penalty / grid.cell,
     )
-    points = places[best] * grid.cell
+    points = grid.in_units(places[best])
     points[[0, -1]] = problem.start, problem.target
     return Plan(
         path=Path(curve, points),

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from bezierplan.workspaces import grid
+from bezierplan.workspaces import grid, random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
@@ -125,16 +125,22 @@ def _check_shapes(limits: tuple[float, float, float, float], border: np.ndarray,
 
 
 def to_json(workspace: Workspace) -> str:
-    """A workspace as text; `from_json` gives it back, bit by bit."""
-    if isinstance(workspace, Grid):
+    """A workspace as text; `from_json` gives it back, bit by bit. A field is its circles, whatever the number of its cells."""
+    if isinstance(workspace, Grid) and workspace.drawn:
+        content = _circles_content(workspace.drawn) | {"kind": "random_field"}
+    elif isinstance(workspace, Grid):
         content = {"kind": "grid", "cell": workspace.cell, "rows": grid.to_lines(workspace)}
     elif isinstance(workspace, Circles):
-        circles = np.column_stack([workspace.centres, workspace.radii]).tolist()
-        content = {"kind": "circles", "bounds": workspace.bounds, "circles": circles}
+        content = _circles_content(workspace)
     else:
         obstacles = [[ring.tolist() for ring in rings] for rings in workspace.obstacles]
         content = {"kind": "polygons", "bounds": workspace.bounds, "obstacles": obstacles}
     return json.dumps(content | {"unit": workspace.unit})
+
+
+def _circles_content(circles: Circles) -> dict:
+    table = np.column_stack([circles.centres, circles.radii]).tolist()
+    return {"kind": "circles", "bounds": circles.bounds, "circles": table}
 
 
 def from_json(text: str) -> Workspace:
@@ -144,8 +150,9 @@ def from_json(text: str) -> Workspace:
     if content["kind"] == "grid":
         return grid.from_lines(content["rows"], content["cell"], unit)
     bounds = tuple(content["bounds"])
-    if content["kind"] == "circles":
-        table = np.array(content["circles"], dtype=float).reshape(-1, 3)
-        return Circles(bounds, table[:, :2], table[:, 2], unit)
-    obstacles = tuple(tuple(np.array(ring) for ring in rings) for rings in content["obstacles"])
-    return Polygons(bounds, obstacles, unit)
+    if content["kind"] == "polygons":
+        obstacles = tuple(tuple(np.array(ring) for ring in rings) for rings in content["obstacles"])
+        return Polygons(bounds, obstacles, unit)
+    table = np.array(content["circles"], dtype=float).reshape(-1, 3)
+    circles = Circles(bounds, table[:, :2], table[:, 2], unit)
+    return random_field.from_circles(circles) if content["kind"] == "random_field" else circles

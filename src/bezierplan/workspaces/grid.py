@@ -8,6 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bezierplan.workspaces.circles import Circles
+
 # A coordinate this close below a grid line, in cells, counts as on it. Centres of cells put many samples of a curve exactly on grid
 # lines, where rounding alone would decide; with this margin every program gives the same cell: the one above or to the right.
 ON_LINE = 1e-9
@@ -15,27 +17,40 @@ ON_LINE = 1e-9
 
 @dataclass(frozen=True)
 class Grid:
-    """Cells of a rectangle whose lower left corner is the origin.
+    """Cells of a rectangle.
 
-    occupied: bool (rows, columns), row 0 at the bottom. cell: side of a cell, in units. unit: name of the unit of length.
+    occupied: bool (rows, columns), row 0 at the bottom. cell: side of a cell, in units. unit: name of the unit of length. origin: x and y of
+    the lower left corner, in units. drawn: the circles that the cells were drawn from, if they were; only pictures show them.
     """
 
     occupied: np.ndarray
     cell: float
     unit: str
+    origin: tuple[float, float] = (0.0, 0.0)
+    drawn: Circles | None = None
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
         """Lowest and highest x, lowest and highest y, in units."""
         rows, columns = self.occupied.shape
-        return 0.0, columns * self.cell, 0.0, rows * self.cell
+        x, y = self.origin
+        return x, x + columns * self.cell, y, y + rows * self.cell
+
+    def in_cells(self, points: np.ndarray) -> np.ndarray:
+        """Points (..., 2) in units as multiples of a cell from the lower left corner: cell i reaches from i to i + 1."""
+        return (points - np.array(self.origin)) / self.cell
+
+    def in_units(self, points: np.ndarray) -> np.ndarray:
+        """The inverse of `in_cells`."""
+        return points * self.cell + np.array(self.origin)
 
     def cell_of(self, x: float, y: float) -> tuple[int, int] | None:
         """Row and column of a point in units (song2016, eq. 8), or None outside the grid."""
         rows, columns = self.occupied.shape
-        if not (0 <= x <= columns * self.cell and 0 <= y <= rows * self.cell):
+        x_low, x_high, y_low, y_high = self.bounds
+        if not (x_low <= x <= x_high and y_low <= y <= y_high):
             return None
-        row, column = (int(np.floor(value / self.cell + ON_LINE)) for value in (y, x))
+        column, row = (int(value) for value in np.floor(self.in_cells(np.array([x, y])) + ON_LINE))
         return min(row, rows - 1), min(column, columns - 1)
 
     def centre(self, number: int) -> tuple[float, float]:
@@ -44,7 +59,7 @@ class Grid:
         if not 0 <= number < rows * columns:
             raise ValueError(f"cell {number} is not on the grid; its cells are numbered 0 to {rows * columns - 1}")
         row, column = divmod(number, columns)
-        return (column + 0.5) * self.cell, (row + 0.5) * self.cell
+        return self.origin[0] + (column + 0.5) * self.cell, self.origin[1] + (row + 0.5) * self.cell
 
 
 def embed(occupied: np.ndarray) -> np.ndarray:

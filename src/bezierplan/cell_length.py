@@ -1,0 +1,199 @@
+"""The cells that a path touches, and lengths that count cells: 1 for a straight step, 1.5 for a diagonal one (elhoseny2017, Section 4.6).
+
+The paper does not say which cells of a curve it counts. `cells4` counts every cell that the curve touches: a free diagonal of N cells costs
+1.5 N, every other curve that is monotone in x and y costs about 2 N. `cells8` leaves out the corner cells of that sequence, as pictures of
+lines usually do.
+
+In the kernels coordinates are in cells from the grid's lower left corner (`Grid.in_cells`): cell i reaches from i to i + 1.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from bezierplan import curves
+from bezierplan.problem import Path
+from bezierplan.workspaces.grid import Grid
+
+STRAIGHT = 1.0
+DIAGONAL = 1.5
+
+# A coordinate this near to a grid line, in cells, keeps the cell of the sample before it. Otherwise rounding would decide, and the two
+# diagonals of one field would differ in length.
+_ON_LINE = 1e-9
+
+# Two grid lines that a segment crosses at parameters this near are crossed in their corner.
+_IN_CORNER = 1e-6
+
+# A path of cells goes through their centres, this near.
+_CENTRE = 1e-9
+
+
+@njit(cache=True)
+def parts(points: np.ndarray) -> int:
+    """Number of equal parts of a Bezier piece's parameter (degree + 1, 2), in cells, between whose ends it moves less than one cell.
+
+    A straight piece has parts of at most half a cell. The speed of a curve is at most its degree times the longest leg of its polygon.
+    """
+    degree = len(points) - 1
+    total = longest = 0.0
+    for i in range(degree):
+        leg = math.hypot(points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1])
+        total += leg
+        longest = max(longest, leg)
+    if degree == 1:
+        return max(1, math.ceil(2.0 * total))
+    return math.ceil(max(2.0 * total, 1.02 * degree * longest)) + 2
+
+
+@njit(cache=True)
+def sample(points: np.ndarray, x: np.ndarray, y: np.ndarray) -> None:
+    """Write samples of a Bezier piece (degree + 1, 2), uniform in the parameter with both ends, to x and y of equal length.
+
+    Horner's rule in Bernstein form, all weights positive, for all samples at once.
+    """
+    degree = len(points) - 1
+    last = len(x) - 1
+    power = np.ones(len(x))
+    for s in range(len(x)):
+        x[s] = points[0, 0]
+        y[s] = points[0, 1]
+    binomial = 1.0
+    for i in range(1, degree + 1):
+        binomial *= (degree - i + 1) / i
+        weight_x, weight_y = binomial * points[i, 0], binomial * points[i, 1]
+        for s in range(len(x)):
+            t = s / last
+            power[s] *= t
+            x[s] = x[s] * (1.0 - t) + power[s] * weight_x
+            y[s] = y[s] * (1.0 - t) + power[s] * weight_y
+    x[last], y[last] = points[degree, 0], points[degree, 1]
+
+
+@njit(cache=True)
+def _cell(coordinate: float, before: int) -> int:
+    """Column or row of a coordinate; on a grid line that of the sample before, if it lies beside the line."""
+    line = math.floor(coordinate + 0.5)
+    if abs(coordinate - line) <= _ON_LINE and (before == line or before == line - 1):
+        return before
+    return math.floor(coordinate)
+
+
+@njit(cache=True)
+def touched_cells(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Columns and rows of the cells that a polyline touches, in order; its vertices are less than a cell apart.
+
+    Through a corner of cells, and only there, a step is diagonal.
+    """
+    columns = np.empty(2 * len(x), dtype=np.int64)
+    rows = np.empty(2 * len(x), dtype=np.int64)
+    column, row = math.floor(x[0]), math.floor(y[0])
+    columns[0], rows[0] = column, row
+    count = 1
+    for s in range(1, len(x)):
+        next_column, next_row = _cell(x[s], column), _cell(y[s], row)
+        if next_column == column and next_row == row:
+            continue
+        if next_column != column and next_row != row:
+            to_x = (max(column, next_column) - x[s - 1]) / (x[s] - x[s - 1])
+            to_y = (max(row, next_row) - y[s - 1]) / (y[s] - y[s - 1])
+            if abs(to_x - to_y) >= _IN_CORNER:
+                columns[count] = next_column if to_x < to_y else column
+                rows[count] = row if to_x < to_y else next_row
+                count += 1
+        column, row = next_column, next_row
+        columns[count], rows[count] = column, row
+        count += 1
+    return columns[:count], rows[:count]
+
+
+@njit(cache=True)
+def occupied_cells(columns: np.ndarray, rows: np.ndarray, occupied: np.ndarray) -> int:
+    """How many cells of a sequence are occupied, cells outside the grid as well; `occupied` is bool (rows, columns)."""
+    count = 0
+    for i in range(len(columns)):
+        inside = 0 <= rows[i] < occupied.shape[0] and 0 <= columns[i] < occupied.shape[1]
+        count += not inside or occupied[rows[i], columns[i]]
+    return count
+
+
+@njit(cache=True)
+def is_free_leg(occupied: np.ndarray, x0: float, y0: float, x1: float, y1: float) -> bool:
+    """Whether all cells that a straight leg touches are free; cells outside the grid are not."""
+    ends = np.array([[x0, y0], [x1, y1]])
+    x = np.empty(parts(ends) + 1)
+    y = np.empty_like(x)
+    sample(ends, x, y)
+    columns, rows = touched_cells(x, y)
+    return occupied_cells(columns, rows, occupied) == 0
+
+
+@njit(cache=True)
+def cells4(columns: np.ndarray, rows: np.ndarray) -> float:
+    """Length of a sequence of cells, each a neighbour of the one before."""
+    length = 0.0
+    for i in range(1, len(columns)):
+        diagonal = columns[i] != columns[i - 1] and rows[i] != rows[i - 1]
+        length += DIAGONAL if diagonal else STRAIGHT
+    return length
+
+
+@njit(cache=True)
+def cells8(columns: np.ndarray, rows: np.ndarray) -> float:
+    """Length of a sequence of cells in which two straight steps that make a diagonal one are replaced by it, from the begin on."""
+    length = 0.0
+    i = 0
+    while i < len(columns) - 1:
+        if i + 2 < len(columns) and abs(columns[i + 2] - columns[i]) == 1 and abs(rows[i + 2] - rows[i]) == 1:
+            one_step = columns[i + 1] == columns[i] or rows[i + 1] == rows[i]
+            if one_step and (columns[i + 2] == columns[i + 1] or rows[i + 2] == rows[i + 1]):
+                length += DIAGONAL
+                i += 2
+                continue
+        diagonal = columns[i + 1] != columns[i] and rows[i + 1] != rows[i]
+        length += DIAGONAL if diagonal else STRAIGHT
+        i += 1
+    return length
+
+
+@njit(cache=True)
+def polyline_length(x: np.ndarray, y: np.ndarray) -> float:
+    """Length of a polyline."""
+    length = 0.0
+    for s in range(1, len(x)):
+        length += math.sqrt((x[s] - x[s - 1]) ** 2 + (y[s] - y[s - 1]) ** 2)
+    return length
+
+
+def samples(path: Path, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+    """x and y of samples of a path, in cells, less than a cell apart."""
+    drawn = []
+    for piece in grid.in_cells(curves.bezier_pieces(path)):
+        x = np.empty(parts(piece) + 1)
+        y = np.empty_like(x)
+        sample(piece, x, y)
+        drawn.append((x, y))
+    xs, ys = zip(*drawn)
+    return np.concatenate(xs), np.concatenate(ys)
+
+
+def length4(path: Path, grid: Grid) -> float:
+    """`cells4` of a path, in units."""
+    return cells4(*touched_cells(*samples(path, grid))) * grid.cell
+
+
+def length8(path: Path, grid: Grid) -> float:
+    """`cells8` of a path, in units. A path that goes from centre to centre of neighbouring cells is measured on these as they are."""
+    own = _is_cell_path(path, grid)
+    return (cells4 if own else cells8)(*touched_cells(*samples(path, grid))) * grid.cell
+
+
+def _is_cell_path(path: Path, grid: Grid) -> bool:
+    """Whether a path is a polyline through centres of cells, with legs along rows, columns and diagonals."""
+    if path.curve != "polyline":
+        return False
+    points = grid.in_cells(path.points) - 0.5
+    legs = np.abs(np.diff(np.rint(points), axis=0))
+    straight = (legs.min(axis=1) == 0) | (legs[:, 0] == legs[:, 1])
+    return bool(np.all(np.abs(points - np.rint(points)) <= _CENTRE) and straight.all())

@@ -1,0 +1,76 @@
+"""Square fields of cells with circles at random places (elhoseny2017, Sections 4.3 and 4.4).
+
+A field of side N has (N + 1) x (N + 1) cells of side 1, whose centres are the points with whole coordinates from 0 to N: so the corners
+(0, 0) and (N, N), between which the paper plans, are cells. A cell is occupied if its centre lies in a circle.
+"""
+
+import hashlib
+
+import numpy as np
+
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import Grid
+
+# Fields and draws of one circle after which nothing is hoped for.
+MOST_FIELDS = 200
+MOST_DRAWS = 10_000
+
+
+def field(description: dict, problem: dict, name: str) -> Grid:
+    """A field for a problem, drawn from a name alone.
+
+    description: radius, that of all circles as a share of the side, clear_ends, the cells that stay free between a circle and start or
+    target, and unit. problem: side (N), start, target, obstacles (how many circles). Centres are uniform in the square from 0 to N; those
+    too near to start or target are drawn again. Circles may overlap. A field in which no path of free cells leads from start to target is
+    drawn again as a whole.
+
+    Raises ValueError, naming the key, if start or target is no cell of the field, and if no field can be found.
+    """
+    side = problem["side"]
+    rng = np.random.default_rng(int.from_bytes(hashlib.sha256(name.encode()).digest()))
+    empty = from_circles(Circles((0.0, side, 0.0, side), np.empty((0, 2)), np.empty(0), description["unit"]))
+    ends = np.array([problem["start"], problem["target"]], dtype=float)
+    cells = [empty.cell_of(*end) for end in ends]
+    for key, cell in zip(("start", "target"), cells):
+        if cell is None:
+            raise ValueError(f"{key}: {problem[key]}: outside the field; expected x and y from 0 to {side}")
+    radius = description["radius"] * side
+    for _ in range(MOST_FIELDS):
+        centres = _centres(rng, problem["obstacles"], side, ends, radius + description["clear_ends"])
+        grid = from_circles(Circles((0.0, side, 0.0, side), centres, np.full(len(centres), radius), description["unit"]))
+        if connected(grid.occupied, *cells):
+            return grid
+    raise ValueError(f"radius: {description['radius']:g}: start and target are cut off from each other in {MOST_FIELDS} fields")
+
+
+def _centres(rng: np.random.Generator, count: int, side: float, ends: np.ndarray, least: float) -> np.ndarray:
+    """Centres (count, 2), none of them nearer to an end than the least distance."""
+    centres = np.empty((count, 2))
+    for i in range(count):
+        for _ in range(MOST_DRAWS):
+            centres[i] = rng.uniform(0.0, side, 2)
+            if np.hypot(*(ends - centres[i]).T).min() >= least:
+                break
+        else:
+            raise ValueError(f"radius: no circle keeps {least:g} cells away from start and target in {MOST_DRAWS} draws")
+    return centres
+
+
+def from_circles(circles: Circles) -> Grid:
+    """The field of some circles; their bounds are its square, from 0 to N."""
+    count = round(circles.bounds[1]) + 1
+    occupied = np.zeros((count, count), dtype=bool)
+    for (x, y), radius in zip(circles.centres, circles.radii):
+        left, bottom = (max(0, int(np.ceil(value - radius))) for value in (x, y))
+        right, top = (min(count - 1, int(np.floor(value + radius))) for value in (x, y))
+        columns, rows = np.arange(left, right + 1), np.arange(bottom, top + 1)
+        occupied[bottom : top + 1, left : right + 1] |= np.hypot(columns - x, rows[:, None] - y) <= radius
+    return Grid(occupied, 1.0, circles.unit, (-0.5, -0.5), circles)
+
+
+def connected(occupied: np.ndarray, start: tuple[int, int], target: tuple[int, int]) -> bool:
+    """Whether free cells lead from one cell (row, column) to another; a diagonal step may pass between two occupied cells."""
+    from scipy.ndimage import label
+
+    names, _ = label(~occupied, structure=np.ones((3, 3)))
+    return bool(names[start] and names[start] == names[target])

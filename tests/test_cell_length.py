@@ -1,0 +1,172 @@
+"""Cells that paths touch, and lengths that count them: values by hand, both directions, any spacing, and the traps of grid lines."""
+
+import math
+
+import numpy as np
+import pytest
+
+from bezierplan import cell_length, curves
+from bezierplan.exact import bounds
+from bezierplan.problem import Path
+from bezierplan.workspaces.grid import Grid
+
+
+def field(side):
+    return Grid(np.zeros((side + 1, side + 1), dtype=bool), 1.0, "cell", (-0.5, -0.5))
+
+
+def polyline(*points):
+    return Path("polyline", np.array(points, dtype=float))
+
+
+def measured(x, y):
+    """cells4, cells8 and length of a polyline whose vertices are given in coordinates in which cells have whole centres."""
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    cells = cell_length.touched_cells(x + 0.5, y + 0.5)
+    return cell_length.cells4(*cells), cell_length.cells8(*cells), cell_length.polyline_length(x, y)
+
+
+STRAIGHT = [
+    ((0, 0), (100, 100), 150.0, 150.0),
+    ((100, 0), (0, 100), 150.0, 150.0),
+    ((0, 0), (100, 50), 150.0, 125.0),
+    ((3, 7), (60, 40), 88.5, 73.5),
+]
+
+
+@pytest.mark.parametrize(("start", "target", "four", "eight"), STRAIGHT)
+@pytest.mark.parametrize("steps", [145, 150, 200, 333, 1000, 20_000])
+def test_straight_lines_in_both_directions_with_any_spacing(start, target, four, eight, steps):
+    for a, b in ((start, target), (target, start)):
+        x, y = (np.linspace(a[i], b[i], steps + 1) for i in (0, 1))
+        found = measured(x, y)
+        assert found[:2] == (four, eight)
+        assert found[2] == pytest.approx(math.dist(a, b), rel=1e-12)
+
+
+@pytest.mark.parametrize(("start", "target", "four", "eight"), STRAIGHT)
+def test_straight_paths(start, target, four, eight):
+    for path in (polyline(start, target), polyline(target, start)):
+        assert cell_length.length4(path, field(100)) == four
+        assert cell_length.length8(path, field(100)) == eight
+
+
+@pytest.mark.parametrize("side", [1, 2, 7, 100, 101, 200, 2000])
+def test_both_diagonals_of_an_empty_field_measure_the_same(side):
+    rising, falling = polyline((0, 0), (side, side)), polyline((side, 0), (0, side))
+    for path in (rising, falling):
+        assert cell_length.length4(path, field(side)) == 1.5 * side
+        assert cell_length.length8(path, field(side)) == 1.5 * side
+    # The same lines as curves with control points on them.
+    for ends in (((0, 0), (side, side)), ((side, 0), (0, side))):
+        curve = Path("bezier", np.linspace(*ends, 5))
+        assert cell_length.length4(curve, field(side)) == 1.5 * side
+
+
+def test_a_wave_along_the_diagonal():
+    for steps in (400, 1000, 4000):
+        x = np.linspace(0, 100, steps + 1)
+        y = x + 0.1 * np.sin(x / 10)
+        for found in (measured(x, y), measured(x[::-1], y[::-1])):
+            assert found[:2] == (200.0, 150.0)
+            assert found[2] == pytest.approx(141.384, abs=6e-4)
+
+
+def test_a_path_on_a_grid_line_keeps_to_one_side():
+    # Along the line x = 2.5 between two columns, with rounding to either side of it.
+    y = np.linspace(0, 10, 41)
+    x = 2.5 + 1e-13 * np.where(np.arange(41) % 2, 1, -1)
+    x[0] = x[-1] = 2
+    columns, rows = cell_length.touched_cells(x + 0.5, y + 0.5)
+    assert set(columns) == {2}
+    assert list(rows) == list(range(11))
+
+
+def test_a_coordinate_that_leaves_a_grid_line_is_in_the_next_cell():
+    # On the line at 1.5, and at the next sample on the line at 2.5: the cell between is entered.
+    columns, _ = cell_length.touched_cells(np.array([1.0, 1.5, 2.2, 2.5, 3.0]) + 0.5, np.full(5, 0.5))
+    assert list(columns) == [1, 2, 3]
+    columns, _ = cell_length.touched_cells(np.array([3.0, 2.5, 1.8, 1.5, 1.0]) + 0.5, np.full(5, 0.5))
+    assert list(columns) == [3, 2, 1]
+
+
+def test_the_cell_entered_first_lies_between():
+    steep = cell_length.touched_cells(np.array([0.6, 1.1]), np.array([0.8, 1.5]))
+    assert list(zip(*steep)) == [(0, 0), (0, 1), (1, 1)]
+    flat = cell_length.touched_cells(np.array([0.8, 1.5]), np.array([0.6, 1.1]))
+    assert list(zip(*flat)) == [(0, 0), (1, 0), (1, 1)]
+    corner = cell_length.touched_cells(np.array([0.75, 1.25]), np.array([0.75, 1.25]))
+    assert list(zip(*corner)) == [(0, 0), (1, 1)]
+
+
+def test_thinning_is_greedy_from_the_start():
+    # A staircase of three straight steps: the first two become a diagonal one, the third stays.
+    columns, rows = np.array([0, 1, 1, 2]), np.array([0, 0, 1, 1])
+    assert cell_length.cells4(columns, rows) == 3.0
+    assert cell_length.cells8(columns, rows) == 2.5
+    # Two steps in one direction, and a step there and back, are no diagonal.
+    assert cell_length.cells8(np.array([0, 1, 2]), np.zeros(3, dtype=np.int64)) == 2.0
+    assert cell_length.cells8(np.array([0, 1, 0]), np.zeros(3, dtype=np.int64)) == 2.0
+
+
+def test_a_path_of_cells_is_measured_on_its_own_cells():
+    corner = polyline((0, 0), (3, 0), (3, 2), (5, 4))
+    assert cell_length.length4(corner, field(10)) == cell_length.length8(corner, field(10)) == 8.0
+    # Between centres, but not from neighbour to neighbour: thinned.
+    assert cell_length.length8(polyline((0, 0), (2, 1), (4, 2)), field(10)) < cell_length.length4(polyline((0, 0), (2, 1), (4, 2)), field(10))
+
+
+@pytest.mark.parametrize("degree", [2, 3, 7, 20, 60])
+def test_samples_of_curves_lie_on_them_and_less_than_a_cell_apart(degree):
+    rng = np.random.default_rng(degree)
+    for _ in range(20):
+        path = Path("bezier", rng.uniform(0, 100, (degree + 1, 2)))
+        x, y = cell_length.samples(path, field(100))
+        assert np.hypot(np.diff(x), np.diff(y)).max() < 1
+        expected = curves.sample_matrix("bezier", degree + 1, len(x)) @ path.points + 0.5
+        np.testing.assert_allclose(np.column_stack([x, y]), expected, rtol=0, atol=1e-10)
+
+
+def test_monotone_curves_between_corners_measure_between_one_and_a_half_and_two_sides():
+    rng = np.random.default_rng(1)
+    for _ in range(50):
+        x, y = (np.sort(rng.uniform(0, 100, 5)) for _ in range(2))
+        path = Path("bezier", np.vstack([(0, 0), np.column_stack([x, y]), (100, 100)]))
+        assert 150 <= cell_length.length4(path, field(100)) <= 200
+        assert 150 <= cell_length.length8(path, field(100)) <= cell_length.length4(path, field(100))
+
+
+def test_no_free_path_counts_less_than_the_shortest_path_of_cells():
+    rng = np.random.default_rng(2)
+    found = 0
+    for _ in range(300):
+        occupied = rng.random((12, 12)) < 0.1
+        occupied[0, 0] = occupied[-1, -1] = False
+        grid = Grid(occupied, 1.0, "cell", (-0.5, -0.5))
+        path = Path("bezier", np.vstack([(0, 0), rng.uniform(0, 11, (2, 2)), (11, 11)]))
+        columns, rows = cell_length.touched_cells(*cell_length.samples(path, grid))
+        if cell_length.occupied_cells(columns, rows, occupied) == 0:
+            found += 1
+            least = bounds.lattice_path(occupied, (0, 0), (11, 11), 1.5, "free").length
+            assert cell_length.length4(path, grid) >= cell_length.length8(path, grid) >= least
+    assert found > 20
+
+
+def test_legs():
+    occupied = np.zeros((5, 6), dtype=bool)
+    occupied[2, 3] = True
+    assert cell_length.is_free_leg(occupied, 0.5, 0.5, 5.5, 0.5)
+    assert not cell_length.is_free_leg(occupied, 0.5, 2.5, 5.5, 2.5)
+    # Through the lower left corner of the occupied cell, which touches it only there; barely within it; barely beside it.
+    assert cell_length.is_free_leg(occupied, 2.5, 2.5, 3.5, 1.5)
+    assert not cell_length.is_free_leg(occupied, 2.5, 2.501, 3.5, 1.501)
+    assert cell_length.is_free_leg(occupied, 2.5, 2.499, 3.5, 1.499)
+    # Outside the grid nothing is free.
+    assert not cell_length.is_free_leg(occupied, 0.5, 0.5, -0.5, 0.5)
+    assert not cell_length.is_free_leg(occupied, 0.5, 0.5, 0.5, 5.5)
+
+
+def test_lengths_are_in_units():
+    grid = Grid(np.zeros((11, 11), dtype=bool), 0.1, "m", (-0.05, -0.05))
+    assert cell_length.length4(polyline((0, 0), (1, 1)), grid) == pytest.approx(1.5)
+    assert cell_length.length8(polyline((0, 0), (1, 0.5)), grid) == pytest.approx(1.25)
