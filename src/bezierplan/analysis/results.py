@@ -45,7 +45,7 @@ def _with_times(file: str) -> pd.DataFrame:
 def joined(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFrame) -> Results:
     """Runs with the bounds of their problems, as from `problems.bounds_of`. Raises ValueError as `read` does."""
     bounds = bounds.set_index("problem")
-    runs = runs.join(bounds[["straight_line", "bound", "bound8"]], on="problem")
+    runs = runs.join(bounds.drop(columns=["least_length", "bound_path"], errors="ignore"), on="problem")
     impossible = runs["feasible"] & (runs["length"] < runs["problem"].map(bounds["least_length"]))
     if impossible.any():
         run = runs[impossible].iloc[0]
