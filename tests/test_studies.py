@@ -7,11 +7,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan import checked, problems
+from bezierplan import checked, metrics, problems
 from bezierplan.analysis import audit
 from bezierplan.analysis.results import Results
 from bezierplan.planners import chaotic_pso
-from bezierplan.problem import Path, planner_module, planner_settings, setting_fault
+from bezierplan.problem import planner_module, planner_settings, setting_fault
 from bezierplan.search import chaotic_maps
 from bezierplan.studies import song2016, tharwat2018
 from bezierplan.workspaces import files
@@ -109,10 +109,11 @@ def test_best_known_curves(world, best):
 
 
 def test_local_minima():
-    assert tharwat2018.local_minima(np.add.outer(np.arange(-4, 5) ** 2, np.arange(-3, 6) ** 2)) == 1
-    assert tharwat2018.local_minima(-np.outer([0, 1, 0, 1, 0], [0, 1, 0, 1, 0]).astype(float)) == 4
-    assert tharwat2018.local_minima(np.zeros((5, 5))) == 0  # not strict
-    assert tharwat2018.local_minima(np.add.outer(np.arange(5), np.arange(5))) == 0  # at the edge
+    bowl = np.add.outer(np.arange(-4, 5) ** 2, np.arange(-3, 6) ** 2)
+    assert np.argwhere(tharwat2018.local_minima(bowl)).tolist() == [[4, 3]]
+    assert tharwat2018.local_minima(-np.outer([0, 1, 0, 1, 0], [0, 1, 0, 1, 0]).astype(float)).sum() == 4
+    assert not tharwat2018.local_minima(np.zeros((5, 5))).any(), "not strict"
+    assert not tharwat2018.local_minima(np.add.outer(np.arange(5), np.arange(5))).any(), "at the edge"
 
 
 def surface_of(values):
@@ -129,7 +130,7 @@ def test_landscape(world, minima, correlation):
     assert len(surface) == side**2
     values = surface["fitness"].to_numpy().reshape(side, side)
     assert values.min() >= math.dist((0, 0), (4, 6))
-    assert tharwat2018.local_minima(values) == minima
+    assert tharwat2018.local_minima(values).sum() == minima
     place = surface.iloc[[17 * side + 150]]
     points = np.array(tharwat2018.BEST_KNOWN[world])
     points[tharwat2018.MOVED] = place[["x", "y"]].to_numpy()[0]
@@ -141,6 +142,9 @@ def test_landscape(world, minima, correlation):
     mark, effect, interval, nodes = tharwat2018.bowl_with_local_minima(check, {"maps": found}, {})
     assert (mark, interval, nodes) == ("-", None, side**2)
     assert effect == pytest.approx(correlation, abs=0.01)
+    drawn = tharwat2018.fitness_landscape(found)
+    assert drawn["part"].value_counts().to_dict() == {"node": side**2, "minimum": minima, "lowest": 1, "fixed": 2}
+    assert drawn.loc[drawn["part"] == "lowest", "objective"].item() == values.min()
 
 
 @pytest.mark.parametrize(("waves", "mark"), [(0.0, "-"), (30.0, "+")])
@@ -166,13 +170,11 @@ def run(way, feasible=True, curve="bezier"):
 
 def test_homotopy_class():
     """A circle to the left of the path is swept counterclockwise. Circle 0 is the upper one, 1 the right one, 2 the one near the start."""
-    found = {
-        way: tharwat2018.homotopy_class(Path("bezier", np.array([(0, 0), *WAYS[way], (4, 6)], dtype=float)), problem("equal"))
-        for way in WAYS
-    }
-    assert found["above"] == (False, False, False)
-    assert found["below"] == (True, True, True)
-    assert len(set(found.values())) == 3
+    found = metrics.values(pd.DataFrame([run(way) for way in WAYS]), "homotopy", {"equal": problem("equal")})
+    assert dict(zip(WAYS, found)) == {"above": 0, "below": 7, "between": 1}
+    made = pd.DataFrame([run("between"), run("above"), run("between", feasible=False)])
+    made["bound_path"] = [np.ravel([(0, 0), *WAYS["between"], (4, 6)])] * 3
+    assert metrics.values(made, "best_corridor", {"equal": problem("equal")}).to_list() == [1, 0, 0]
 
 
 @pytest.mark.parametrize(
@@ -187,6 +189,37 @@ def test_several_homotopy_classes(runs, mark, classes, counted):
     check = {"experiment": "maps", "where": {"feasible": True}}
     found = Results(pd.DataFrame(runs), {"equal": problem("equal")}, pd.DataFrame())
     assert tharwat2018.several_homotopy_classes(check, {"maps": found}, {}) == (mark, classes, None, counted)
+
+
+def test_ends_are_those_of_the_problems():
+    marks = tharwat2018.ends(problem("equal").workspace).set_index("role")[["x", "y"]]
+    for described in THARWAT["problems"].values():
+        assert marks.loc["start"].to_list() == described["start"]
+        assert marks.loc["target"].to_list() == described["target"]
+
+
+def test_movement_follows_equation_8():
+    """The parts of each velocity join head to tail from the particle's place to its next one; C1 and C2 are those in force."""
+    assert tuple(THARWAT["settings"][name] for name in ("inertia", "c1", "c2")) == (tharwat2018.INERTIA, tharwat2018.C1, tharwat2018.C2)
+    marks = tharwat2018.movement()
+    for number, (x, v, p, r1, r2) in enumerate(tharwat2018.MOVED_PARTICLES):
+        arrows = [marks[marks["group"] == f"{part} {number}"]["x"].to_list() for part in ("inertia", "cognition", "social part")]
+        assert arrows[0][0] == x
+        assert [head for _, head in arrows[:-1]] == [tail for tail, _ in arrows[1:]]
+        moved = x + v + 1.5 * r1 * (p - x) + 1.5 * r2 * (tharwat2018.G - x)
+        assert arrows[-1][1] == pytest.approx(moved)
+        assert marks.loc[marks["group"] == f"new x {number}", "x"].item() == pytest.approx(moved)
+
+
+def test_flow_chart_has_a_box_around_every_step():
+    marks = tharwat2018.flow_chart()
+    boxes = marks[marks["mark"] == "cell"]
+    words = marks[(marks["mark"] == "text") & ~marks["text"].isin(["yes", "no"])]
+    assert boxes[["x", "y"]].to_numpy().tolist() == words[["x", "y"]].to_numpy().tolist()
+    heads = marks[marks["mark"] == "arrow"].groupby("group").last()[["x", "y"]].to_numpy()
+    for x, y in heads:
+        inside = (np.abs(boxes["x"] - x) <= boxes["width"] / 2) & (np.abs(boxes["y"] - y) <= boxes["height"] / 2)
+        assert inside.sum() == 1, "every arrow ends at a box"
 
 
 def test_audit_of_tharwat2018():

@@ -13,17 +13,20 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import ON_LINE, Grid, embed
 
 if TYPE_CHECKING:
     import pandas as pd
 
-    from bezierplan.problem import Path, Problem
+    from bezierplan.problem import Path, Problem, Workspace
 
 # Values of a curve's parameter at which curvature is taken: 100 steps on each of the six quadratic pieces of song2016.
 CURVATURE_SAMPLES = 601
 # A finer test than any planner's own.
 FINE_SAMPLES = 4001
+# Samples of a path by which its way round the circles is told.
+CLASS_SAMPLES = 2001
 
 
 class Metric(NamedTuple):
@@ -142,6 +145,43 @@ def _of_path_on_grid(measure: Callable[[Path, Grid], float], runs: pd.DataFrame,
     return [np.nan if path is None else measure(path, problems[problem].workspace) for path, problem in zip(_paths(runs), runs["problem"])]
 
 
+def homotopy_class(points: np.ndarray, workspace: Workspace) -> float:
+    """On which side a way of points (n, 2) passes each circle: the sum of 2^k over the circles k = 0, 1, ... that it leaves to its left.
+
+    A circle lies to the left if the angle that the way sweeps about its centre is positive. Enough to tell classes apart where no way winds
+    round a circle and all have the same ends. Not a number without points or in a workspace of another kind.
+    """
+    if not len(points) or not isinstance(workspace, Circles):
+        return np.nan
+    ahead = points[:, None] - workspace.centres
+    angles = np.unwrap(np.arctan2(ahead[..., 1], ahead[..., 0]), axis=0)
+    return float((2.0 ** np.arange(len(workspace.centres)))[angles[-1] > angles[0]].sum())
+
+
+def _homotopy(runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
+    """The homotopy class of each run's path."""
+    from bezierplan import curves
+
+    found = []
+    for path, problem in zip(_paths(runs), runs["problem"]):
+        if path is None:
+            found.append(np.nan)
+            continue
+        points = curves.sample_matrix(path.curve, len(path.points), CLASS_SAMPLES) @ path.points
+        found.append(homotopy_class(points, problems[problem].workspace))
+    return found
+
+
+def _best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Whether (n,) a run's path is free and in the homotopy class of the exact shortest one; not a number without circles."""
+    best = {
+        problem: homotopy_class(np.reshape(own["bound_path"].iloc[0], (-1, 2)), problems[problem].workspace)
+        for problem, own in runs.groupby("problem")
+    }
+    best = runs["problem"].map(best).to_numpy()
+    return np.where(np.isnan(best), np.nan, runs["feasible"] & (_homotopy(runs, problems) == best))
+
+
 def _max_curvature(path: Path) -> float:
     from bezierplan import curves
 
@@ -250,6 +290,8 @@ METRICS: dict[str, Metric] = {
     "bound8": Metric("u", "least length of a path of free cells, 1.5 for a diagonal step", False),
     "gap_cells4": Metric("-", "cells4 / bound8 - 1", True, partial(_gap_cells, "length4")),
     "gap_cells8": Metric("-", "cells8 / bound8 - 1", True, partial(_gap_cells, "length8")),
+    "homotopy": Metric("-", "class of the path: the sum of 2^k over the circles k that it leaves to its left", True, _homotopy),
+    "best_corridor": Metric("-", "whether the path is free and passes each circle where the shortest one does", False, _best_corridor),
     "outlier": Metric("-", "whether the objective lies beyond the whiskers of its method's box", False, _outlier),
     "violation": Metric("-", "mean depth of the samples below the circles, as a share of the radius, summed over circles", False),
     "collisions_a": Metric("particles", "colliding particles an iteration, of 20, the first swarm included", False),

@@ -7,7 +7,8 @@ A planner is a module with a function
 whose keyword-only arguments are its settings, all without default values: annotated with `bool`, `int`, `float`, `Literal[...]`, or
 `Annotated[int, Range(...)]`. It may also have `workspaces`, the kinds of workspace that it serves; `exact = True`, if its own test of
 feasibility is meant to agree with the certified one; `deterministic = True`, if it draws no random number; and `check(settings)`, which
-raises ValueError for settings that do not fit together.
+raises ValueError for settings that do not fit together; `track(problem, rng, **settings)`, the control points (iterations + 1, n, 2) of
+the best path after each iteration of the run that `plan` makes of the same arguments, for figures that show how a run came to its path.
 """
 
 import importlib

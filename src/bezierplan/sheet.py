@@ -3,12 +3,14 @@
 A kind of panel is a module of `bezierplan.figures` with two functions:
 
     data(source, *, <options>) -> DataFrame         what is drawn; the source is Results, a Workspace where nothing is planned, the table
-                                                    of a study's function, or None where the options say all
+                                                    of a study's function, Results with the table of a function of them, or None where
+                                                    the options say all
     draw(axes, frame, scene, panel) -> str          draws the rows of its panel, labels its artists for the legend, computes no
                                                     statistics; returns the note printed below the panel's title
 
 The keyword-only arguments of `data` are the options that a panel may have; those without a default value it must have. They stand in
-schemas/artefacts.schema.yaml as well, where a study's panels are checked.
+schemas/artefacts.schema.yaml as well, where a study's panels are checked. A kind whose panels are not flat has `PROJECTION`, matplotlib's
+name of it.
 """
 
 import importlib
@@ -62,26 +64,33 @@ def data(
 
     panels: kind, title, experiment or data with where (as in `analysis.results.select`) or workspace, and options of the kind. results: by
     experiment. workspaces: by name. functions: what `data` may name; each is called once, for the table that its panels draw, with the
-    workspace of a panel that names one as well. Raises ValueError for options or runs that a kind cannot draw.
+    workspace of a panel that names one as well; for a panel with an experiment it is called with the panel's results. Raises ValueError for
+    options or runs that a kind cannot draw.
     """
-    wanted = dict.fromkeys((panel["data"], panel.get("workspace")) for panel in panels if "data" in panel)
+    alone = [panel for panel in panels if "data" in panel and "experiment" not in panel]
+    wanted = dict.fromkeys((panel["data"], panel.get("workspace")) for panel in alone)
     tables = {(name, home): functions[name](*([workspaces[home]] if home else [])) for name, home in wanted}
     frames = []
     for number, panel in enumerate(panels):
         options = {name: value for name, value in panel.items() if name not in PANEL_KEYS}
-        frame = kind_module(panel["kind"]).data(_source(panel, results, workspaces, tables), **options)
+        frame = kind_module(panel["kind"]).data(_source(panel, results, workspaces, tables, functions), **options)
         frame.insert(0, "panel", number)
         frames.append(frame)
     return pd.concat(frames, ignore_index=True)
 
 
 def _source(
-    panel: dict[str, Any], results: dict[str, Results], workspaces: dict[str, Workspace], tables: dict[tuple[str, str | None], pd.DataFrame]
-) -> Results | Workspace | pd.DataFrame | None:
+    panel: dict[str, Any],
+    results: dict[str, Results],
+    workspaces: dict[str, Workspace],
+    tables: dict[tuple[str, str | None], pd.DataFrame],
+    functions: Mapping[str, Callable[..., pd.DataFrame]],
+) -> Results | tuple[Results, pd.DataFrame] | Workspace | pd.DataFrame | None:
     """What a panel draws from."""
     if "experiment" in panel:
         found = results[panel["experiment"]]
-        return found._replace(runs=select(found.runs, panel.get("where", {})))
+        found = found._replace(runs=select(found.runs, panel.get("where", {})))
+        return (found, functions[panel["data"]](found)) if "data" in panel else found
     if "data" in panel:
         return select(tables[panel["data"], panel.get("workspace")], panel.get("where", {})).copy()
     return workspaces[panel["workspace"]] if "workspace" in panel else None
@@ -107,7 +116,7 @@ def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, column
     scene = scene._replace(narrow=width / columns < style.NARROW_PANEL)
     with mpl.rc_context(style.SETTINGS):
         figure = Figure(figsize=(width, width * rows / columns))
-        grid = figure.subplots(rows, columns, squeeze=False)
+        grid = _places(figure, panels, rows, columns)
         notes = []
         for number, panel in enumerate(panels):
             own = frame[frame["panel"] == number]
@@ -124,6 +133,14 @@ def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, column
             _name_axes_once(grid)
         _lay_out(figure, grid, _draw_legend(figure))
     return figure
+
+
+def _places(figure: Figure, panels: list[dict[str, Any]], rows: int, columns: int) -> np.ndarray:
+    """Axes (rows, columns) for panels, row by row, and for what room they leave in the last one."""
+    projections = [getattr(kind_module(panel["kind"]), "PROJECTION", None) for panel in panels]
+    projections += [None] * (rows * columns - len(panels))
+    places = [figure.add_subplot(rows, columns, number + 1, projection=projection) for number, projection in enumerate(projections)]
+    return np.array(places).reshape(rows, columns)
 
 
 def _title(panel: dict[str, Any], frame: pd.DataFrame, scene: Scene) -> str:
@@ -225,6 +242,8 @@ def _margins(axes: Axes) -> tuple[float, float, float, float]:
 
 def _shape(axes: Axes) -> float:
     """Height of a panel as a share of its width: to scale or as the kind asks for it, else the same for all."""
+    if axes.name == "3d":
+        return style.HIGH_PANEL_HEIGHT
     if axes.get_box_aspect() is not None:
         return axes.get_box_aspect()
     return style.PANEL_HEIGHT if axes.get_aspect() == "auto" else axes.get_data_ratio() * axes.get_aspect()

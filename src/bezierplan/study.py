@@ -190,10 +190,17 @@ def figure_job(study: Study, figure: str, scale: str) -> dict:
         "labels": study.labels,
         "workspaces": {name: study.workspaces[name] for name in bare},
         "repeats": {name: study.experiments[name]["repeats"][scale] for name in experiments},
+        "jobs": _jobs_made_again(study, figure, scale),
         "unit": _unit(study, experiments[0])
         if experiments
         else study.workspaces[bare[0] if bare else next(iter(study.workspaces))]["unit"],
     }
+
+
+def _jobs_made_again(study: Study, figure: str, scale: str) -> dict[str, dict[str, dict]]:
+    """The jobs of runs that a figure makes again, to draw what no table keeps: experiment -> method -> job."""
+    again = {panel["experiment"] for panel in study.figures[figure]["panels"] if panel["kind"] == "tracks"}
+    return {name: {method: job(study, name, method, scale, 0) for method in methods_of(study, figure, name)} for name in sorted(again)}
 
 
 def _unit(study: Study, experiment: str) -> str:

@@ -58,7 +58,7 @@ _MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p")
 _FILLS = ("#DCE6F2", "#8FB0D6", "#D55E00", "#F7DDB5", "#0072B2", "#FFFFFF", "#333333", "#BDBDBD")
 _HATCHES = ("", "////", "", "\\\\\\\\", "", "....", "", "xxxx")
 # Numbers take their colours from a scale, the higher the lighter, without its lightest end, which paper swallows.
-_SCALE, _LIGHTEST = "viridis", 0.8
+SCALE, _LIGHTEST = "viridis", 0.8
 
 INTERVAL_BAND = {"color": "0.5", "alpha": 0.3, "linewidth": 0}
 BOX = {"facecolor": LIGHT_BLUE, "edgecolor": BLUE, "linewidth": 0.7}
@@ -81,7 +81,7 @@ GAP = 0.1
 def lines(values: list[Any]) -> list[dict[str, Any]]:
     """Looks of lines for values side by side, one each: for numbers a scale of colours, for names unlike colours; with dashes and marks."""
     if len(values) > 1 and not isinstance(values[0], str):
-        scale = mpl.colormaps[_SCALE]
+        scale = mpl.colormaps[SCALE]
         colours = [mpl.colors.to_hex(scale(_LIGHTEST * i / (len(values) - 1))) for i in range(len(values))]
     else:
         colours = [_COLOURS[i % len(_COLOURS)] for i in range(len(values))]

@@ -34,6 +34,15 @@ wildcard_constraints:
     alternative="|".join(re.escape(name) for study in STUDIES.values() for name in studies.tried(study)) or "(?!)",
 
 
+def studies_with(tables):
+    """Pattern of the names of studies in paths of tables: the same name may be one kind of table here and another there."""
+    return "|".join(f"{key}(?=/tables/(?:{'|'.join(names)})[.])" for key, names in tables.items() if names) or "(?!)"
+
+
+COMPARED = {key: list(study.compared()) for key, study in STUDIES.items()}
+LISTED = {key: [name for name in study.tables if name not in COMPARED[key]] for key, study in STUDIES.items()}
+
+
 def artefact(wildcards):
     """Name of the table or figure that a file belongs to."""
     return wildcards.get("table") or wildcards.get("listing") or wildcards.figure
@@ -56,9 +65,13 @@ def run_job(wildcards):
     return studies.job(STUDIES[wildcards.study], wildcards.experiment, wildcards.method, wildcards.scale, int(wildcards.chunk))
 
 
+def planner_file(planner):
+    """A planner as `source_digest` takes it."""
+    return planner if planner.endswith(".py") else f"bezierplan.planners.{planner}"
+
+
 def run_code(wildcards):
-    planner = STUDIES[wildcards.study].planner(wildcards.method)
-    return source_digest("bezierplan.running", planner if planner.endswith(".py") else f"bezierplan.planners.{planner}")
+    return source_digest("bezierplan.running", planner_file(STUDIES[wildcards.study].planner(wildcards.method)))
 
 
 def chunk_files(wildcards, experiment, methods, folder=RESULTS):
@@ -99,7 +112,8 @@ def listing_job(wildcards):
 
 def listing_published(wildcards):
     """The file that a transcribed table shows; all of them for a function of the study."""
-    return STUDIES[wildcards.study].published_file(wildcards.listing) or published_files(wildcards)
+    file = STUDIES[wildcards.study].published_file(wildcards.listing)
+    return [file] if file else published_files(wildcards)
 
 
 def listing_code(wildcards):
@@ -116,10 +130,12 @@ def figure_job(wildcards):
 
 
 def figure_code(wildcards):
-    panels = figure_job(wildcards)["spec"]["panels"]
+    job = figure_job(wildcards)
+    panels = job["spec"]["panels"]
     kinds = [f"bezierplan.figures.{kind}" for kind in sorted({panel["kind"] for panel in panels})]
     own = [STUDIES[wildcards.study].module()] if any("data" in panel for panel in panels) else []
-    return source_digest("bezierplan.sheet", *kinds, *own)
+    again = {run_job["planner"] for methods in job["jobs"].values() for run_job in methods.values()}
+    return source_digest("bezierplan.sheet", *kinds, *own, *map(planner_file, sorted(again)))
 
 
 def figure_published(wildcards):

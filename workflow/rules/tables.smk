@@ -22,6 +22,8 @@ rule table:
         ),
     log:
         f"{RESULTS}/logs/tables/{{table}}.log",
+    wildcard_constraints:
+        study=studies_with(COMPARED),
     params:
         job=table_job,
         caption=caption,
@@ -42,6 +44,8 @@ rule listing:
         ),
     log:
         f"{RESULTS}/logs/tables/{{listing}}.log",
+    wildcard_constraints:
+        study=studies_with(LISTED),
     params:
         job=listing_job,
         caption=caption,

@@ -13,7 +13,7 @@ with log.job(snakemake.log[0]):
     job, inputs, output = snakemake.params.job, snakemake.input, snakemake.output
     found = results.read_all(inputs.runs, job["repeats"], inputs.problems, inputs.bounds)
     published = results.read_published(inputs.published)
-    found = {name: each._replace(published=published) for name, each in found.items()}
+    found = {name: each._replace(published=published, jobs=job["jobs"].get(name)) for name, each in found.items()}
     functions = vars(importlib.import_module(job["module"])) if job["module"] else {}
     bare = {name: files.load(description, Path(snakemake.params.folder)) for name, description in job["workspaces"].items()}
     panels = job["spec"]["panels"]

@@ -14,15 +14,16 @@ from bezierplan.problem import Path, Problem
 class Results(NamedTuple):
     """Runs, problems and bounds of an experiment.
 
-    runs: one row a run, columns as in `running.run_chunk`, with `straight_line`, `bound` and `bound8` of its problem. problems: by name.
+    runs: one row a run, columns as in `running.run_chunk`, with the bounds of its problem. problems: by name.
     bounds: one row a problem, its name as index, columns as in `problems.bounds_of`. published: the study's published numbers, where they
-    are asked for.
+    are asked for. jobs: method -> the job of its runs (`study.job`), where runs are made again.
     """
 
     runs: pd.DataFrame
     problems: dict[str, Problem]
     bounds: pd.DataFrame
     published: pd.DataFrame | None = None
+    jobs: dict[str, dict] | None = None
 
 
 def read(runs: list[str], repeats: int, problems: str, bounds: str) -> Results:
@@ -45,7 +46,7 @@ def _with_times(file: str) -> pd.DataFrame:
 def joined(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFrame) -> Results:
     """Runs with the bounds of their problems, as from `problems.bounds_of`. Raises ValueError as `read` does."""
     bounds = bounds.set_index("problem")
-    runs = runs.join(bounds.drop(columns=["least_length", "bound_path"], errors="ignore"), on="problem")
+    runs = runs.join(bounds.drop(columns="least_length", errors="ignore"), on="problem")
     impossible = runs["feasible"] & (runs["length"] < runs["problem"].map(bounds["least_length"]))
     if impossible.any():
         run = runs[impossible].iloc[0]

@@ -30,8 +30,8 @@ _LOOK = {
     "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull of the control points", "zorder": 2},
     "bound": {**style.BOUND, "label": "shortest path possible", "zorder": 4},
     "collision": {"color": style.BLACK, "linestyle": "", "marker": "X", "markersize": 8, "label": "first collision", "zorder": 6},
-    "start": {"color": style.BLACK, "linestyle": "", "marker": "s", "markersize": 7, "label": "start", "zorder": 4.5},
-    "target": {"color": style.BLACK, "linestyle": "", "marker": "*", "markersize": 12, "label": "target", "zorder": 4.5},
+    "start": workspaces.START,
+    "target": workspaces.TARGET,
 }
 
 
@@ -113,7 +113,7 @@ def _drawn(path: Path, control: str) -> dict[str, np.ndarray]:
         drawn["hull"] = shapely.get_coordinates(shapely.MultiPoint(path.points).convex_hull)
     if path.curve != "ferguson" and control != "none":
         drawn["control" if control == "all" else "points"] = path.points
-    return drawn | {"path": _steps(path)}
+    return drawn | {"path": steps(path)}
 
 
 def _table(drawn: dict[str, Sequence]) -> pd.DataFrame:
@@ -122,7 +122,7 @@ def _table(drawn: dict[str, Sequence]) -> pd.DataFrame:
     return pd.concat(points, ignore_index=True)[["part", "x", "y"]]
 
 
-def _steps(path: Path) -> np.ndarray:
+def steps(path: Path) -> np.ndarray:
     """Points (n, 2) along a path, close enough to look smooth."""
     pieces = len(curves.bezier_pieces(path))
     steps = pieces * max(1, _STEPS // pieces)

@@ -23,6 +23,12 @@ _CELLS = {
     "surplus": {"facecolor": style.SURPLUS, "label": "surplus cell, occupied", **style.SURPLUS_HATCH},
 }
 
+_OBSTACLE = {"facecolor": style.OCCUPIED, "edgecolor": "0.4", "linewidth": 0.5, "zorder": 0.5}
+_OUTLINE = {"facecolor": "none", "edgecolor": style.BLACK, "linewidth": 0.8, "linestyle": (0, (3, 2)), "zorder": 3}
+
+START = {"color": style.BLACK, "linestyle": "", "marker": "s", "markersize": 7, "label": "start", "zorder": 4.5}
+TARGET = {"color": style.BLACK, "linestyle": "", "marker": "*", "markersize": 12, "label": "target", "zorder": 4.5}
+
 _COLUMNS = ["part", "x", "y", "size", "obstacle", "ring", "number"]
 
 
@@ -106,16 +112,19 @@ def scale(axes: Axes, unit: str) -> None:
     axes.set_ylabel(f"y ({unit})")
 
 
-def shade(axes: Axes, frame: pd.DataFrame) -> None:
-    """Draw the rows of `data` or `parts` without numbers or labels of the axes, to scale."""
+def shade(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
+    """Draw the rows of `data` or `parts` without numbers or labels of the axes, to scale; of circles and polygons the outlines alone, if
+    something else fills the panel.
+    """
     corners = frame[frame["part"] == "corner"]
     axes.set_xlim(corners["x"].min(), corners["x"].max())
     axes.set_ylim(corners["y"].min(), corners["y"].max())
     axes.set_aspect("equal")
     for part, look in _CELLS.items():
         _draw_cells(axes, frame[frame["part"] == part], look)
-    _draw_circles(axes, frame[frame["part"] == "circle"])
-    _draw_polygons(axes, frame[frame["part"] == "ring"])
+    look = _OUTLINE if outlines else _OBSTACLE
+    _draw_obstacles(axes, _circles(frame[frame["part"] == "circle"]), look)
+    _draw_obstacles(axes, _polygons(frame[frame["part"] == "ring"]), look)
 
 
 def _draw_cells(axes: Axes, cells: pd.DataFrame, look: dict) -> None:
@@ -126,19 +135,16 @@ def _draw_cells(axes: Axes, cells: pd.DataFrame, look: dict) -> None:
     axes.add_collection(PolyCollection(corners, edgecolor=style.CELL_LINE, linewidth=0.4, zorder=0.5, **look), autolim=False)
 
 
-def _draw_circles(axes: Axes, circles: pd.DataFrame) -> None:
-    shapes = [Circle((x, y), radius) for x, y, radius in zip(circles["x"], circles["y"], circles["size"])]
-    _draw_obstacles(axes, shapes)
+def _circles(circles: pd.DataFrame) -> list[Circle]:
+    return [Circle((x, y), radius) for x, y, radius in zip(circles["x"], circles["y"], circles["size"])]
 
 
-def _draw_polygons(axes: Axes, rings: pd.DataFrame) -> None:
-    if rings.empty:
-        return
+def _polygons(rings: pd.DataFrame) -> list[PathPatch]:
     outlines = [
         Outline.make_compound_path(*(Outline(np.vstack([ring, ring[:1]]), closed=True) for ring in _oriented(obstacle)))
         for _, obstacle in rings.groupby("obstacle")
     ]
-    _draw_obstacles(axes, [PathPatch(outline) for outline in outlines])
+    return [PathPatch(outline) for outline in outlines]
 
 
 def _oriented(obstacle: pd.DataFrame) -> list[np.ndarray]:
@@ -152,7 +158,6 @@ def _oriented(obstacle: pd.DataFrame) -> list[np.ndarray]:
     return rings
 
 
-def _draw_obstacles(axes: Axes, shapes: list) -> None:
+def _draw_obstacles(axes: Axes, shapes: list, look: dict) -> None:
     if shapes:
-        look = {"facecolor": style.OCCUPIED, "edgecolor": "0.4", "linewidth": 0.5, "label": "obstacle", "zorder": 0.5}
-        axes.add_collection(PatchCollection(shapes, **look), autolim=False)
+        axes.add_collection(PatchCollection(shapes, label="obstacle", **look), autolim=False)

@@ -1,4 +1,4 @@
-"""tharwat2018: the claims that a comparison of runs cannot judge, what its Figure 3 draws, and an audit of its tables and text.
+"""tharwat2018: the claims that a comparison of runs cannot judge, what its figures without runs draw, and an audit of its tables and text.
 
 Numbers of equations, sections, tables and figures are the paper's.
 """
@@ -8,9 +8,9 @@ import math
 import numpy as np
 import pandas as pd
 
-from bezierplan import curves
-from bezierplan.analysis.results import Results, path_of, select
-from bezierplan.problem import Path, Problem
+from bezierplan import curves, metrics
+from bezierplan.analysis.results import Results, select
+from bezierplan.problem import Problem, Workspace
 from bezierplan.search import chaotic_maps
 
 # Parameters of the maps in common use, where the paper gives a range or nothing.
@@ -25,9 +25,16 @@ BEST_KNOWN = {
 MOVED = 1  # which of them moves in Figures 10 and 11: the middle one
 GRID = 201  # places along each side of the field
 
+START, TARGET = (0.0, 0.0), (4.0, 6.0)  # Section 5.1, in units
+
+# Figure 2: the swarm's best place G and two particles in one dimension, each with its place x, velocity v, best place p, r1 and r2.
+# The places are an example; C1 and C2 are those of Table 2.
+G = 8.0
+MOVED_PARTICLES = ((1.0, 1.5, 3.0, 0.5, 0.3), (13.0, -1.0, 11.5, 0.6, 0.25))
+INERTIA, C1, C2 = 1.0, 1.5, 1.5
+
 SEQUENCES = 100  # of the Gauss map
 FIRST_VALUES = 10  # left out of each of them
-CLASS_SAMPLES = 2001  # of a path, by which its way round the circles is told
 
 # Section 5.1: of so many rows each table's ranks are taken; Table 6 ranks the numbers of obstacles.
 RANKED = {"table3": 8, "table4": 8, "table5": 5, "table6": 10}
@@ -62,6 +69,81 @@ def chaotic_sequences() -> pd.DataFrame:
     return pd.concat(frames, ignore_index=True)
 
 
+def ends(workspace: Workspace) -> pd.DataFrame:
+    """Figure 5: marks of start and target, whatever the circles."""
+    dots = [("dots", role, role, *place) for role, place in (("start", START), ("target", TARGET))]
+    return pd.DataFrame(dots, columns=["mark", "role", "label", "x", "y"])
+
+
+def movement() -> pd.DataFrame:
+    """Figure 2: marks of two particles that move in one dimension, the three parts of each velocity (eq. 8) from tail to head.
+
+    Further columns: part (of the velocity, its name) and value (its signed length).
+    """
+    rows = []
+    for number, (x, v, p, r1, r2) in enumerate(MOVED_PARTICLES):
+        line = -5.0 * number  # the height at which the particle moves
+        parts = {"w v": INERTIA * v, "C1 r1 (p - x)": C1 * r1 * (p - x), "C2 r2 (G - x)": C2 * r2 * (G - x)}
+        moved = x + sum(parts.values())
+        names = zip(("inertia", "cognition", "social part"), ("third", "first", "second"), parts.items(), strict=True)
+        aside = math.copysign(1.0, G - x)  # words stand beyond the heads
+        rows.append({"mark": "line", "role": "muted", "group": f"line {number}", "x": -1.0, "y": line})
+        rows.append({"mark": "line", "role": "muted", "group": f"line {number}", "x": 15.0, "y": line})
+        tail = x
+        for height, (name, role, (formula, part)) in enumerate(names, start=1):
+            arrow = {"mark": "arrow", "role": role, "group": f"{name} {number}", "y": line + 0.9 * height, "part": name, "value": part}
+            rows += [arrow | {"x": tail}, arrow | {"x": tail + part}]
+            tail += part
+            words = {"mark": "text", "role": "note", "y": line + 0.9 * height, "text": f"{name} {formula}"}
+            rows.append(words | {"x": moved + aside * 4.3})
+        for role, place, words in (("first", x, "x"), ("third", p, "p"), ("start", moved, "new x"), ("target", G, "G")):
+            label = {"first": "place", "third": "its best place", "start": "next place", "target": "the swarm's best place"}[role]
+            rows.append({"mark": "dots", "role": role, "group": f"{words} {number}", "label": label, "x": place, "y": line})
+            if words != "new x":
+                rows.append({"mark": "text", "role": "note", "x": place, "y": line - 0.75, "text": words})
+    return pd.DataFrame(rows)
+
+
+def flow_chart() -> pd.DataFrame:
+    """Figure 4: marks of a flow chart of the method (Section 4, Algorithm 1), boxes from top to bottom and arrows between them."""
+    middle, left, right, width, height, step = 0.0, -62.0, 62.0, 190.0, 22.0, 36.0
+    steps = [
+        ("muted", "particles at random places, velocities 0"),
+        ("none", "particle: control points of a curve (eq. 1)"),
+        ("none", "fitness: length and collisions (eqs. 19 to 22)"),
+        ("none", "best place p of each, best place G of all"),
+        ("accent", "last iteration, or G as ten iterations ago?"),
+        ("none", "next number ζ of the map (eqs. 9 to 16)"),
+    ]
+    boxes = [(middle, -step * i, width, role, text) for i, (role, text) in enumerate(steps)]
+    boxes += [
+        (left, -step * 6, 115.0, "accent", "CPSO-I: ζ for r1 (eq. 17)"),
+        (right, -step * 6, 115.0, "accent", "CPSO-II: ζ for r2 (eq. 18)"),
+        (middle, -step * 7, width, "none", "move all particles within the field (eqs. 7, 8)"),
+        (middle, -step * 8, width, "muted", "path of G"),
+    ]
+    below, above = -height / 2, height / 2
+    edge = left - 65.0
+    ways = [
+        *([(middle, -step * i + below), (middle, -step * (i + 1) + above)] for i in range(5)),
+        *([(side, -step * 5 + below), (side, -step * 6 + above)] for side in (left, right)),
+        *([(side, -step * 6 + below), (side, -step * 7 + above)] for side in (left, right)),
+        [(-width / 2, -step * 7), (edge, -step * 7), (edge, -step), (-width / 2, -step)],
+        [(width / 2, -step * 4), (-edge, -step * 4), (-edge, -step * 8), (width / 2, -step * 8)],
+    ]
+    rows = [{"mark": "cell", "role": role, "x": x, "y": y, "width": wide, "height": height} for x, y, wide, role, _ in boxes]
+    rows += [{"mark": "text", "role": "note", "x": x, "y": y, "text": text} for x, y, _, _, text in boxes]
+    for number, way in enumerate(ways):
+        line, arrow = {"mark": "line", "role": "note", "group": number}, {"mark": "arrow", "role": "note", "group": number}
+        rows += [line | {"x": x, "y": y} for x, y in way[:-1]] if len(way) > 2 else []
+        rows += [arrow | {"x": x, "y": y} for x, y in way[-2:]]
+    rows += [
+        {"mark": "text", "role": "note", "x": -edge - 14, "y": -step * 4 + 7, "text": "yes"},
+        {"mark": "text", "role": "note", "x": middle + 12, "y": -step * 4.5, "text": "no"},
+    ]
+    return pd.DataFrame(rows)
+
+
 def gauss_above(
     check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]
 ) -> tuple[str, float, tuple[float, float] | None, int]:
@@ -91,14 +173,36 @@ def bowl_with_local_minima(
     """
     from scipy import stats
 
-    runs = select(results[check["experiment"]].runs, check.get("where", {}))
-    run = runs[runs["planner"] == "chaotic_pso"].iloc[0]
-    surface = landscape(results[check["experiment"]].problems[run["problem"]], run["workspace"], int(run["samples"]), float(run["beta"]))
+    found = results[check["experiment"]]
+    surface = _landscape(found._replace(runs=select(found.runs, check.get("where", {}))))
     best = surface.loc[surface["fitness"].idxmin()]
     distance = np.hypot(surface["x"] - best["x"], surface["y"] - best["y"])
     correlation = float(stats.spearmanr(surface["fitness"], distance).statistic)
-    minima = local_minima(surface["fitness"].to_numpy().reshape(GRID, GRID))
+    minima = int(local_minima(surface["fitness"].to_numpy().reshape(GRID, GRID)).sum())
     return "+" if correlation > 0.5 and minima > 1 else "-", correlation, None, len(surface)
+
+
+def fitness_landscape(results: Results) -> pd.DataFrame:
+    """Figures 10 to 12: `landscape` of the problem of runs, with the settings in force.
+
+    Columns: part, x, y, objective; parts: node, minimum (a strict local one), lowest (the lowest node), fixed (control points that stay).
+    """
+    surface = _landscape(results).rename(columns={"fitness": "objective"})
+    minima = surface[local_minima(surface["objective"].to_numpy().reshape(GRID, GRID)).ravel()]
+    stay = np.delete(BEST_KNOWN[results.runs["workspace"].iloc[0]], MOVED, axis=0)
+    parts = {
+        "node": surface,
+        "minimum": minima,
+        "lowest": surface.loc[[surface["objective"].idxmin()]],
+        "fixed": pd.DataFrame(stay, columns=["x", "y"]),
+    }
+    return pd.concat([frame.assign(part=part) for part, frame in parts.items()], ignore_index=True)
+
+
+def _landscape(results: Results) -> pd.DataFrame:
+    """`landscape` with the settings of the first run of the swarms."""
+    run = results.runs[results.runs["planner"] == "chaotic_pso"].iloc[0]
+    return landscape(results.problems[run["problem"]], run["workspace"], int(run["samples"]), float(run["beta"]))
 
 
 def landscape(problem: Problem, workspace: str, samples: int, beta: float) -> pd.DataFrame:
@@ -130,8 +234,8 @@ def fitness(paths: np.ndarray, problem: Problem, samples: int, beta: float) -> n
     return length * (1 + beta * violation)
 
 
-def local_minima(values: np.ndarray) -> int:
-    """How many inner values of a grid (n, m) are below all their eight neighbours."""
+def local_minima(values: np.ndarray) -> np.ndarray:
+    """Which values of a grid (n, m) are below all their eight neighbours, those at its edge never: (n, m)."""
     inner = values[1:-1, 1:-1]
     rows, columns = inner.shape
     lower = np.ones(inner.shape, dtype=bool)
@@ -139,7 +243,7 @@ def local_minima(values: np.ndarray) -> int:
         for j in range(3):
             if (i, j) != (1, 1):
                 lower &= inner < values[i : i + rows, j : j + columns]
-    return int(lower.sum())
+    return np.pad(lower, 1)
 
 
 def several_homotopy_classes(
@@ -148,22 +252,8 @@ def several_homotopy_classes(
     """Claim C17: among how many classes the final paths are; two paths of one class pass every circle on the same side."""
     found = results[check["experiment"]]
     runs = select(found.runs, check.get("where", {}))
-    classes = {homotopy_class(path_of(run), found.problems[run["problem"]]) for _, run in runs.iterrows()}
-    return "+" if len(classes) > 1 else "-", float(len(classes)), None, len(runs)
-
-
-def homotopy_class(path: Path, problem: Problem) -> tuple[bool, ...]:
-    """Of each circle, whether the angle that a path sweeps about its centre is positive: whether it leaves the centre to its left.
-
-    Enough to tell classes apart where no path winds round a circle, and where all have the same ends.
-    """
-    points = curves.sample_matrix(path.curve, len(path.points), CLASS_SAMPLES) @ path.points
-    signs = []
-    for centre in problem.workspace.centres:
-        ahead = points - centre
-        angles = np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0]))
-        signs.append(bool(angles[-1] > angles[0]))
-    return tuple(signs)
+    classes = metrics.values(runs, "homotopy", found.problems).nunique()
+    return "+" if classes > 1 else "-", float(classes), None, len(runs)
 
 
 def audit(published: dict[str, pd.DataFrame]) -> list[dict]:

@@ -1,0 +1,129 @@
+"""Figures of a landscape and of tracks on it: runs made again pass through what they passed through."""
+
+from pathlib import Path as File
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from bezierplan import checked, metrics, problems, running, sheet
+from bezierplan.analysis import results
+from bezierplan.figures import landscape, tracks
+from bezierplan.planners import chaotic_pso
+from bezierplan.problem import Problem
+from bezierplan.workspaces.circles import Circles
+
+SETTINGS = checked.read(File(__file__).parents[1] / "config" / "studies" / "tharwat2018" / "experiments.yaml", "experiments")["settings"]
+FIELD = Problem("field", Circles((-10.0, 10.0, -10.0, 10.0), np.array([[2.0, 3.0]]), np.array([1.0]), "m"), (0.0, 0.0), (4.0, 6.0))
+JOB = {
+    "study": "study",
+    "experiment": "routes",
+    "method": "swarm",
+    "planner": "chaotic_pso",
+    "settings": SETTINGS | {"chaotic_term": "none", "iterations": 20},
+    "problems": {"field": {"workspace": "field"}},
+    "vary": {"inertia": [1.0, 0.7]},
+    "levels": {},
+    "seeds": "common",
+    "repeats": [0, 6],
+}
+
+
+def surface(found: results.Results) -> pd.DataFrame:
+    """A bowl with two minima over a small grid, and a control point that stays."""
+    x, y = (side.ravel() for side in np.meshgrid(np.linspace(-10, 10, 9), np.linspace(-10, 10, 7), indexing="ij"))
+    nodes = pd.DataFrame({"part": "node", "x": x, "y": y, "objective": 1 + x**2 + y**2})
+    places = pd.DataFrame({"part": ["minimum", "lowest", "fixed"], "x": [5.0, 0.0, 1.0], "y": [5.0, 0.0, 2.0]})
+    return pd.concat([nodes, places], ignore_index=True)
+
+
+@pytest.fixture(scope="module")
+def found() -> results.Results:
+    table, _ = running.run_chunk({"field": FIELD}, JOB)
+    bounds = problems.bounds_of({"field": FIELD}).to_pandas()
+    runs = table.to_pandas()
+    runs["path_points"] = runs["path_points"].map(list)
+    return results.joined(runs[runs["inertia"] == 0.7], {"field": FIELD}, bounds)._replace(jobs={"swarm": JOB})
+
+
+def panels() -> list[dict]:
+    runs = {"experiment": "routes", "where": {"method": "swarm"}}
+    below = {"data": "surface"}
+    return [
+        {"kind": "surface", "title": "surface", **runs, **below},
+        {"kind": "landscape", "title": "landscape", **runs, **below},
+        {"kind": "tracks", "title": "point", **runs, **below, "by": "homotopy", "runs": 2, "point": 1},
+        {"kind": "tracks", "title": "paths", **runs, "by": "homotopy", "runs": 2},
+    ]
+
+
+def test_ways_are_those_of_the_runs(found):
+    """The objective along the way of all control points is the run's history: nothing but the run itself can do that."""
+    ways = [tracks.data(found, by="homotopy", runs=1, point=point).query("part == 'way'") for point in range(5)]
+    points = np.stack([way[["x", "y"]].to_numpy() for way in ways], axis=1)
+    run = found.runs.set_index("id").loc[ways[0]["run"].iloc[0]]
+    again = chaotic_pso._objective(FIELD, JOB["settings"])
+    buffers = [np.empty(SETTINGS["samples"]) for _ in range(3)]
+    for best, position in zip(run["history"], points[:, 1:-1]):
+        length = chaotic_pso._length(position.T.ravel(), again, *buffers)
+        violation, _ = chaotic_pso._violation(buffers[0], buffers[1], again.circles, buffers[2])
+        assert chaotic_pso._fitness(length, violation, again) == pytest.approx(best, rel=1e-12)
+    np.testing.assert_array_equal(points[-1].ravel(), run["path_points"])
+
+
+def test_the_best_run_of_each_of_the_commonest_values_is_drawn(found):
+    frame = tracks.data(found, by="homotopy", runs=2)
+    runs = found.runs.assign(group=metrics.values(found.runs, "homotopy", found.problems)).query("feasible")
+    counts = runs["group"].value_counts()
+    assert len(counts) == 2, "paths pass the circle on either side"
+    best = {runs.loc[runs.loc[runs["group"] == group, "objective"].idxmin(), "id"] for group in counts.index}
+    assert set(frame["run"].dropna()) == best
+    assert set(frame["groups"]) == {2}
+    assert set(frame.loc[frame["part"] == "path"].groupby("run")["iteration"].nunique()) == {2}
+    commonest = tracks.data(found, by="homotopy", runs=1)["run"].dropna().iloc[0]
+    assert runs.set_index("id")["group"][commonest] == counts.index[0] or counts.nunique() == 1
+
+
+def test_a_run_that_ends_elsewhere_is_a_fault(found):
+    job = JOB | {"settings": JOB["settings"] | {"c1": 1.4}}
+    with pytest.raises(ValueError, match=r"study/routes/field,inertia=0.7/swarm/\d: made again it ends in another path"):
+        tracks.data(found._replace(jobs={"swarm": job}), by="homotopy", runs=1)
+
+
+def test_faults_of_panels_are_said(found):
+    with pytest.raises(ValueError, match="point: 5; expected 0 to 4"):
+        tracks.data(found, by="homotopy", runs=1, point=5)
+    two = found._replace(runs=pd.concat([found.runs, found.runs.assign(problem="other")]))
+    with pytest.raises(ValueError, match="exactly one problem"):
+        tracks.data(two, by="homotopy", runs=1)
+    with pytest.raises(ValueError, match="exactly one problem"):
+        landscape.data((two, surface(two)))
+
+
+def test_no_feasible_run_is_said(found, tmp_path):
+    none = found._replace(runs=found.runs.assign(feasible=False))
+    figure = drawn(none, panels()[3:], tmp_path)
+    assert "no feasible run" in [text.get_text() for text in figure.axes[0].texts]
+
+
+def drawn(found: results.Results, own: list[dict], folder: File):
+    file = str(folder / "figure.csv")
+    sheet.write_data(sheet.data(own, {"routes": found}, {}, {"surface": surface}), file)
+    return sheet.draw(own, sheet.read_data(file), sheet.Scene({"routes": found.problems}, {}, {}, "m"), 2)
+
+
+def test_landscape_and_tracks_fit_on_a_sheet(found, tmp_path):
+    figure = drawn(found, panels(), tmp_path)
+    figure.draw_without_rendering()
+    assert [axes.name for axes in figure.axes if axes.get_visible()][:2] == ["3d", "rectilinear"]
+    legend = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert {"first run", "second run", "first position", "last position", "local minimum", "start", "target"} <= legend
+    for axes in figure.axes[:4]:
+        extent = axes.get_tightbbox()
+        assert 0 <= extent.x0 <= extent.x1 <= figure.bbox.width
+        assert 0 <= extent.y0 <= extent.y1 <= figure.bbox.height
+
+
+def test_round_numbers():
+    assert landscape.round_numbers(np.array([7.6, 310.0])) == [10, 20, 50, 100, 200]
+    assert landscape.round_numbers(np.array([0.05, 0.3])) == pytest.approx([0.05, 0.1, 0.2])
