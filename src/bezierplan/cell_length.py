@@ -48,27 +48,28 @@ def parts(points: np.ndarray) -> int:
 
 
 @njit(cache=True)
-def sample(points: np.ndarray, x: np.ndarray, y: np.ndarray) -> None:
-    """Write samples of a Bezier piece (degree + 1, 2), uniform in the parameter with both ends, to x and y of equal length.
+def sample(points: np.ndarray, last: int, stride: int) -> tuple[np.ndarray, np.ndarray]:
+    """x and y of a Bezier piece (degree + 1, 2) at the parameters 0, stride / last, 2 stride / last, ..., and at 1 if the stride is 1.
 
     Horner's rule in Bernstein form, all weights positive, for all samples at once.
     """
     degree = len(points) - 1
-    last = len(x) - 1
-    power = np.ones(len(x))
-    for s in range(len(x)):
-        x[s] = points[0, 0]
-        y[s] = points[0, 1]
+    count = last // stride + 1
+    x, y = np.full(count, points[0, 0]), np.full(count, points[0, 1])
+    t, power = np.empty(count), np.ones(count)
+    for s in range(count):
+        t[s] = s * stride / last
     binomial = 1.0
     for i in range(1, degree + 1):
         binomial *= (degree - i + 1) / i
         weight_x, weight_y = binomial * points[i, 0], binomial * points[i, 1]
-        for s in range(len(x)):
-            t = s / last
-            power[s] *= t
-            x[s] = x[s] * (1.0 - t) + power[s] * weight_x
-            y[s] = y[s] * (1.0 - t) + power[s] * weight_y
-    x[last], y[last] = points[degree, 0], points[degree, 1]
+        for s in range(count):
+            power[s] *= t[s]
+            x[s] = x[s] * (1.0 - t[s]) + power[s] * weight_x
+            y[s] = y[s] * (1.0 - t[s]) + power[s] * weight_y
+    if stride == 1:
+        x[last], y[last] = points[degree, 0], points[degree, 1]
+    return x, y
 
 
 @njit(cache=True)
@@ -122,9 +123,7 @@ def occupied_cells(columns: np.ndarray, rows: np.ndarray, occupied: np.ndarray) 
 def is_free_leg(occupied: np.ndarray, x0: float, y0: float, x1: float, y1: float) -> bool:
     """Whether all cells that a straight leg touches are free; cells outside the grid are not."""
     ends = np.array([[x0, y0], [x1, y1]])
-    x = np.empty(parts(ends) + 1)
-    y = np.empty_like(x)
-    sample(ends, x, y)
+    x, y = sample(ends, parts(ends), 1)
     columns, rows = touched_cells(x, y)
     return occupied_cells(columns, rows, occupied) == 0
 
@@ -168,13 +167,7 @@ def polyline_length(x: np.ndarray, y: np.ndarray) -> float:
 
 def samples(path: Path, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     """x and y of samples of a path, in cells, less than a cell apart."""
-    drawn = []
-    for piece in grid.in_cells(curves.bezier_pieces(path)):
-        x = np.empty(parts(piece) + 1)
-        y = np.empty_like(x)
-        sample(piece, x, y)
-        drawn.append((x, y))
-    xs, ys = zip(*drawn)
+    xs, ys = zip(*(sample(piece, parts(piece), 1) for piece in grid.in_cells(curves.bezier_pieces(path))))
     return np.concatenate(xs), np.concatenate(ys)
 
 

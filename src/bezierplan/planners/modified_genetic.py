@@ -1,0 +1,584 @@
+"""Modified genetic algorithm (MGA): which points of a field are control points of a Bezier curve (elhoseny2017, Section 3).
+
+A chromosome has one gene for each point of a lattice of cells: 1 makes the point a control point, 0 leaves it out, and -1 marks an occupied
+cell, which is never set. It is kept as the ascending list of the genes that are 1. A chromosome whose points are too near to each other or
+whose curve touches an occupied cell is deleted, and a random one drawn in its place (Section 3.2.2). Beside the plain algorithm the paper
+watches the Q statistic of the pool (Section 3.3). In the kernels coordinates and lengths are in cells.
+"""
+
+import math
+from typing import Annotated, Literal, NamedTuple
+
+import numpy as np
+from numba import njit
+
+from bezierplan.cell_length import cells4, cells8, occupied_cells, parts, polyline_length, sample, touched_cells
+from bezierplan.problem import Path, Plan, Problem, Range
+from bezierplan.search.diversity import q_statistic, shared
+from bezierplan.workspaces.grid import Grid
+
+workspaces = ("grid",)
+
+CurveKind = Literal["single", "composite"]
+PATH_KINDS = {"single": "bezier", "composite": "piecewise_quadratic"}
+
+# More control points make a chromosome invalid: the curve's degree is at most 60.
+MOST_POINTS = 59
+
+# Places in a list of genes: two chromosomes crossed have at most twice as many.
+_ROOM = 2 * MOST_POINTS + 1
+
+# Fitness of a chromosome that holds a place in the first population because no valid one was found.
+_UNFIT = 1e-9
+
+# Points of a curve that are looked at first: most curves that collide show it there, so the walk over all cells is spared.
+_FIRST_SAMPLES = 30
+_ON_LINE = 1e-9
+
+_LENGTHS = ("length", "cells4", "cells8")
+_LENGTH, _CELLS4, _CELLS8 = range(3)
+_MUTATIONS = ("gene", "chromosome", "one_flip")
+_EACH_GENE, _CHROMOSOME, _ONE_FLIP = range(3)
+_DIVERSITIES = ("none", "more_offspring", "relaxing", "unique")
+_NO_DIVERSITY, _MORE_OFFSPRING, _RELAXING, _UNIQUE = range(4)
+
+
+class Field(NamedTuple):
+    """Where the curves lie; lengths in cells from the grid's corner.
+
+    occupied: bool (rows, columns). points: (genes, 2) centre of each gene's cell. rank: (genes,) its place in the order in which control
+    points are joined. settable: (genes,) whether it may be 1; choices: the genes that may. start, target: (2,).
+    """
+
+    occupied: np.ndarray
+    points: np.ndarray
+    rank: np.ndarray
+    settable: np.ndarray
+    choices: np.ndarray
+    start: np.ndarray
+    target: np.ndarray
+
+
+class Rules(NamedTuple):
+    """Settings of `plan` that the search needs, by the same names; words by their number."""
+
+    population: int
+    iterations: int
+    crossover_probability: float
+    mutation: int
+    mutation_rate: float
+    diversity: int
+    eta: float
+    eta_decay: float
+    most_batches: int
+    first_points: int
+    first_draws: int
+    replacements: int
+    least_distance: float
+    composite: bool
+    fitness_length: int
+    punished: bool
+    penalty: float
+    generational: bool
+
+
+class Pool(NamedTuple):
+    """Chromosomes: ones (places, `_ROOM`) the genes that are 1, ascending; count (places,) how many; cost (places,) what the fitness is
+    the inverse of; free (places,) whether the curve is free of collisions.
+    """
+
+    ones: np.ndarray
+    count: np.ndarray
+    cost: np.ndarray
+    free: np.ndarray
+
+
+class Found(NamedTuple):
+    """What a search found. ones: of the best chromosome, none if there is none. cost: its length.
+
+    history: (iterations + 1,) best cost so far. distinct: (iterations + 1,) different chromosomes in the population. q: (iterations,) mean
+    Q of the pool at an iteration's end, where it is asked for. batches: further batches of offspring. evaluations: chromosomes that were
+    validated; deleted: invalid children among them.
+    """
+
+    ones: np.ndarray
+    cost: float
+    history: np.ndarray
+    distinct: np.ndarray
+    q: np.ndarray
+    batches: int
+    evaluations: int
+    deleted: int
+
+
+def check(settings: dict) -> None:
+    """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
+    if settings["population"] % 2:
+        raise ValueError(f"population: {settings['population']}; parents are crossed in pairs, so an even number is needed")
+    if settings["first_points"] > MOST_POINTS:
+        raise ValueError(f"first_points: {settings['first_points']}; a curve has at most {MOST_POINTS} control points between its ends")
+
+
+def plan(
+    problem: Problem,
+    rng: np.random.Generator,
+    *,
+    population: Annotated[int, Range(2)],
+    iterations: Annotated[int, Range(1)],
+    crossover_probability: Annotated[float, Range(0, 1)],
+    mutation: Literal["gene", "chromosome", "one_flip"],
+    mutation_rate: Annotated[float, Range(0, 1)],
+    diversity: Literal["none", "more_offspring", "relaxing", "unique"],
+    eta: Annotated[float, Range(-1, 1)],
+    eta_decay: Annotated[float, Range(0, 1)],
+    most_batches: Annotated[int, Range(0)],
+    gene_lattice: Literal["coarse", "cell"],
+    point_order: Literal["projection", "index"],
+    first_points: Annotated[int, Range(1)],
+    first_draws: Annotated[int, Range(1)],
+    replacements: Annotated[int, Range(0)],
+    least_distance: Annotated[float, Range(0)],
+    curve: CurveKind,
+    fitness_length: Literal["length", "cells4", "cells8"],
+    invalid: Literal["delete", "penalty"],
+    penalty: Annotated[float, Range(0)],
+    survival: Literal["best_of_all", "generational"],
+) -> Plan:
+    """Shortest curve through control points on a lattice of cells (elhoseny2017, Algorithms 1 and 2).
+
+    mutation: every gene changes with the probability mutation_rate, one gene of a chromosome does, or one gene always does (one_flip).
+    diversity: no rule at all (the plain algorithm); more offspring as long as the mean Q of the pool is above eta, at most most_batches
+    times an iteration (Algorithm 2); only children whose mean Q to the pool is at most 1 - eta (relaxing); no child equal to another
+    chromosome of the pool (unique). eta changes by the factor eta_decay from one iteration to the next. gene_lattice: 21 x 21 points, or
+    every cell. point_order: control points are joined in the order of their projection on the line from start to target, ties from its left
+    to its right, or in the order of the genes. first_points: the most control points of a random chromosome. first_draws: for each of the
+    first population. replacements: draws for an invalid child. least_distance: between two control points, in cells. curve: a single Bezier
+    curve, or quadratic pieces that meet half-way between the points (composite). fitness_length: what the fitness is the inverse of, the
+    length of the sampled curve or a length that counts cells (`cell_length`). invalid: what becomes of a curve that touches occupied cells;
+    with penalty cells each are added to its length. survival: the best of parents and offspring, or of the offspring alone (generational).
+
+    The planner's own test: no cell that the sampled curve touches is occupied. Extra columns: distinct_chromosomes in the population and
+    mean_q of the pool, means over the iterations; further_batches of offspring; deleted_children, which were invalid.
+    """
+    grid = problem.workspace
+    ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
+    if problem.start == problem.target:
+        nothing = {"distinct_chromosomes": 0.0, "mean_q": math.nan, "further_batches": 0, "deleted_children": 0}
+        return Plan(Path("polyline", grid.in_units(ends)), 0.0, True, 0, np.zeros(1), "start is target", nothing)
+    field = field_of(grid, ends, gene_lattice, point_order)
+    rules = Rules(
+        population,
+        iterations,
+        crossover_probability,
+        _MUTATIONS.index(mutation),
+        mutation_rate,
+        _DIVERSITIES.index(diversity),
+        eta,
+        eta_decay,
+        most_batches,
+        first_points,
+        first_draws,
+        replacements,
+        least_distance,
+        curve == "composite",
+        _LENGTHS.index(fitness_length),
+        invalid == "penalty",
+        penalty,
+        survival == "generational",
+    )
+    found = search(rng, field, rules)
+    solved = len(found.ones) > 0
+    return Plan(
+        path=Path(PATH_KINDS[curve], grid.in_units(polygon(found.ones, field))) if solved else None,
+        objective=found.cost * grid.cell,
+        claimed_feasible=solved,
+        evaluations=found.evaluations,
+        history=found.history * grid.cell,
+        stop="iterations" if solved else "no valid chromosome",
+        extra={
+            "distinct_chromosomes": float(found.distinct.mean()),
+            "mean_q": float(found.q.mean()),
+            "further_batches": found.batches,
+            "deleted_children": found.deleted,
+        },
+    )
+
+
+def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: str) -> Field:
+    """The genes of a grid and the order in which they are joined; ends: (2, 2) start and target in cells.
+
+    Raises ValueError if no cell of the lattice is free.
+    """
+    rows, columns = grid.occupied.shape
+    longer = max(rows, columns)
+    # Whole places of 21 points along the longer side, the outer ones at its ends; or all places.
+    steps = np.floor(np.arange(21) * (longer - 1) / 20 + 0.5).astype(int) if gene_lattice == "coarse" else np.arange(longer)
+    column, row = (index.ravel() for index in np.meshgrid(steps, steps, indexing="ij"))
+    points = np.column_stack([column, row]) + 0.5
+    settable = (column < columns) & (row < rows)
+    settable[settable] = ~grid.occupied[row[settable], column[settable]]
+    for end in np.floor(ends):
+        settable &= (column != end[0]) | (row != end[1])
+    choices = np.flatnonzero(settable)
+    if not len(choices):
+        raise ValueError("gene_lattice: no free gene; every cell of the lattice is occupied, or start or target")
+    rank = np.arange(len(points))
+    if point_order == "projection":
+        along = ends[1] - ends[0]
+        left = along[0] * (points[:, 1] - ends[0, 1]) - along[1] * (points[:, 0] - ends[0, 0])
+        rank[np.lexsort((-left, (points - ends[0]) @ along))] = np.arange(len(points))
+    return Field(grid.occupied, points, rank, settable, choices, ends[0], ends[1])
+
+
+@njit(cache=True)
+def search(rng: np.random.Generator, field: Field, rules: Rules) -> Found:
+    """Algorithm 2; without a rule for diversity the plain algorithm."""
+    batches = 1 + (rules.most_batches if rules.diversity == _MORE_OFFSPRING else 0)
+    size = rules.population
+    children = 2 * size if rules.generational else size
+    pool, spare = _empty_pool(size + batches * children), _empty_pool(size)
+    child = np.empty(_ROOM, dtype=np.int64)
+    history, distinct = np.empty(rules.iterations + 1), np.empty(rules.iterations + 1)
+    q = np.full(rules.iterations, np.nan)
+    best, best_cost = np.empty(0, dtype=np.int64), np.inf
+    further = evaluations = deleted = 0
+
+    for place in range(size):
+        for _ in range(rules.first_draws):
+            count = _random_chromosome(rng, child, field, rules)
+            cost, free = validate(child[:count], field, rules)
+            evaluations += 1
+            if cost < np.inf:
+                break
+        _put(child, count, min(cost, 1.0 / _UNFIT), free, pool, place)
+    eta = rules.eta
+    for iteration in range(rules.iterations + 1):
+        for place in range(size):
+            if pool.free[place] and pool.cost[place] < best_cost:
+                best, best_cost = pool.ones[place, : pool.count[place]].copy(), pool.cost[place]
+        history[iteration] = best_cost
+        distinct[iteration] = _distinct(pool, size)
+        if iteration == rules.iterations:
+            break
+
+        wheel = np.cumsum(1.0 / pool.cost[:size])
+        filled, tried, lost = _add_offspring(rng, pool, size, wheel, children, eta, child, field, rules)
+        evaluations += tried
+        deleted += lost
+        if rules.diversity == _MORE_OFFSPRING:
+            pairs = _sum_of_q(pool, 0, filled, len(field.points))
+            for _ in range(rules.most_batches):
+                if pairs / (filled * (filled - 1) / 2) <= eta:
+                    break
+                before = filled
+                filled, tried, lost = _add_offspring(rng, pool, before, wheel, children, eta, child, field, rules)
+                pairs += _sum_of_q(pool, before, filled, len(field.points))
+                evaluations += tried
+                deleted += lost
+                further += 1
+            q[iteration] = pairs / (filled * (filled - 1) / 2)
+        _select(pool, size if rules.generational else 0, filled, spare)
+        eta *= rules.eta_decay
+    return Found(best, best_cost, history, distinct, q, further, evaluations, deleted)
+
+
+@njit(cache=True)
+def _add_offspring(rng, pool, filled, wheel, children, eta, child, field, rules):
+    """Add a batch of offspring of the pool's first chromosomes (Algorithm 1, lines 8 to 14) behind those that fill it.
+
+    wheel: (population,) running sum of the parents' fitness. Returns how many fill the pool now, chromosomes validated, invalid children.
+    """
+    tried = lost = 0
+    for _ in range(children // 2):
+        one, other = _parents(rng, wheel)
+        crossed = rng.random() < rules.crossover_probability
+        cut = rng.integers(1, len(field.points)) if crossed else 0
+        for head, tail in ((one, other), (other, one)):
+            count = _cross(pool, head, tail, cut, child) if crossed else _cross(pool, head, head, 0, child)
+            count = _mutate(rng, child, count, field, rules)
+            cost, free = validate(child[:count], field, rules)
+            tried += 1
+            lost += cost == np.inf
+            for _ in range(rules.replacements):
+                if cost < np.inf:
+                    break
+                count = _random_chromosome(rng, child, field, rules)
+                cost, free = validate(child[:count], field, rules)
+                tried += 1
+            if cost == np.inf:
+                if not rules.generational:
+                    continue
+                # No parent survives, so the place is held as in the first population.
+                cost = 1.0 / _UNFIT
+            if _is_too_alike(child[:count], cost, pool, filled, eta, field, rules):
+                continue
+            _put(child, count, cost, free, pool, filled)
+            filled += 1
+    return filled, tried, lost
+
+
+@njit(cache=True)
+def _parents(rng, wheel):
+    """Two different parents in proportion to fitness (Algorithm 1, line 9). The second is drawn from the wheel without the first one."""
+    one = np.searchsorted(wheel, rng.random() * wheel[-1], side="right")
+    one = min(one, len(wheel) - 1)
+    begin = wheel[one - 1] if one > 0 else 0.0
+    share = wheel[one] - begin
+    drawn = rng.random() * (wheel[-1] - share)
+    other = np.searchsorted(wheel, drawn if drawn < begin else drawn + share, side="right")
+    other = min(other, len(wheel) - 1)
+    if other == one:
+        # Rounding on the edge of the share left out.
+        other = one - 1 if one > 0 else one + 1
+    return one, other
+
+
+@njit(cache=True)
+def _cross(pool, head, tail, cut, child):
+    """Write the genes of one chromosome before a cut and of another from it on (Section 3.2.2); returns how many are 1."""
+    count = 0
+    for i in range(pool.count[head]):
+        if pool.ones[head, i] < cut:
+            child[count] = pool.ones[head, i]
+            count += 1
+    for i in range(pool.count[tail]):
+        if pool.ones[tail, i] >= cut:
+            child[count] = pool.ones[tail, i]
+            count += 1
+    return count
+
+
+@njit(cache=True)
+def _mutate(rng, child, count, field, rules):
+    """Change random genes, but for those that may not be set; returns how many are 1."""
+    genes = len(field.points)
+    if rules.mutation == _EACH_GENE:
+        flips = rng.binomial(genes, rules.mutation_rate)
+    elif rules.mutation == _CHROMOSOME:
+        flips = 1 if rng.random() < rules.mutation_rate else 0
+    else:
+        flips = 1
+    flipped = np.empty(flips, dtype=np.int64)
+    for k in range(flips):
+        gene = rng.integers(0, genes)
+        while _position(flipped, k, gene) < k:
+            gene = rng.integers(0, genes)
+        flipped[k] = gene
+        if field.settable[gene]:
+            count = _flip(child, count, gene)
+    return count
+
+
+@njit(cache=True)
+def _position(genes, count, gene):
+    """Place of a gene among the first so many of a list, `count` if it is not there."""
+    for i in range(count):
+        if genes[i] == gene:
+            return i
+    return count
+
+
+@njit(cache=True)
+def _flip(child, count, gene):
+    """Change a gene; returns how many are 1. What does not fit is lost: a chromosome of so many points is invalid anyway."""
+    place = _position(child, count, gene)
+    if place < count:
+        for i in range(place, count - 1):
+            child[i] = child[i + 1]
+        return count - 1
+    if count == len(child):
+        return count
+    place = count
+    while place > 0 and child[place - 1] > gene:
+        child[place] = child[place - 1]
+        place -= 1
+    child[place] = gene
+    return count + 1
+
+
+@njit(cache=True)
+def _random_chromosome(rng, child, field, rules):
+    """Write a chromosome of random genes, from 1 to `first_points` of them; returns how many."""
+    wanted = min(rng.integers(1, rules.first_points + 1), len(field.choices))
+    count = 0
+    while count < wanted:
+        gene = field.choices[rng.integers(0, len(field.choices))]
+        if _position(child, count, gene) == count:
+            count = _flip(child, count, gene)
+    return count
+
+
+@njit(cache=True)
+def validate(ones: np.ndarray, field: Field, rules: Rules) -> tuple[float, bool]:
+    """The constraints of equation 6 and Section 3.2.2, and the length: cost of a chromosome, infinite if it is to be deleted, and whether
+    its curve is free of collisions. `Obstacles` needs no test, for genes of occupied cells are never set.
+    """
+    if not 0 < len(ones) <= MOST_POINTS:
+        return np.inf, False
+    points = polygon(ones, field)
+    for i in range(1, len(points) - 1):  # `Distance Threshold`
+        for j in range(1, i):
+            if math.hypot(points[i, 0] - points[j, 0], points[i, 1] - points[j, 1]) < rules.least_distance:
+                return np.inf, False
+    if not rules.composite and not rules.punished and _collides_at_first_sight(points, field.occupied):
+        return np.inf, False
+    x, y = _curve(points, rules.composite)
+    columns, rows = touched_cells(x, y)
+    bad = occupied_cells(columns, rows, field.occupied)  # `Valid Path`
+    if bad > 0 and not rules.punished:
+        return np.inf, False
+    if rules.fitness_length == _LENGTH:
+        length = polyline_length(x, y)
+    elif rules.fitness_length == _CELLS4:
+        length = cells4(columns, rows)
+    else:
+        length = cells8(columns, rows)
+    return length + rules.penalty * bad, bad == 0
+
+
+@njit(cache=True)
+def polygon(ones: np.ndarray, field: Field) -> np.ndarray:
+    """Start, the control points of a chromosome in their order, and target: (points, 2)."""
+    points = np.empty((len(ones) + 2, 2))
+    order = ones.copy()
+    for i in range(len(order)):
+        gene = order[i]
+        place = i
+        while place > 0 and field.rank[order[place - 1]] > field.rank[gene]:
+            order[place] = order[place - 1]
+            place -= 1
+        order[place] = gene
+    for axis in range(2):
+        points[0, axis], points[-1, axis] = field.start[axis], field.target[axis]
+        for i in range(len(order)):
+            points[i + 1, axis] = field.points[order[i], axis]
+    return points
+
+
+@njit(cache=True)
+def _collides_at_first_sight(points, occupied):
+    """Whether some samples of a curve, which `_curve` has as well, lie in occupied cells; those on grid lines are left to the walk."""
+    last = parts(points)
+    x, y = sample(points, last, max(1, last // _FIRST_SAMPLES))
+    for s in range(len(x)):
+        column, row = math.floor(x[s]), math.floor(y[s])
+        inside = x[s] - column > _ON_LINE and column + 1 - x[s] > _ON_LINE and y[s] - row > _ON_LINE and row + 1 - y[s] > _ON_LINE
+        if inside and occupied[row, column]:
+            return True
+    return False
+
+
+@njit(cache=True)
+def _curve(points, composite):
+    """x and y of samples of the curve less than a cell apart (equation 2)."""
+    if not composite:
+        return sample(points, parts(points), 1)
+    pieces = len(points) - 2
+    piece = np.empty((3, 2))
+    xs, ys = [np.empty(0)], [np.empty(0)]
+    for k in range(pieces):
+        for axis in range(2):
+            piece[0, axis] = 0.5 * (points[k, axis] + points[k + 1, axis]) if k > 0 else points[0, axis]
+            piece[1, axis] = points[k + 1, axis]
+            piece[2, axis] = 0.5 * (points[k + 1, axis] + points[k + 2, axis]) if k < pieces - 1 else points[-1, axis]
+        x, y = sample(piece, parts(piece), 1)
+        xs.append(x)
+        ys.append(y)
+    count = 0
+    for x in xs:
+        count += len(x)
+    all_x, all_y = np.empty(count), np.empty(count)
+    filled = 0
+    for k in range(len(xs)):
+        for s in range(len(xs[k])):
+            all_x[filled], all_y[filled] = xs[k][s], ys[k][s]
+            filled += 1
+    return all_x, all_y
+
+
+@njit(cache=True)
+def _is_too_alike(ones, cost, pool, filled, eta, field, rules):
+    """Whether a rule for diversity refuses a child (Section 3.3)."""
+    if rules.diversity == _UNIQUE:
+        for i in range(filled):
+            if cost == pool.cost[i] and _same(ones, pool.ones[i, : pool.count[i]]):
+                return True
+    if rules.diversity == _RELAXING:
+        total = 0.0
+        for i in range(filled):
+            total += _q(ones, pool.ones[i, : pool.count[i]], len(field.points))
+        return total > (1.0 - eta) * filled
+    return False
+
+
+@njit(cache=True)
+def _q(one, other, genes):
+    """Equation 10 for two lists of genes."""
+    both = shared(one, other)
+    return q_statistic(both, genes - len(one) - len(other) + both, len(one) - both, len(other) - both)
+
+
+@njit(cache=True)
+def _sum_of_q(pool, first, filled, genes):
+    """Sum of equation 10 over the pairs of the pool whose second chromosome is at a place from `first` on.
+
+    Most pairs share no gene. A word of 64 bits for each chromosome, with the bit of each gene's number modulo 64 set, shows most of these.
+    """
+    marks = np.zeros(filled, dtype=np.uint64)
+    for i in range(filled):
+        for k in range(pool.count[i]):
+            marks[i] |= np.uint64(1) << np.uint64(pool.ones[i, k] & 63)
+    total = 0.0
+    for j in range(max(first, 1), filled):
+        for i in range(j):
+            if marks[i] & marks[j]:
+                total += _q(pool.ones[i, : pool.count[i]], pool.ones[j, : pool.count[j]], genes)
+            else:
+                total += q_statistic(0, genes - pool.count[i] - pool.count[j], pool.count[i], pool.count[j])
+    return total
+
+
+@njit(cache=True)
+def _same(one, other):
+    if len(one) != len(other):
+        return False
+    for i in range(len(one)):
+        if one[i] != other[i]:
+            return False
+    return True
+
+
+@njit(cache=True)
+def _distinct(pool, size):
+    """How many different chromosomes the first of the pool are; equal ones have equal costs."""
+    found = size
+    for i in range(size):
+        for j in range(i):
+            if pool.cost[i] == pool.cost[j] and _same(pool.ones[i, : pool.count[i]], pool.ones[j, : pool.count[j]]):
+                found -= 1
+                break
+    return found
+
+
+@njit(cache=True)
+def _empty_pool(places):
+    return Pool(np.empty((places, _ROOM), np.int64), np.zeros(places, np.int64), np.empty(places), np.zeros(places, np.bool_))
+
+
+@njit(cache=True)
+def _put(ones, count, cost, free, pool, place):
+    """Write a chromosome to a place of the pool."""
+    for k in range(count):
+        pool.ones[place, k] = ones[k]
+    pool.count[place], pool.cost[place], pool.free[place] = count, cost, free
+
+
+@njit(cache=True)
+def _select(pool, first, filled, spare):
+    """Put the best of the chromosomes at the places from `first` on to the front (Algorithm 2, line 15); of equal ones the first."""
+    order = first + np.argsort(pool.cost[first:filled], kind="mergesort")
+    for place in range(len(spare.cost)):
+        i = order[place]
+        _put(pool.ones[i], pool.count[i], pool.cost[i], pool.free[i], spare, place)
+    for place in range(len(spare.cost)):
+        _put(spare.ones[place], spare.count[place], spare.cost[place], spare.free[place], pool, place)

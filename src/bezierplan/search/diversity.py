@@ -1,0 +1,39 @@
+"""How much two binary chromosomes agree: the Q statistic (elhoseny2017, equation 10)."""
+
+import numpy as np
+from numba import njit
+
+
+@njit(cache=True)
+def q_statistic(both: int, neither: int, only_one: int, only_other: int) -> float:
+    """Q, from -1 (they share no gene) to 1, from the numbers of genes that are set in both, in neither and in one of two chromosomes.
+
+    The paper does not say what Q is when its denominator is 0: here 1 for equal chromosomes, otherwise 0.
+    """
+    agree, differ = float(both * neither), float(only_one * only_other)
+    if agree + differ == 0.0:
+        return 1.0 if only_one == 0 and only_other == 0 else 0.0
+    return (agree - differ) / (agree + differ)
+
+
+@njit(cache=True)
+def shared(one: np.ndarray, other: np.ndarray) -> int:
+    """How many numbers two ascending lists share."""
+    i = j = found = 0
+    while i < len(one) and j < len(other):
+        if one[i] == other[j]:
+            found += 1
+            i += 1
+            j += 1
+        elif one[i] < other[j]:
+            i += 1
+        else:
+            j += 1
+    return found
+
+
+def q_of_rows(one: np.ndarray, other: np.ndarray) -> float:
+    """Q of two chromosomes as rows of 0 and 1, of equal length."""
+    one, other = np.asarray(one, dtype=bool), np.asarray(other, dtype=bool)
+    both, neither = int((one & other).sum()), int((~one & ~other).sum())
+    return q_statistic(both, neither, int((one & ~other).sum()), int((~one & other).sum()))
