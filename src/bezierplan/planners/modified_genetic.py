@@ -353,20 +353,25 @@ def _mutate(rng, child, count, field, rules):
     """Change random genes, but for those that may not be set; returns how many are 1."""
     genes = len(field.points)
     if rules.mutation == _EACH_GENE:
-        flips = rng.binomial(genes, rules.mutation_rate)
-    elif rules.mutation == _CHROMOSOME:
-        flips = 1 if rng.random() < rules.mutation_rate else 0
-    else:
-        flips = 1
-    flipped = np.empty(flips, dtype=np.int64)
-    for k in range(flips):
+        # From one gene that changes to the next: the gaps of independent trials of equal probability.
+        gene = _gap(rng, rules.mutation_rate)
+        while gene < genes:
+            if field.settable[gene]:
+                count = _flip(child, count, gene)
+            gene += 1 + _gap(rng, rules.mutation_rate)
+    elif rules.mutation == _ONE_FLIP or rng.random() < rules.mutation_rate:
         gene = rng.integers(0, genes)
-        while _position(flipped, k, gene) < k:
-            gene = rng.integers(0, genes)
-        flipped[k] = gene
         if field.settable[gene]:
             count = _flip(child, count, gene)
     return count
+
+
+@njit(cache=True)
+def _gap(rng, rate):
+    """How many trials fail before one succeeds, each with a probability; 2**31 stands for more than there are genes."""
+    if rate == 0.0:
+        return 2**31
+    return int(min(math.log(1.0 - rng.random()) / math.log1p(-rate), 2.0**31)) if rate < 1.0 else 0
 
 
 @njit(cache=True)
@@ -474,26 +479,22 @@ def _curve(points, composite):
     if not composite:
         return sample(points, parts(points), 1)
     pieces = len(points) - 2
-    piece = np.empty((3, 2))
-    xs, ys = [np.empty(0)], [np.empty(0)]
+    piece = np.empty((pieces, 3, 2))
+    lasts = np.empty(pieces, dtype=np.int64)
     for k in range(pieces):
         for axis in range(2):
-            piece[0, axis] = 0.5 * (points[k, axis] + points[k + 1, axis]) if k > 0 else points[0, axis]
-            piece[1, axis] = points[k + 1, axis]
-            piece[2, axis] = 0.5 * (points[k + 1, axis] + points[k + 2, axis]) if k < pieces - 1 else points[-1, axis]
-        x, y = sample(piece, parts(piece), 1)
-        xs.append(x)
-        ys.append(y)
-    count = 0
-    for x in xs:
-        count += len(x)
-    all_x, all_y = np.empty(count), np.empty(count)
-    filled = 0
-    for k in range(len(xs)):
-        for s in range(len(xs[k])):
-            all_x[filled], all_y[filled] = xs[k][s], ys[k][s]
-            filled += 1
-    return all_x, all_y
+            piece[k, 0, axis] = 0.5 * (points[k, axis] + points[k + 1, axis]) if k > 0 else points[0, axis]
+            piece[k, 1, axis] = points[k + 1, axis]
+            piece[k, 2, axis] = 0.5 * (points[k + 1, axis] + points[k + 2, axis]) if k < pieces - 1 else points[-1, axis]
+        lasts[k] = parts(piece[k])
+    x, y = np.empty(lasts.sum() + pieces), np.empty(lasts.sum() + pieces)
+    first = 0
+    for k in range(pieces):
+        piece_x, piece_y = sample(piece[k], lasts[k], 1)
+        for s in range(len(piece_x)):
+            x[first + s], y[first + s] = piece_x[s], piece_y[s]
+        first += len(piece_x)
+    return x, y
 
 
 @njit(cache=True)
@@ -576,7 +577,13 @@ def _put(ones, count, cost, free, pool, place):
 @njit(cache=True)
 def _select(pool, first, filled, spare):
     """Put the best of the chromosomes at the places from `first` on to the front (Algorithm 2, line 15); of equal ones the first."""
-    order = first + np.argsort(pool.cost[first:filled], kind="mergesort")
+    order = np.arange(first, filled)
+    for k in range(1, len(order)):
+        i = order[k]
+        while k > 0 and pool.cost[order[k - 1]] > pool.cost[i]:
+            order[k] = order[k - 1]
+            k -= 1
+        order[k] = i
     for place in range(len(spare.cost)):
         i = order[place]
         _put(pool.ones[i], pool.count[i], pool.cost[i], pool.free[i], spare, place)
