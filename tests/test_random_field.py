@@ -10,17 +10,20 @@ from bezierplan.workspaces import files, random_field
 from bezierplan.workspaces.circles import Circles
 
 FIELD = {"kind": "random_field", "radius": 0.06, "clear_ends": 2.0, "unit": "cell"}
-PROBLEM = {"workspace": "dense", "side": 100, "start": [0, 0], "target": [100, 100], "obstacles": 25}
+PROBLEM = {"workspace": "dense", "side": 100, "start": [0, 0], "target": [100, 100], "obstacles": 25, "layout": 0}
 
 
 def test_a_field_is_drawn_from_its_name_alone():
-    one, again, other = (random_field.field(FIELD, PROBLEM, name) for name in ("study/case1_0_25", "study/case1_0_25", "study/case1_1_25"))
+    one, again = (random_field.field(FIELD, PROBLEM, "study/dense") for _ in range(2))
     assert np.array_equal(one.occupied, again.occupied)
-    assert not np.array_equal(one.occupied, other.occupied)
+    for change in ({"layout": 1}, {"obstacles": 24}, {"side": 120}, {"start": [0, 100], "target": [100, 0]}):
+        other = random_field.field(FIELD, PROBLEM | change, "study/dense")
+        assert not np.array_equal(one.drawn.centres[:20], other.drawn.centres[:20])
+    assert not np.array_equal(one.drawn.centres, random_field.field(FIELD, PROBLEM, "study/other").drawn.centres)
 
 
 def test_cells_are_those_whose_centres_lie_in_circles():
-    grid = random_field.field(FIELD, PROBLEM, "study/case1_0_25")
+    grid = random_field.field(FIELD, PROBLEM, "study/dense")
     assert grid.occupied.shape == (101, 101)
     assert grid.bounds == (-0.5, 100.5, -0.5, 100.5)
     assert len(grid.drawn.radii) == 25
@@ -40,7 +43,7 @@ def test_a_circle_over_the_border_and_one_that_reaches_no_centre():
 
 def test_circles_keep_clear_of_the_ends():
     for number in range(200):
-        grid = random_field.field(FIELD | {"radius": 0.025}, PROBLEM | {"obstacles": 5}, f"study/case1_{number}_5")
+        grid = random_field.field(FIELD | {"radius": 0.025}, PROBLEM | {"obstacles": 5, "layout": number}, "study/dense")
         for end in ((0, 0), (100, 100)):
             assert np.hypot(*(grid.drawn.centres - end).T).min() >= 2.5 + 2
 
@@ -52,7 +55,7 @@ def test_no_obstacles_leave_an_empty_field():
 def test_fields_that_cut_off_the_target_are_drawn_again():
     crowded = FIELD | {"radius": 0.11}
     for number in range(5):
-        grid = random_field.field(crowded, PROBLEM, f"study/crowded_{number}")
+        grid = random_field.field(crowded, PROBLEM | {"layout": number}, "study/crowded")
         assert np.isfinite(bounds.lattice_path(grid.occupied, (0, 0), (100, 100), 1.5, "free").length)
     with pytest.raises(ValueError, match="radius: 0.15: start and target are cut off from each other in 200 fields"):
         random_field.field(FIELD | {"radius": 0.15}, PROBLEM | {"obstacles": 60, "side": 40, "target": [40, 40]}, "study/walled")
@@ -62,11 +65,11 @@ def test_fields_that_cut_off_the_target_are_drawn_again():
 
 def test_ends_outside_are_told():
     with pytest.raises(ValueError, match=r"target: \[101, 100\]: outside the field; expected x and y from 0 to 100"):
-        random_field.field(FIELD, PROBLEM | {"target": [101, 100]}, "study/case1_0_25")
+        random_field.field(FIELD, PROBLEM | {"target": [101, 100]}, "study/dense")
 
 
 def test_a_field_is_written_and_read_bit_by_bit(tmp_path):
-    job = {"study": "study", "workspaces": {"dense": FIELD}, "problems": {"case1_0_25": PROBLEM | {"layout": 0}}}
+    job = {"study": "study", "workspaces": {"dense": FIELD}, "problems": {"case1_0_25": PROBLEM}}
     made, workspaces = problems.build_all(job, tmp_path)
     problems.write(made, workspaces, tmp_path / "problems.parquet")
     (one,), (again,) = made.values(), problems.read(tmp_path / "problems.parquet").values()
@@ -77,7 +80,7 @@ def test_a_field_is_written_and_read_bit_by_bit(tmp_path):
 
 
 def test_bounds_of_a_moved_grid_are_those_of_the_same_cells_at_the_origin(tmp_path):
-    job = {"study": "study", "workspaces": {"dense": FIELD}, "problems": {"case1_0_25": PROBLEM | {"layout": 0}}}
+    job = {"study": "study", "workspaces": {"dense": FIELD}, "problems": {"case1_0_25": PROBLEM}}
     (moved,), _ = problems.build_all(job, tmp_path)[0].values(), None
     at_origin = moved._replace(
         workspace=type(moved.workspace)(moved.workspace.occupied, 1.0, "cell"), start=(0.5, 0.5), target=(100.5, 100.5)

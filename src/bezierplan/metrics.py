@@ -118,6 +118,16 @@ def _improvement_by(generation: int, runs: pd.DataFrame, problems: dict[str, Pro
     return np.divide(made, total, out=np.full(len(held), np.nan), where=total > 0)
 
 
+def _history_mean(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Mean (n,) of the best objective so far over all generations."""
+    return _held_history(runs).mean(axis=1)
+
+
+def _deviation(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    median = runs.groupby(["experiment", "condition", "method"])["length"].transform("median")
+    return (runs["length"] / median - 1).abs()
+
+
 def _gap(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
     return runs["length"] / runs["bound"] - 1
 
@@ -237,6 +247,20 @@ def _cell_length(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) ->
     return lengths
 
 
+def _straight_blocked(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Whether (n,) the straight line of a run's problem, which lies on a grid, touches an occupied cell."""
+    from bezierplan import cell_length
+    from bezierplan.problem import Path
+
+    blocked = {}
+    for name in runs["problem"].unique():
+        grid = problems[name].workspace
+        line = Path("polyline", np.array([problems[name].start, problems[name].target]))
+        cells = cell_length.touched_cells(*cell_length.samples(line, grid))
+        blocked[name] = cell_length.occupied_cells(*cells, grid.occupied) > 0
+    return runs["problem"].map(blocked)
+
+
 def _gap_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
     """A length that counts cells over the least one of the problem, minus 1 (n,)."""
     return _cell_length(name, runs, problems) / runs["bound8"] - 1
@@ -247,6 +271,7 @@ METRICS: dict[str, Metric] = {
     "length": Metric("u", "exact arc length", True),
     "claimed_feasible": Metric("-", "the planner's own test of the path", False),
     "feasible": Metric("-", "the certified checker's test of the path", False),
+    "failed": Metric("-", "without a path that the certified checker accepts", False, lambda runs, problems: ~runs["feasible"].astype(bool)),
     "falsely_claimed": Metric("-", "free by the planner's own test, colliding by the checker's", False, partial(_disagrees, True)),
     "wrongly_rejected": Metric("-", "free by the checker's test, not by the planner's own", False, partial(_disagrees, False)),
     "collision_depth": Metric("u", "largest depth of the path in obstacles or beyond the border", False),
@@ -288,10 +313,17 @@ METRICS: dict[str, Metric] = {
     "cells4": Metric("u", "cells that the path touches, 1.5 for a diagonal step", True, partial(_cell_length, "length4")),
     "cells8": Metric("u", "the same without the corners of the sequence of cells", True, partial(_cell_length, "length8")),
     "bound8": Metric("u", "least length of a path of free cells, 1.5 for a diagonal step", False),
-    "gap_cells4": Metric("-", "cells4 / bound8 - 1", True, partial(_gap_cells, "length4")),
-    "gap_cells8": Metric("-", "cells8 / bound8 - 1", True, partial(_gap_cells, "length8")),
     "homotopy": Metric("-", "class of the path: the sum of 2^k over the circles k that it leaves to its left", True, _homotopy),
     "best_corridor": Metric("-", "whether the path is free and passes each circle where the shortest one does", False, _best_corridor),
+    "gap4": Metric("-", "cells4 / bound8 - 1", True, partial(_gap_cells, "length4")),
+    "gap8": Metric("-", "cells8 / bound8 - 1", True, partial(_gap_cells, "length8")),
+    "straight_blocked": Metric("-", "whether the straight line from start to target touches an occupied cell", False, _straight_blocked),
+    "history_mean": Metric("u", "mean over the generations of the best objective so far", False, _history_mean),
+    "deviation": Metric("-", "absolute deviation of the length from the median of its condition and method, relative", True, _deviation),
+    "distinct_chromosomes": Metric("-", "different chromosomes in the population, mean over the generations", False),
+    "mean_q": Metric("-", "mean Q statistic of the pool, mean over the generations", False),
+    "extra_batches": Metric("-", "further batches of offspring that the rule for diversity asked for", False),
+    "valid_share": Metric("-", "share of the children that the planner kept", False),
     "outlier": Metric("-", "whether the objective lies beyond the whiskers of its method's box", False, _outlier),
     "violation": Metric("-", "mean depth of the samples below the circles, as a share of the radius, summed over circles", False),
     "collisions_a": Metric("particles", "colliding particles an iteration, of 20, the first swarm included", False),

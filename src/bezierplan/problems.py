@@ -63,7 +63,7 @@ def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, st
         if home in fixed:
             workspace = fixed[home]
         elif job["workspaces"][home]["kind"] == "random_field":
-            workspace = random_field.field(job["workspaces"][home], description, f"{job['study']}/{name}")
+            workspace = random_field.field(job["workspaces"][home], description, f"{job['study']}/{home}")
         else:
             key = home, description["layout"]
             if key not in layouts:

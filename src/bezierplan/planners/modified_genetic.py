@@ -98,7 +98,7 @@ class Found(NamedTuple):
 
     history: (iterations + 1,) best cost so far. distinct: (iterations + 1,) different chromosomes in the population. q: (iterations,) mean
     Q of the pool at an iteration's end, where it is asked for. batches: further batches of offspring. evaluations: chromosomes that were
-    validated; deleted: invalid children among them.
+    validated. valid_share: of the children.
     """
 
     ones: np.ndarray
@@ -108,7 +108,7 @@ class Found(NamedTuple):
     q: np.ndarray
     batches: int
     evaluations: int
-    deleted: int
+    valid_share: float
 
 
 def check(settings: dict) -> None:
@@ -158,12 +158,12 @@ def plan(
     with penalty cells each are added to its length. survival: the best of parents and offspring, or of the offspring alone (generational).
 
     The planner's own test: no cell that the sampled curve touches is occupied. Extra columns: distinct_chromosomes in the population and
-    mean_q of the pool, means over the iterations; further_batches of offspring; deleted_children, which were invalid.
+    mean_q of the pool, means over the iterations; extra_batches of offspring; valid_share of the children.
     """
     grid = problem.workspace
     ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
     if problem.start == problem.target:
-        nothing = {"distinct_chromosomes": 0.0, "mean_q": math.nan, "further_batches": 0, "deleted_children": 0}
+        nothing = {"distinct_chromosomes": 0.0, "mean_q": math.nan, "extra_batches": 0, "valid_share": math.nan}
         return Plan(Path("polyline", grid.in_units(ends)), 0.0, True, 0, np.zeros(1), "start is target", nothing)
     field = field_of(grid, ends, gene_lattice, point_order)
     rules = Rules(
@@ -198,8 +198,8 @@ def plan(
         extra={
             "distinct_chromosomes": float(found.distinct.mean()),
             "mean_q": float(found.q.mean()),
-            "further_batches": found.batches,
-            "deleted_children": found.deleted,
+            "extra_batches": found.batches,
+            "valid_share": found.valid_share,
         },
     )
 
@@ -241,7 +241,7 @@ def search(rng: np.random.Generator, field: Field, rules: Rules) -> Found:
     history, distinct = np.empty(rules.iterations + 1), np.empty(rules.iterations + 1)
     q = np.full(rules.iterations, np.nan)
     best, best_cost = np.empty(0, dtype=np.int64), np.inf
-    further = evaluations = deleted = 0
+    further = evaluations = bred = lost = 0
 
     for place in range(size):
         for _ in range(rules.first_draws):
@@ -262,24 +262,26 @@ def search(rng: np.random.Generator, field: Field, rules: Rules) -> Found:
             break
 
         wheel = np.cumsum(1.0 / pool.cost[:size])
-        filled, tried, lost = _add_offspring(rng, pool, size, wheel, children, eta, child, field, rules)
+        filled, tried, invalid = _add_offspring(rng, pool, size, wheel, children, eta, child, field, rules)
         evaluations += tried
-        deleted += lost
+        bred += children
+        lost += invalid
         if rules.diversity == _MORE_OFFSPRING:
             pairs = _sum_of_q(pool, 0, filled, len(field.points))
             for _ in range(rules.most_batches):
                 if pairs / (filled * (filled - 1) / 2) <= eta:
                     break
                 before = filled
-                filled, tried, lost = _add_offspring(rng, pool, before, wheel, children, eta, child, field, rules)
+                filled, tried, invalid = _add_offspring(rng, pool, before, wheel, children, eta, child, field, rules)
                 pairs += _sum_of_q(pool, before, filled, len(field.points))
                 evaluations += tried
-                deleted += lost
+                bred += children
+                lost += invalid
                 further += 1
             q[iteration] = pairs / (filled * (filled - 1) / 2)
         _select(pool, size if rules.generational else 0, filled, spare)
         eta *= rules.eta_decay
-    return Found(best, best_cost, history, distinct, q, further, evaluations, deleted)
+    return Found(best, best_cost, history, distinct, q, further, evaluations, 1.0 - lost / bred)
 
 
 @njit(cache=True)
@@ -288,7 +290,7 @@ def _add_offspring(rng, pool, filled, wheel, children, eta, child, field, rules)
 
     wheel: (population,) running sum of the parents' fitness. Returns how many fill the pool now, chromosomes validated, invalid children.
     """
-    tried = lost = 0
+    tried = invalid = 0
     for _ in range(children // 2):
         one, other = _parents(rng, wheel)
         crossed = rng.random() < rules.crossover_probability
@@ -298,7 +300,7 @@ def _add_offspring(rng, pool, filled, wheel, children, eta, child, field, rules)
             count = _mutate(rng, child, count, field, rules)
             cost, free = validate(child[:count], field, rules)
             tried += 1
-            lost += cost == np.inf
+            invalid += cost == np.inf
             for _ in range(rules.replacements):
                 if cost < np.inf:
                     break
@@ -314,7 +316,7 @@ def _add_offspring(rng, pool, filled, wheel, children, eta, child, field, rules)
                 continue
             _put(child, count, cost, free, pool, filled)
             filled += 1
-    return filled, tried, lost
+    return filled, tried, invalid
 
 
 @njit(cache=True)

@@ -17,17 +17,20 @@ MOST_DRAWS = 10_000
 
 
 def field(description: dict, problem: dict, name: str) -> Grid:
-    """A field for a problem, drawn from a name alone.
+    """The field of a problem, drawn from names and numbers alone: problems that differ in one of them have nothing in common.
 
     description: radius, that of all circles as a share of the side, clear_ends, the cells that stay free between a circle and start or
-    target, and unit. problem: side (N), start, target, obstacles (how many circles). Centres are uniform in the square from 0 to N; those
+    target, and unit. problem: side (N), start, target, layout, its number, and obstacles, how
+    many circles. name: of study and workspace. Centres are uniform in the square from 0 to N; those
     too near to start or target are drawn again. Circles may overlap. A field in which no path of free cells leads from start to target is
     drawn again as a whole.
 
     Raises ValueError, naming the key, if start or target is no cell of the field, and if no field can be found.
     """
     side = problem["side"]
-    rng = np.random.default_rng(int.from_bytes(hashlib.sha256(name.encode()).digest()))
+    parts = [name, side, *problem["start"], *problem["target"], problem["obstacles"], problem["layout"]]
+    seed = hashlib.sha256("/".join(f"{part}" for part in parts).encode()).digest()
+    rng = np.random.default_rng(int.from_bytes(seed))
     empty = from_circles(Circles((0.0, side, 0.0, side), np.empty((0, 2)), np.empty(0), description["unit"]))
     ends = np.array([problem["start"], problem["target"]], dtype=float)
     cells = [empty.cell_of(*end) for end in ends]

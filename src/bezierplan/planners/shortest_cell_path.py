@@ -1,0 +1,34 @@
+"""A control: the shortest path over free cells, 1 for a straight step and 1.5 for a diagonal one, which no length that counts cells falls below
+(`cell_length`).
+"""
+
+import math
+
+import numpy as np
+
+from bezierplan.cell_length import DIAGONAL
+from bezierplan.exact import bounds
+from bezierplan.problem import Path, Plan, Problem
+
+workspaces = ("grid",)
+deterministic = True
+
+
+def plan(problem: Problem, rng: np.random.Generator) -> Plan:
+    """A polyline through the centres of free cells, from the cell of the start to that of the target; a step may pass between two occupied
+    cells that meet by a corner. Its objective is its length in cells, times a cell's side, or infinite without a path.
+    """
+    grid = problem.workspace
+    start, target = (grid.cell_of(*end) for end in (problem.start, problem.target))
+    bound = bounds.lattice_path(grid.occupied, start, target, DIAGONAL, "free")
+    found = math.isfinite(bound.length)
+    length = bound.length * grid.cell
+    path = Path("polyline", _without_straight_vertices(grid.in_units(bound.points))) if found else None
+    return Plan(path, length, claimed_feasible=found, evaluations=1, history=np.array([length]), stop="exact", extra={})
+
+
+def _without_straight_vertices(points: np.ndarray) -> np.ndarray:
+    """A polyline (n, 2) without the vertices between two equal steps."""
+    steps = np.diff(points, axis=0)
+    turns = np.any(np.abs(steps[1:] - steps[:-1]) > 1e-9, axis=1)
+    return points[np.concatenate([[True], turns, [True]])] if len(points) > 1 else np.repeat(points, 2, axis=0)
