@@ -170,3 +170,18 @@ def test_lengths_are_in_units():
     grid = Grid(np.zeros((11, 11), dtype=bool), 0.1, "m", (-0.05, -0.05))
     assert cell_length.length4(polyline((0, 0), (1, 1)), grid) == pytest.approx(1.5)
     assert cell_length.length8(polyline((0, 0), (1, 0.5)), grid) == pytest.approx(1.25)
+
+
+def test_legs_from_grid_line_to_grid_line_touch_the_cells_of_their_samples():
+    """Legs between quarters of cells, with many corners and grid lines, and between any points; each touched cell occupied in its turn."""
+    rng = np.random.default_rng(0)
+    for trial in range(400):
+        ends = rng.integers(0, 40, 4) / 4 if trial % 2 else rng.uniform(0, 10, 4)
+        leg = Path("polyline", ends.reshape(2, 2))
+        grid = Grid(np.zeros((12, 12), dtype=bool), 1.0, "cell")
+        columns, rows = cell_length.touched_cells(*cell_length.samples(leg, grid))
+        touched = set(zip(rows.tolist(), columns.tolist()))
+        for row, column in np.ndindex(12, 12):
+            occupied = grid.occupied.copy()
+            occupied[row, column] = True
+            assert cell_length.is_free_leg(occupied, *ends) == ((row, column) not in touched), (ends, row, column)

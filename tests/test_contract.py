@@ -13,6 +13,23 @@ from bezierplan.exact.region import region
 from bezierplan.problem import known_planners
 
 SETTINGS = {
+    "abc_ep": {
+        "sources": 20,
+        "cycles": 10,
+        "trial_limit": 5,
+        "reach": 0.1,
+        "step_weight": 0.5,
+        "visited_weight": 2.0,
+        "most_points": 200,
+        "population": 20,
+        "generations": 150,
+        "move_share": 0.6,
+        "removal_share": 0.2,
+        "spread": 0.025,
+        "insertion_spread": 0.3,
+        "opponents": 5,
+        "blocked_penalty": 1e6,
+    },
     "binary_genetic": {
         "curve": "piecewise_quadratic",
         "genes": 6,
@@ -59,6 +76,18 @@ SETTINGS = {
         "piecewise_p": 0.4,
         "sinusoidal_a": 2.3,
         "count_collisions": True,
+    },
+    "grid_genetic": {
+        "population": 60,
+        "generations": 80,
+        "crossover_probability": 0.8,
+        "mutation_probability": 0.2,
+        "diagonal_cost": 1.5,
+        "attempts": 40,
+        "longest_walk": 6.0,
+        "least_detour": 3,
+        "detour_share": 0.125,
+        "straight_on": 0.8,
     },
     "prm": {"nodes": 50, "links": "visible", "neighbours": 10, "d_min": 0.0},
     "shortest_path": {},

@@ -6,12 +6,15 @@ import math
 import numpy as np
 import pytest
 
-from bezierplan import curves
+from bezierplan import cell_length, curves
+from bezierplan.exact import bounds
 from bezierplan.exact.checker import check
 from bezierplan.exact.region import region
 from bezierplan.planners import prm
 from bezierplan.problem import Problem, planner_settings, setting_fault
+from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import from_lines
 
 SETTINGS = {"nodes": 50, "links": "visible", "neighbours": 10, "d_min": 0.0}
 
@@ -129,6 +132,65 @@ def test_an_open_field_gives_the_straight_line():
 
 def test_start_equal_to_target_is_a_path_of_no_length():
     assert plan(problem([[2, 2, 1]], target=(0.0, 0.0))).objective == 0
+
+
+def field(number, obstacles=25, side=100):
+    """A random field of cells, both pairs of corners in turn."""
+    start, target = [((0, 0), (side, side)), ((side, 0), (0, side))][number % 2]
+    ends = {"start": start, "target": target, "side": side, "obstacles": obstacles}
+    grid = random_field.field({"radius": 0.06, "clear_ends": 2.0, "unit": "cell"}, ends, f"test/{number}")
+    return Problem("test", grid, tuple(map(float, start)), tuple(map(float, target)))
+
+
+@pytest.mark.parametrize("number", range(12))
+def test_paths_on_a_grid_touch_no_occupied_cell(number):
+    where = field(number)
+    found = plan(where, seed=number, nodes=300, links="nearest")
+    grid = where.workspace
+    assert found.claimed_feasible
+    assert found.path.points[[0, -1]].tolist() == [list(where.start), list(where.target)]
+    assert cell_length.occupied_cells(*cell_length.touched_cells(*cell_length.samples(found.path, grid)), grid.occupied) == 0
+    assert check(curves.bezier_pieces(found.path), region(grid)).feasible
+    assert found.objective == pytest.approx(curves.length(found.path))
+    bound8 = bounds.lattice_path(grid.occupied, grid.cell_of(*where.start), grid.cell_of(*where.target), 1.5, "free").length
+    assert bound8 <= cell_length.length8(found.path, grid) <= cell_length.length4(found.path, grid)
+
+
+def test_nodes_on_a_grid_are_uniform_in_free_cells():
+    grid = field(0).workspace
+    low, high, is_free, _ = prm._on_grid(grid, 0.0)
+    assert (low.tolist(), high.tolist()) == ([0, 0], [100, 100])
+    nodes = prm._free_points(np.random.default_rng(0), 5000, low, high, is_free)
+    column, row = np.floor(nodes + 0.5).astype(int).T
+    assert not grid.occupied[row, column].any()
+    assert len(nodes) == 5000
+    # A quarter of the nodes in each quarter of the field, as far as it is free.
+    free = np.array([(~grid.occupied[r : r + 51, c : c + 51]).sum() for r in (0, 50) for c in (0, 50)])
+    counts = np.histogram2d(row, column, bins=[0, 50.5, 101])[0].ravel()
+    assert counts == pytest.approx(5000 * free / free.sum(), abs=4 * math.sqrt(1250))
+
+
+def test_no_nodes_leave_the_straight_line_of_an_empty_field():
+    where = field(0, obstacles=0)
+    assert plan(where, nodes=0, links="nearest").objective == pytest.approx(math.hypot(100, 100))
+
+
+def test_a_sealed_target_on_a_grid():
+    sealed = Problem("test", from_lines(["...#.", "...##", "....."], 1.0, "cell"), (0.5, 0.5), (4.5, 2.5))
+    assert plan(sealed).path is None
+
+
+def test_a_grid_has_no_distance_to_keep():
+    with pytest.raises(ValueError, match="d_min: 0[.]5; on a grid expected 0"):
+        plan(field(0), d_min=0.5)
+
+
+def test_nearest_points_in_order_and_the_first_of_equally_near_ones():
+    points = np.random.default_rng(0).integers(0, 6, (40, 2)).astype(float)
+    found = prm._nearest(points, 7)
+    for i in range(len(points)):
+        others = [j for j in range(len(points)) if j != i]
+        assert found[i].tolist() == sorted(others, key=lambda j: ((points[j] - points[i]) ** 2).sum())[:7]
 
 
 def test_settings():

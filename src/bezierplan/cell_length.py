@@ -121,11 +121,44 @@ def occupied_cells(columns: np.ndarray, rows: np.ndarray, occupied: np.ndarray) 
 
 @njit(cache=True)
 def is_free_leg(occupied: np.ndarray, x0: float, y0: float, x1: float, y1: float) -> bool:
-    """Whether all cells that a straight leg touches are free; cells outside the grid are not."""
-    ends = np.array([[x0, y0], [x1, y1]])
-    x, y = sample(ends, parts(ends), 1)
-    columns, rows = touched_cells(x, y)
-    return occupied_cells(columns, rows, occupied) == 0
+    """Whether all cells that a straight leg touches are free; cells outside the grid are not.
+
+    These are the cells of `touched_cells`, found without samples: from grid line to grid line. A leg goes through a corner if it passes so
+    near that no sample could tell, so none is free here that is not free there.
+    """
+    rows, columns = occupied.shape
+    column, row = math.floor(x0), math.floor(y0)
+    last_column, last_row = _last_cell(x0, x1), _last_cell(y0, y1)
+    if min(column, last_column) < 0 or max(column, last_column) >= columns or min(row, last_row) < 0 or max(row, last_row) >= rows:
+        return False
+    if occupied[row, column]:
+        return False
+    width, height = abs(x1 - x0), abs(y1 - y0)
+    right, up = x1 > x0, y1 > y0
+    # Ways to the next grid lines, as far as x and y go.
+    to_x = column + 1 - x0 if right else x0 - column
+    to_y = row + 1 - y0 if up else y0 - row
+    in_corner = _ON_LINE * min(width, height)
+    while column != last_column or row != last_row:
+        later = to_x * height - to_y * width  # above 0: the horizontal line comes first
+        crosses_x = column != last_column and (row == last_row or later <= in_corner)
+        if row != last_row and (column == last_column or later >= -in_corner):
+            row += 1 if up else -1
+            to_y += 1.0
+        if crosses_x:
+            column += 1 if right else -1
+            to_x += 1.0
+        if occupied[row, column]:
+            return False
+    return True
+
+
+@njit(cache=True)
+def _last_cell(first: float, last: float) -> int:
+    """Column or row in which a leg ends; the one before, if it ends on a grid line."""
+    if last > first:
+        return max(math.floor(first), math.ceil(last - _ON_LINE) - 1)
+    return min(math.floor(first), math.floor(last + _ON_LINE))
 
 
 @njit(cache=True)

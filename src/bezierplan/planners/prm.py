@@ -1,17 +1,23 @@
 """Probabilistic road map: random free points, linked where they see each other, and the shortest way along the links.
 
-The baseline of tharwat2018's Figure 22 (its reference 48), which gives no parameters.
+The baseline PRM of tharwat2018's Figure 22 (its reference 48) and of elhoseny2017's Tables 2, 3 and 6, which give no parameters. Among
+circles a link is a segment that enters none; on a grid, one that touches no occupied cell.
 """
 
 import math
-from typing import Annotated, Literal
+from collections.abc import Callable
+from functools import partial
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
+from numba import njit
 
+from bezierplan.cell_length import is_free_leg
 from bezierplan.problem import Path, Plan, Problem, Range
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import Grid
 
-workspaces = ("circles",)
+workspaces = ("circles", "grid")
 exact = True
 
 # Points drawn for one free node before the field counts as full.
@@ -33,15 +39,15 @@ def plan(
     """Shortest path along a random road map, a polyline; its objective is its length in units, infinite without a path.
 
     nodes: random points of the free part of the field, beside start and target. links: a node is linked with every node that it sees, or
-    with those that it sees of its nearest `neighbours`. d_min: added to every radius, in units.
+    with those that it sees of its nearest `neighbours`. d_min: added to every radius, in units; on a grid it has to be 0.
 
     Fewer nodes of one generator are the first of more. Extra column: roads, the number of links.
     """
-    field = problem.workspace
-    radii = field.radii + d_min
-    points = np.concatenate([[problem.start, problem.target], _free_points(rng, nodes, field, radii)])
+    workspace = problem.workspace
+    low, high, is_free, sees = _on_grid(workspace, d_min) if isinstance(workspace, Grid) else _among_circles(workspace, d_min)
+    points = np.concatenate([[problem.start, problem.target], _free_points(rng, nodes, low, high, is_free)])
     one, other = _pairs(points, None if links == "visible" else neighbours)
-    seen = _visible(points[one], points[other], field.centres, radii)
+    seen = sees(points[one], points[other])
     one, other = one[seen], other[seen]
     length, way = _shortest_way(points, one, other)
     path = Path("polyline", points[way]) if way else None
@@ -50,17 +56,64 @@ def plan(
     return Plan(path, length, claimed_feasible=found, evaluations=1, history=history, stop="direct", extra={"roads": len(one)})
 
 
-def _free_points(rng: np.random.Generator, nodes: int, field: Circles, radii: np.ndarray) -> np.ndarray:
-    """Points (nodes or fewer, 2), uniform in the field outside all circles; fewer if next to nothing of it is free."""
-    low, high = np.reshape(field.bounds, (2, 2)).T
+class _Field(NamedTuple):
+    """What the road map asks of a workspace: (2,) corners between which nodes are drawn, and which points and segments (n,) are free."""
+
+    low: np.ndarray
+    high: np.ndarray
+    is_free: Callable[[np.ndarray], np.ndarray]
+    sees: Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+
+def _among_circles(circles: Circles, d_min: float) -> _Field:
+    radii = circles.radii + d_min
+    low, high = np.reshape(circles.bounds, (2, 2)).T
+    return _Field(low, high, partial(_outside, circles.centres, radii), partial(_visible, centres=circles.centres, radii=radii))
+
+
+def _on_grid(grid: Grid, d_min: float) -> _Field:
+    """Nodes lie between the centres of the outermost cells, in free cells."""
+    if d_min > 0:
+        raise ValueError(f"d_min: {d_min:g}; on a grid expected 0, its cells cannot grow")
+    low, high = grid.in_units(np.array([[0.5, 0.5], np.array(grid.occupied.shape[::-1]) - 0.5]))
+    return _Field(low, high, partial(_in_free_cells, grid), partial(_free_segments, grid))
+
+
+def _free_points(
+    rng: np.random.Generator, nodes: int, low: np.ndarray, high: np.ndarray, is_free: Callable[[np.ndarray], np.ndarray]
+) -> np.ndarray:
+    """Points (nodes or fewer, 2), uniform in the free part of a field; fewer if next to nothing of it is free."""
     free = np.empty((0, 2))
     tries = 0
     while len(free) < nodes and tries < _MOST_DRAWS * nodes:
         points = low + (high - low) * rng.random((nodes, 2))
-        outside = np.hypot(*(points[:, None] - field.centres).transpose(2, 0, 1)) >= radii
-        free = np.concatenate([free, points[outside.all(axis=1)]])
+        free = np.concatenate([free, points[is_free(points)]])
         tries += nodes
     return free[:nodes]
+
+
+def _outside(centres: np.ndarray, radii: np.ndarray, points: np.ndarray) -> np.ndarray:
+    """Whether points (n, 2) lie in no circle."""
+    return (np.hypot(*(points[:, None] - centres).transpose(2, 0, 1)) >= radii).all(axis=1)
+
+
+def _in_free_cells(grid: Grid, points: np.ndarray) -> np.ndarray:
+    """Whether points (n, 2) of a grid lie in free cells."""
+    column, row = np.floor(grid.in_cells(points)).astype(int).T
+    return ~grid.occupied[row, column]
+
+
+def _free_segments(grid: Grid, starts: np.ndarray, targets: np.ndarray) -> np.ndarray:
+    """Whether the segments between two arrays of points (n, 2) touch no occupied cell."""
+    return _free_legs(grid.occupied, grid.in_cells(starts), grid.in_cells(targets))
+
+
+@njit(cache=True)
+def _free_legs(occupied, starts, targets):
+    free = np.empty(len(starts), dtype=np.bool_)
+    for i in range(len(starts)):
+        free[i] = is_free_leg(occupied, starts[i, 0], starts[i, 1], targets[i, 0], targets[i, 1])
+    return free
 
 
 def _pairs(points: np.ndarray, neighbours: int | None) -> tuple[np.ndarray, np.ndarray]:
@@ -68,11 +121,29 @@ def _pairs(points: np.ndarray, neighbours: int | None) -> tuple[np.ndarray, np.n
     count = len(points)
     if neighbours is None or neighbours >= count - 1:
         return np.triu_indices(count, 1)
-    distances = np.hypot(*(points[:, None] - points).transpose(2, 0, 1))
-    np.fill_diagonal(distances, np.inf)
     near = np.zeros((count, count), dtype=bool)
-    np.put_along_axis(near, np.argsort(distances, axis=1, kind="stable")[:, :neighbours], True, axis=1)
+    np.put_along_axis(near, _nearest(points, neighbours), True, axis=1)
     return np.nonzero(np.triu(near | near.T))
+
+
+@njit(cache=True)
+def _nearest(points, neighbours):
+    """Indices (n, neighbours) of the nearest other points of each point (n, 2), the nearest first; of equally near ones the first."""
+    nearest = np.empty((len(points), neighbours), dtype=np.int64)
+    square = np.empty(neighbours)  # of the distance to each of them
+    for i in range(len(points)):
+        found = 0
+        for j in range(len(points)):
+            distance = (points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2
+            if j == i or (found == neighbours and distance >= square[-1]):
+                continue
+            found = min(found + 1, neighbours)
+            place = found - 1
+            while place > 0 and square[place - 1] > distance:
+                square[place], nearest[i, place] = square[place - 1], nearest[i, place - 1]
+                place -= 1
+            square[place], nearest[i, place] = distance, j
+    return nearest
 
 
 def _visible(starts: np.ndarray, targets: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> np.ndarray:

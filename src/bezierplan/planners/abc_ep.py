@@ -1,0 +1,405 @@
+"""Artificial bee colony and evolutionary programming (ABC-EP): the colony finds a way from point to point, evolution shortens it.
+
+The baseline of elhoseny2017 and tharwat2018 that is called so there (Contreras-Cruz, Ayala-Ramirez and Hernandez-Belmonte, 2015). Neither
+paper gives its parameters or operators; these are textbook ones. A colony of bees looks for the next point of the path in a square around
+the last one; points once chosen are repelled from, which leads out of dead ends. As soon as the target is in sight the path is complete.
+It is then made shorter by leaving out what is not needed, and by mutations of a population of copies.
+
+A leg is free if no cell that it touches is occupied. Lengths and points in the kernels are in cells.
+"""
+
+from typing import Annotated
+
+import numpy as np
+from numba import njit
+
+from bezierplan.cell_length import is_free_leg
+from bezierplan.problem import Path, Plan, Problem, Range
+from bezierplan.search.genetic import roulette
+
+workspaces = ("grid",)
+exact = True
+
+# The cost of a point that cannot be seen from the last one: above every other, and all such points are alike.
+_UNSEEN = 1e9
+
+
+def check(settings: dict) -> None:
+    """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
+    shares = settings["move_share"] + settings["removal_share"]
+    if shares > 1:
+        raise ValueError(f"move_share: with removal_share {shares:g}; expected at most 1, the rest inserts points")
+
+
+def plan(
+    problem: Problem,
+    rng: np.random.Generator,
+    *,
+    sources: Annotated[int, Range(2)],
+    cycles: Annotated[int, Range(0)],
+    trial_limit: Annotated[int, Range(1)],
+    reach: Annotated[float, Range(0, 1)],
+    step_weight: Annotated[float, Range(0)],
+    visited_weight: Annotated[float, Range(0)],
+    most_points: Annotated[int, Range(0)],
+    population: Annotated[int, Range(1)],
+    generations: Annotated[int, Range(0)],
+    move_share: Annotated[float, Range(0, 1)],
+    removal_share: Annotated[float, Range(0, 1)],
+    spread: Annotated[float, Range(0)],
+    insertion_spread: Annotated[float, Range(0)],
+    opponents: Annotated[int, Range(1)],
+    blocked_penalty: Annotated[float, Range(0)],
+) -> Plan:
+    """Shortest polyline found; its objective is its length in units, infinite without a path.
+
+    The colony: sources, each with an employed and an onlooking bee, for so many cycles; a source that failed to improve trial_limit times
+    is drawn again. reach: half the side of the square around the last point, as a share of the workspace's smaller side. The cost of a
+    point is step_weight times its distance from the last point, plus its distance to the target, plus visited_weight times the height there
+    of cones around the points chosen so far, each as high and as wide as the reach. most_points: chosen before the search is given up.
+
+    Evolution: of a population of copies each has one child a generation, which moves an inner point (move_share) by a Gaussian step in both
+    coordinates, leaves one out (removal_share), or puts the midpoint of a leg in between. spread: standard deviation of a move, as a share
+    of the smaller side; insertion_spread: that of a midpoint, as a share of the spread. opponents: drawn for each of parents and children;
+    who is not worse than most of them survives. blocked_penalty: in units, for each leg that touches an occupied cell.
+
+    Extra columns: first_length, that of the path before evolution, in units, and turns, inner points of the final one.
+    """
+    grid = problem.workspace
+    start, target = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
+    smaller_side = min(grid.occupied.shape) - 1  # between the centres of the outermost cells
+    if problem.start == problem.target:
+        generations = 0
+    points, history = _search(
+        *rng.spawn(2),
+        grid.occupied,
+        start,
+        target,
+        sources,
+        cycles,
+        trial_limit,
+        reach * smaller_side,
+        step_weight,
+        visited_weight,
+        most_points,
+        population,
+        generations,
+        move_share,
+        removal_share,
+        spread * smaller_side,
+        insertion_spread,
+        opponents,
+        blocked_penalty / grid.cell,
+    )
+    history *= grid.cell
+    extra = {"first_length": float(history[0]), "turns": max(0, len(points) - 2)}
+    if len(points) == 0:
+        return Plan(None, np.inf, claimed_feasible=False, evaluations=1, history=history, stop="no way", extra=extra)
+    points = grid.in_units(points)
+    points[[0, -1]] = problem.start, problem.target
+    evaluations = 1 + population * generations
+    path = Path("polyline", points)
+    return Plan(path, history[-1], claimed_feasible=True, evaluations=evaluations, history=history, stop="generations", extra=extra)
+
+
+@njit(cache=True)
+def _search(
+    colony_rng,
+    evolution_rng,
+    occupied,
+    start,
+    target,
+    sources,
+    cycles,
+    trial_limit,
+    reach,
+    step_weight,
+    visited_weight,
+    most_points,
+    population,
+    generations,
+    move_share,
+    removal_share,
+    spread,
+    insertion_spread,
+    opponents,
+    blocked_penalty,
+):
+    """Points (points, 2) of the path, none if the colony found no way, and the shortest length so far (generations + 1,)."""
+    path = _first_path(colony_rng, occupied, start, target, sources, cycles, trial_limit, reach, step_weight, visited_weight, most_points)
+    if len(path) == 0:
+        return path, np.full(1, np.inf)
+    return _evolve(
+        evolution_rng,
+        occupied,
+        _cut_short(occupied, path),
+        population,
+        generations,
+        move_share,
+        removal_share,
+        spread,
+        insertion_spread,
+        opponents,
+        blocked_penalty,
+    )
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# The colony
+
+
+@njit(cache=True)
+def _first_path(rng, occupied, start, target, sources, cycles, trial_limit, reach, step_weight, visited_weight, most_points):
+    """A free path (points, 2), point by point until the target is in sight; none if no free point is found, or not in so many points."""
+    path = np.empty((most_points + 2, 2))
+    path[0] = start
+    for count in range(1, most_points + 2):
+        last = path[count - 1]
+        if is_free_leg(occupied, last[0], last[1], target[0], target[1]):
+            path[count] = target
+            return path[: count + 1].copy()
+        if count <= most_points:
+            cost = _next_point(rng, occupied, target, path, count, sources, cycles, trial_limit, reach, step_weight, visited_weight)
+            if cost >= _UNSEEN:
+                break
+    return np.empty((0, 2))
+
+
+@njit(cache=True)
+def _next_point(rng, occupied, target, path, count, sources, cycles, trial_limit, reach, step_weight, visited_weight):
+    """Put the best point that a colony finds behind the first `count` points of a path, in place. Returns its cost."""
+    sides = np.array([occupied.shape[1], occupied.shape[0]])
+    low, high = np.empty(2), np.empty(2)
+    for k in range(2):
+        low[k] = max(0.5, path[count - 1, k] - reach)
+        high[k] = min(sides[k] - 0.5, path[count - 1, k] + reach)
+    x, cost, failed = np.empty((sources, 2)), np.empty(sources), np.zeros(sources, dtype=np.int64)
+    point = np.empty(2)
+    best, best_cost = path[count], np.inf
+    for i in range(sources):
+        _draw(rng, low, high, x[i])
+        cost[i] = _cost(occupied, target, path, count, x[i], reach, step_weight, visited_weight)
+
+    for cycle in range(cycles + 1):
+        # The best is remembered before a source that it came from can be drawn again.
+        for i in range(sources):
+            if cost[i] < best_cost:
+                best[0], best[1] = x[i]
+                best_cost = cost[i]
+        if cycle == cycles:
+            break
+        for i in range(sources):
+            if failed[i] >= trial_limit:  # a scout
+                _draw(rng, low, high, x[i])
+                cost[i] = _cost(occupied, target, path, count, x[i], reach, step_weight, visited_weight)
+                failed[i] = 0
+        for turn in range(2):
+            if turn == 1:
+                onlooked = roulette(rng, 1.0 / (1.0 + cost), sources)
+            for bee in range(sources):
+                i = onlooked[bee] if turn == 1 else bee
+                other = rng.integers(0, sources - 1)
+                other += other >= i
+                k = rng.integers(0, 2)
+                point[0], point[1] = x[i]
+                point[k] += (2 * rng.random() - 1) * (x[i, k] - x[other, k])
+                point[k] = min(max(point[k], low[k]), high[k])
+                tried = _cost(occupied, target, path, count, point, reach, step_weight, visited_weight)
+                if tried < cost[i]:
+                    x[i, k] = point[k]
+                    cost[i] = tried
+                    failed[i] = 0
+                else:
+                    failed[i] += 1
+    return best_cost
+
+
+@njit(cache=True)
+def _draw(rng, low, high, point):
+    """A random point of a box, in place."""
+    for k in range(2):
+        point[k] = low[k] + (high[k] - low[k]) * rng.random()
+
+
+@njit(cache=True)
+def _cost(occupied, target, path, count, point, reach, step_weight, visited_weight):
+    """What the next point costs: the way to it and from it to the target, and cones over the cells around the points chosen before."""
+    last = path[count - 1]
+    if not is_free_leg(occupied, last[0], last[1], point[0], point[1]):
+        return _UNSEEN
+    height = 0.0
+    column, row = np.floor(point[0]) + 0.5, np.floor(point[1]) + 0.5
+    for chosen in range(1, count):
+        height += max(0.0, reach - _length(path[chosen, 0], path[chosen, 1], column, row))
+    return (
+        step_weight * _length(last[0], last[1], point[0], point[1])
+        + _length(point[0], point[1], target[0], target[1])
+        + visited_weight * height
+    )
+
+
+@njit(cache=True)
+def _length(x0, y0, x1, y1):
+    return np.sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2)
+
+
+@njit(cache=True)
+def _cut_short(occupied, path):
+    """A path without the points that can be left out: from each point on to the last one that it sees."""
+    kept = np.zeros(len(path), dtype=np.int64)
+    count = 1
+    while kept[count - 1] < len(path) - 1:
+        here = kept[count - 1]
+        seen = len(path) - 1
+        while seen > here + 1 and not is_free_leg(occupied, path[here, 0], path[here, 1], path[seen, 0], path[seen, 1]):
+            seen -= 1
+        kept[count] = seen
+        count += 1
+    return path[kept[:count]]
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Evolution
+
+
+@njit(cache=True)
+def _evolve(
+    rng,
+    occupied,
+    path,
+    population,
+    generations,
+    move_share,
+    removal_share,
+    spread,
+    insertion_spread,
+    opponents,
+    blocked_penalty,
+):
+    """The cheapest path of the last generation (points, 2), and the lowest cost so far (generations + 1,).
+
+    Every path keeps the lengths of its legs, longer by the penalty where they are blocked: a mutation changes two of them at most.
+    """
+    room = len(path) + generations
+    points, legs = np.empty((2 * population, room, 2)), np.empty((2 * population, room))
+    counts, cost = np.full(2 * population, len(path)), np.empty(2 * population)
+    slots = np.arange(2 * population)  # parents first, the cheapest foremost; the others are free for children
+    for i in range(population):
+        for p in range(len(path)):
+            points[i, p, 0], points[i, p, 1] = path[p]
+        for p in range(len(path) - 1):
+            legs[i, p] = _leg(occupied, points[i], p, blocked_penalty)
+        cost[i] = legs[i, : len(path) - 1].sum()
+    history = np.empty(generations + 1)
+    history[0] = cost[0]
+
+    for generation in range(generations):
+        for i in range(population):
+            parent, child = slots[i], slots[population + i]
+            counts[child] = _mutated(
+                rng,
+                occupied,
+                points[parent],
+                legs[parent],
+                counts[parent],
+                points[child],
+                legs[child],
+                move_share,
+                removal_share,
+                spread,
+                insertion_spread,
+                blocked_penalty,
+            )
+            cost[child] = legs[child, : counts[child] - 1].sum()
+        _rank(slots, _wins(rng, cost, opponents), cost)
+        history[generation + 1] = cost[slots[0]]
+    return points[slots[0], : counts[slots[0]]], history
+
+
+@njit(cache=True)
+def _mutated(
+    rng,
+    occupied,
+    points,
+    legs,
+    count,
+    child,
+    child_legs,
+    move_share,
+    removal_share,
+    spread,
+    insertion_spread,
+    blocked_penalty,
+):
+    """Make a child of a path, in place: an inner point is moved or left out, or a midpoint put in. Returns the child's number of points."""
+    kind = rng.random()
+    if count == 2 or kind >= move_share + removal_share:
+        changed = rng.integers(1, count)  # the child's new point, behind which the parent's are one further
+        kept = changed
+        for k in range(2):
+            child[changed, k] = 0.5 * (points[changed - 1, k] + points[changed, k])
+        _shift(rng, occupied, child[changed], spread * insertion_spread)
+        behind = changed + 1
+    elif kind < move_share:
+        changed = rng.integers(1, count - 1)
+        kept = changed + 1
+        for k in range(2):
+            child[changed, k] = points[changed, k]
+        _shift(rng, occupied, child[changed], spread)
+        behind = changed + 1
+    else:
+        changed = rng.integers(1, count - 1)
+        kept = changed + 1
+        behind = changed
+    for p in range(changed):
+        child[p, 0], child[p, 1] = points[p]
+        child_legs[p] = legs[p]
+    for p in range(kept, count):
+        child[p + behind - kept, 0], child[p + behind - kept, 1] = points[p]
+        child_legs[p + behind - kept] = legs[p]
+    for p in range(changed - 1, behind):
+        child_legs[p] = _leg(occupied, child, p, blocked_penalty)
+    return count + behind - kept
+
+
+@njit(cache=True)
+def _shift(rng, occupied, point, spread):
+    """Move a point by a Gaussian step in both coordinates, in place; at most to the centres of the outermost cells."""
+    for k in range(2):
+        side = occupied.shape[1 - k]
+        point[k] = min(max(point[k] + spread * rng.standard_normal(), 0.5), side - 0.5)
+
+
+@njit(cache=True)
+def _leg(occupied, points, p, blocked_penalty):
+    """Length of the leg behind point p, longer by the penalty if it is blocked."""
+    x0, y0 = points[p]
+    x1, y1 = points[p + 1]
+    length = _length(x0, y0, x1, y1)
+    return length if is_free_leg(occupied, x0, y0, x1, y1) else length + blocked_penalty
+
+
+@njit(cache=True)
+def _wins(rng, cost, opponents):
+    """How many of its opponents, random others, each path (n,) is not worse than."""
+    wins = np.zeros(len(cost), dtype=np.int64)
+    for i in range(len(cost)):
+        for _ in range(opponents):
+            other = rng.integers(0, len(cost) - 1)
+            other += other >= i
+            wins[i] += cost[i] <= cost[other]
+    return wins
+
+
+@njit(cache=True)
+def _rank(slots, wins, cost):
+    """Sort slots in place, stably: most wins first, of equal ones the cheapest. The cheapest of all loses to nobody, so it comes first."""
+    for k in range(1, len(slots)):
+        slot, place = slots[k], k
+        while place > 0:
+            above = slots[place - 1]
+            if wins[above] > wins[slot] or (wins[above] == wins[slot] and cost[above] <= cost[slot]):
+                break
+            slots[place] = above
+            place -= 1
+        slots[place] = slot

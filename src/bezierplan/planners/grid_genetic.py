@@ -1,0 +1,330 @@
+"""Genetic algorithm over paths of cells: a chromosome is a path from free cell to free neighbour (the rival GA of elhoseny2017).
+
+The baseline of elhoseny2017 that is called GA in its Tables 2, 3 and 6 (Alajlan et al., 2013), which gives no parameters or operators;
+these are usual ones. First paths are greedy walks by way of random cells. A crossover joins the head of one path and the tail of another at a
+cell that both have; a mutation walks anew between two cells of a path. Loops are cut out of every path.
+
+A cell has eight neighbours; a diagonal step may pass between two occupied cells. In the kernels a cell is its index in the grid with a
+frame of occupied cells around it, so that no step leaves the grid. Costs in the kernels are in cells.
+"""
+
+from typing import Annotated
+
+import numpy as np
+from numba import njit
+
+from bezierplan.problem import Path, Plan, Problem, Range
+from bezierplan.search.genetic import roulette
+
+workspaces = ("grid",)
+exact = True
+
+# Of the eight neighbours, as steps of column and row: the straight ones first.
+_COLUMN_STEPS = (1, 0, -1, 0, 1, -1, -1, 1)
+_ROW_STEPS = (0, 1, 0, -1, 1, 1, -1, -1)
+
+
+def plan(
+    problem: Problem,
+    rng: np.random.Generator,
+    *,
+    population: Annotated[int, Range(2)],
+    generations: Annotated[int, Range(0)],
+    crossover_probability: Annotated[float, Range(0, 1)],
+    mutation_probability: Annotated[float, Range(0, 1)],
+    diagonal_cost: Annotated[float, Range(1, 2)],
+    attempts: Annotated[int, Range(1)],
+    longest_walk: Annotated[float, Range(1)],
+    least_detour: Annotated[int, Range(1)],
+    detour_share: Annotated[float, Range(0)],
+    straight_on: Annotated[float, Range(0, 1)],
+) -> Plan:
+    """Cheapest path of cells found, a polyline through their centres; its objective is its cost in units, infinite without a path.
+
+    diagonal_cost: of a diagonal step; a straight one costs 1, both times a cell's side. The best of parents and children survive.
+
+    A walk goes to the free neighbour nearest to its goal. Where none is nearer, it makes a detour of random steps: at least least_detour,
+    at most detour_share of the columns beyond that, less one; each goes straight_on with this probability, if that cell is free. A walk of
+    more than longest_walk times rows and columns together is given up. attempts: first walks for each chromosome; those still missing then are
+    copies of those found.
+
+    Extra column: first_walks, how many first paths were found.
+    """
+    grid = problem.workspace
+    walled = np.pad(grid.occupied, 1, constant_values=True)
+    ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
+    (start_column, target_column), (start_row, target_row) = np.minimum(ends.astype(int), np.array(grid.occupied.shape[::-1]) - 1).T + 1
+    rows, columns = grid.occupied.shape
+    cells, found, history = _search(
+        *rng.spawn(2),
+        walled,
+        start_row * walled.shape[1] + start_column,
+        target_row * walled.shape[1] + target_column,
+        population,
+        generations if problem.start != problem.target else 0,
+        crossover_probability,
+        mutation_probability,
+        diagonal_cost,
+        attempts * population,
+        int(longest_walk * (rows + columns)),
+        least_detour,
+        max(least_detour, least_detour - 1 + int(detour_share * columns)),
+        straight_on,
+    )
+    history *= grid.cell
+    extra = {"first_walks": int(found)}
+    if found == 0:
+        return Plan(None, np.inf, claimed_feasible=False, evaluations=1, history=history, stop="no way", extra=extra)
+    row, column = np.divmod(cells, walled.shape[1])
+    centres = grid.in_units(np.column_stack([column, row]) - 0.5)
+    return Plan(
+        path=Path("polyline", _through(problem, centres[_turns(column, row)])),
+        objective=history[-1],
+        claimed_feasible=True,
+        evaluations=population * len(history),
+        history=history,
+        stop="generations",
+        extra=extra,
+    )
+
+
+def _turns(column: np.ndarray, row: np.ndarray) -> np.ndarray:
+    """Whether (n,) a cell of a path is its first, its last, or one in which the direction changes."""
+    steps = np.column_stack([np.diff(column), np.diff(row)])
+    inner = (steps[1:] != steps[:-1]).any(axis=1)
+    return np.concatenate([[True], inner, [True]])[-len(column) :]
+
+
+def _through(problem: Problem, centres: np.ndarray) -> np.ndarray:
+    """Points from start to target through centres of cells; start and target lie in the first and the last of these cells."""
+    points = [problem.start, *centres.tolist(), problem.target]
+    # An end that is a centre, up to rounding, stands for it.
+    first, last = (np.allclose(points[i], points[j], rtol=0, atol=1e-9 * problem.workspace.cell) for i, j in ((0, 1), (-1, -2)))
+    del points[1 : 1 + first]
+    if last and len(points) > 2:
+        del points[-2]
+    return np.array(points)
+
+
+@njit(cache=True)
+def _search(
+    walks_rng,
+    moves_rng,
+    walled,
+    start,
+    target,
+    population,
+    generations,
+    crossover_probability,
+    mutation_probability,
+    diagonal_cost,
+    attempts,
+    longest_walk,
+    least_detour,
+    most_detour,
+    straight_on,
+):
+    """Cells (n,) of the cheapest path, the number of first walks found, and the lowest cost so far (generations + 1,)."""
+    size, columns = walled.size, walled.shape[1]
+    walker = (walled.reshape(size), columns, longest_walk, least_detour, most_detour, straight_on)
+    # A path visits a cell once; a child joins at most two paths and a walk before its loops are cut.
+    walk, last_visit = np.empty(2 * size + 2 * longest_walk + 2, dtype=np.int64), np.empty(size, dtype=np.int64)
+    place, common = np.full(size, -1), np.empty(size, dtype=np.int64)
+
+    paths, costs = _first_walks(walks_rng, walker, start, target, population, attempts, diagonal_cost, walk, last_visit)
+    found = len(paths)
+    if found == 0:
+        return np.empty(0, dtype=np.int64), found, np.full(1, np.inf)
+    for i in range(found, population):
+        paths.append(paths[i % found])
+        costs[i] = costs[i % found]
+    paths, costs = _best(paths, costs, population)
+    history = np.empty(generations + 1)
+    history[0] = costs[0]
+
+    for generation in range(generations):
+        drawn = roulette(moves_rng, 1.0 / costs[:population], 2 * population)
+        for i in range(population):
+            head, tail = paths[drawn[2 * i]], paths[drawn[2 * i + 1]]
+            count = 0
+            if moves_rng.random() < crossover_probability:
+                count = _join(moves_rng, head, tail, place, common, walk)
+            if count == 0:
+                count = _copy(head, 0, len(head), walk, 0)
+            count = _cut_loops(walk, count, last_visit)
+            if moves_rng.random() < mutation_probability and count > 1:
+                count = _walk_anew(moves_rng, walker, walk, count, last_visit)
+            paths.append(walk[:count].copy())
+            costs[population + i] = _cost(walk, count, columns, diagonal_cost)
+        paths, costs = _best(paths, costs, population)
+        history[generation + 1] = costs[0]
+    return paths[0], found, history
+
+
+@njit(cache=True)
+def _best(paths, costs, population):
+    """The cheapest paths, the cheapest first, of equal ones the first; and their costs (2 population,), with room for children."""
+    order = np.arange(len(paths))
+    for k in range(1, len(paths)):
+        path, place = order[k], k
+        while place > 0 and costs[order[place - 1]] > costs[path]:
+            order[place] = order[place - 1]
+            place -= 1
+        order[place] = path
+    best = np.empty(2 * population)
+    for k in range(population):
+        best[k] = costs[order[k]]
+    return [paths[order[k]] for k in range(population)], best
+
+
+@njit(cache=True)
+def _first_walks(rng, walker, start, target, population, attempts, diagonal_cost, walk, last_visit):
+    """Up to `population` paths, and their costs (2 population,): the first one straight to the target, the others by way of a free cell."""
+    walled, columns = walker[0], walker[1]
+    paths = [walk[:0]]
+    paths.clear()
+    costs = np.empty(2 * population)
+    for attempt in range(attempts):
+        if len(paths) == population:
+            break
+        walk[0] = start
+        count = 1
+        if attempt > 0:
+            way = rng.integers(0, len(walled))
+            while walled[way]:
+                way = rng.integers(0, len(walled))
+            count = _extend(rng, walker, walk, count, way)
+        if count > 0:
+            count = _extend(rng, walker, walk, count, target)
+        if count > 0:
+            count = _cut_loops(walk, count, last_visit)
+            costs[len(paths)] = _cost(walk, count, columns, diagonal_cost)
+            paths.append(walk[:count].copy())
+    return paths, costs
+
+
+@njit(cache=True)
+def _extend(rng, walker, walk, count, goal):
+    """Continue a walk of `count` cells to a goal, in place. Returns the new number of cells, 0 if it becomes too long or cannot move."""
+    walled, columns, longest_walk, least_detour, most_detour, straight_on = walker
+    end = count + longest_walk
+    goal_row, goal_column = goal // columns, goal % columns
+    cell = walk[count - 1]
+    row, column = cell // columns, cell % columns
+    step = -1  # the last one taken
+    detour = 0
+    while cell != goal:
+        if count == end:
+            return 0
+        if detour == 0:
+            nearest = (goal_row - row) ** 2 + (goal_column - column) ** 2
+            nearer = -1
+            for k in range(8):
+                distance = (goal_row - row - _ROW_STEPS[k]) ** 2 + (goal_column - column - _COLUMN_STEPS[k]) ** 2
+                if distance < nearest and not walled[cell + _ROW_STEPS[k] * columns + _COLUMN_STEPS[k]]:
+                    nearest = distance
+                    nearer = k
+            if nearer < 0:
+                detour = rng.integers(least_detour, most_detour + 1)
+            else:
+                step = nearer
+        if detour > 0:
+            detour -= 1
+            blocked = step < 0 or walled[cell + _ROW_STEPS[step] * columns + _COLUMN_STEPS[step]]
+            if blocked or rng.random() >= straight_on:
+                step = _random_step(rng, walled, columns, cell)
+                if step < 0:
+                    return 0
+        row += _ROW_STEPS[step]
+        column += _COLUMN_STEPS[step]
+        cell = row * columns + column
+        walk[count] = cell
+        count += 1
+    return count
+
+
+@njit(cache=True)
+def _random_step(rng, walled, columns, cell):
+    """A random step to a free neighbour of a cell, -1 if it has none."""
+    free = 0
+    for k in range(8):
+        free += not walled[cell + _ROW_STEPS[k] * columns + _COLUMN_STEPS[k]]
+    if free == 0:
+        return -1
+    left = rng.integers(0, free)
+    step = -1
+    while left >= 0:
+        step += 1
+        left -= not walled[cell + _ROW_STEPS[step] * columns + _COLUMN_STEPS[step]]
+    return step
+
+
+@njit(cache=True)
+def _cut_loops(walk, count, last_visit):
+    """Cut the loops out of a walk, in place: from each cell it goes on where it left that cell for the last time. Returns what is left."""
+    for k in range(count):
+        last_visit[walk[k]] = k
+    kept = 0
+    k = 0
+    while k < count:
+        walk[kept] = walk[k]
+        k = last_visit[walk[k]] + 1
+        kept += 1
+    return kept
+
+
+@njit(cache=True)
+def _join(rng, head, tail, place, common, walk):
+    """Write the head of one path and the tail of another, joined at a random inner cell of both. Returns its length, 0 without such a cell.
+
+    place: (cells,) scratch, all -1 before and after.
+    """
+    for k in range(1, len(head) - 1):
+        place[head[k]] = k
+    shared = 0
+    for k in range(1, len(tail) - 1):
+        if place[tail[k]] >= 0:
+            common[shared] = k
+            shared += 1
+    count = 0
+    if shared > 0:
+        cut = common[rng.integers(0, shared)]
+        count = _copy(head, 0, place[tail[cut]], walk, 0)
+        count = _copy(tail, cut, len(tail), walk, count)
+    for k in range(1, len(head) - 1):
+        place[head[k]] = -1
+    return count
+
+
+@njit(cache=True)
+def _walk_anew(rng, walker, path, count, last_visit):
+    """Replace what lies between two random cells of a path by a new walk, in place; a walk that fails changes nothing."""
+    one = rng.integers(0, count)
+    other = rng.integers(0, count - 1)
+    other += other >= one
+    first, last = min(one, other), max(one, other)
+    # The new walk is made behind the path, followed by the path's tail; then both are drawn up.
+    path[count] = path[first]
+    end = _extend(rng, walker, path, count + 1, path[last])
+    if end == 0:
+        return count
+    end = _copy(path, last + 1, count, path, end)
+    return _cut_loops(path, _copy(path, count + 1, end, path, first + 1), last_visit)
+
+
+@njit(cache=True)
+def _copy(source, first, last, target, place):
+    """Copy the cells first .. last - 1 of one path to a place in another. Returns the place behind them."""
+    for k in range(first, last):
+        target[place + k - first] = source[k]
+    return place + last - first
+
+
+@njit(cache=True)
+def _cost(path, count, columns, diagonal_cost):
+    """Cost of a path of `count` cells."""
+    diagonal = 0
+    for k in range(count - 1):
+        step = abs(path[k + 1] - path[k])
+        diagonal += step != 1 and step != columns
+    return count - 1 - diagonal + diagonal_cost * diagonal

@@ -1,0 +1,230 @@
+"""The bee colony with evolutionary programming: its paths, its parts against plain references, degenerate cases, settings."""
+
+import math
+
+import numpy as np
+import pytest
+
+from bezierplan import cell_length, curves
+from bezierplan.exact import bounds
+from bezierplan.exact.checker import check
+from bezierplan.exact.region import region
+from bezierplan.planners import abc_ep
+from bezierplan.problem import Problem, planner_settings, setting_fault
+from bezierplan.workspaces import random_field
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import Grid, from_lines
+
+SETTINGS = {
+    "sources": 20,
+    "cycles": 10,
+    "trial_limit": 5,
+    "reach": 0.1,
+    "step_weight": 0.5,
+    "visited_weight": 2.0,
+    "most_points": 200,
+    "population": 20,
+    "generations": 150,
+    "move_share": 0.6,
+    "removal_share": 0.2,
+    "spread": 0.025,
+    "insertion_spread": 0.3,
+    "opponents": 5,
+    "blocked_penalty": 1e6,
+}
+
+
+def field(*circles, side=100):
+    """A field from corner to corner with circles (x, y, radius)."""
+    table = np.array(circles, dtype=float).reshape(-1, 3)
+    grid = random_field.from_circles(Circles((0, side, 0, side), table[:, :2], table[:, 2], "cell"))
+    return Problem("test", grid, (0.0, 0.0), (float(side), float(side)))
+
+
+def drawn(number, radius=0.06, obstacles=25, side=100):
+    """A random field, both pairs of corners in turn."""
+    start, target = [((0, 0), (side, side)), ((side, 0), (0, side))][number % 2]
+    ends = {"start": start, "target": target, "side": side, "obstacles": obstacles}
+    grid = random_field.field({"radius": radius, "clear_ends": 2.0, "unit": "cell"}, ends, f"test/{number}")
+    return Problem("test", grid, tuple(map(float, start)), tuple(map(float, target)))
+
+
+def plan(problem, seed=0, **changes):
+    return abc_ep.plan(problem, np.random.default_rng(seed), **(SETTINGS | changes))
+
+
+@pytest.mark.parametrize("number", range(12))
+def test_paths_touch_no_occupied_cell_and_are_as_long_as_said(number):
+    problem = drawn(number)
+    found = plan(problem, seed=number)
+    grid = problem.workspace
+    assert found.claimed_feasible
+    assert found.path.points[[0, -1]].tolist() == [list(problem.start), list(problem.target)]
+    assert cell_length.occupied_cells(*cell_length.touched_cells(*cell_length.samples(found.path, grid)), grid.occupied) == 0
+    assert check(curves.bezier_pieces(found.path), region(grid)).feasible
+    assert found.objective == pytest.approx(curves.length(found.path), rel=1e-12)
+    bound8 = bounds.lattice_path(grid.occupied, grid.cell_of(*problem.start), grid.cell_of(*problem.target), 1.5, "free").length
+    assert bound8 <= cell_length.length8(found.path, grid) <= cell_length.length4(found.path, grid)
+    assert found.history[0] == found.extra["first_length"]
+    assert (np.diff(found.history) <= 0).all()
+    assert found.history[-1] == found.objective
+    assert found.evaluations == 1 + 20 * 150
+    assert found.extra["turns"] == len(found.path.points) - 2
+
+
+@pytest.mark.parametrize("ends", [((0, 0), (100, 100)), ((100, 0), (0, 100)), ((100, 100), (0, 0))])
+def test_an_empty_field_gives_the_straight_line(ends):
+    start, target = ends
+    problem = field()._replace(start=tuple(map(float, start)), target=tuple(map(float, target)))
+    found = plan(problem)
+    assert len(found.path.points) == 2
+    assert cell_length.length8(found.path, problem.workspace) == 150
+    assert found.objective == pytest.approx(math.hypot(100, 100))
+
+
+def test_evolution_comes_near_the_shortest_path():
+    problem = field((50, 50, 20))
+    shortest = bounds.shortest_path(problem).length
+    found = [plan(problem, seed) for seed in range(10)]
+    first = np.array([each.extra["first_length"] for each in found]) / shortest - 1
+    final = np.array([each.objective for each in found]) / shortest - 1
+    assert np.median(first) > 0.005
+    assert np.median(final) < 0.3 * np.median(first)
+    assert final.min() > -1e-9
+
+
+def test_points_visited_before_repel_out_of_a_dead_end():
+    # A cup that is open towards the start.
+    cup = [(x, 70, 3) for x in range(40, 72, 3)] + [(70, y, 3) for y in range(40, 72, 3)]
+    problem = field(*cup)
+    found = [plan(problem, seed).claimed_feasible for seed in range(10)]
+    without = [plan(problem, seed, visited_weight=0.0).claimed_feasible for seed in range(10)]
+    assert all(found)
+    assert sum(without) < 3
+
+
+def test_a_sealed_target_is_a_plan_without_a_path():
+    lines = ["......#.", "......##", "........", "........"]
+    grid = from_lines(lines, 1.0, "cell")
+    grid.occupied[2, 5:] = True
+    problem = Problem("test", grid, (0.5, 0.5), (7.5, 3.5))
+    found = plan(problem)
+    assert found.path is None
+    assert found.objective == math.inf
+    assert not found.claimed_feasible
+    assert found.stop == "no way"
+    assert found.history.tolist() == [math.inf]
+
+
+def test_more_points_than_allowed_end_the_search():
+    problem = field((50, 50, 20))
+    assert plan(problem, most_points=0).path is None
+    assert plan(problem, most_points=0, generations=3).stop == "no way"
+    assert plan(problem, most_points=20).claimed_feasible
+    assert plan(field(), most_points=0).claimed_feasible
+
+
+def test_same_seed_gives_the_same_bits():
+    one, other = plan(drawn(3), seed=7), plan(drawn(3), seed=7)
+    assert np.array_equal(one.history, other.history)
+    assert np.array_equal(one.path.points, other.path.points)
+
+
+def test_start_equal_to_target_is_answered_without_a_search():
+    found = plan(field()._replace(target=(0.0, 0.0)))
+    assert found.objective == 0
+    assert found.evaluations == 1
+    assert len(found.history) == 1
+
+
+def test_a_population_of_one_and_opponents_without_end():
+    found = plan(drawn(1), population=1, opponents=50)
+    assert found.claimed_feasible
+    assert found.objective < found.extra["first_length"]
+
+
+def test_reach_scales_with_the_smaller_side():
+    """A field twice as large, all else to scale, is searched alike."""
+    one, other = (plan(field((s / 2, s / 2, s / 5), side=s), generations=0) for s in (100, 200))
+    assert len(other.path.points) == pytest.approx(len(one.path.points), abs=2)
+
+
+def test_lengths_are_in_units():
+    grid = field((50, 50, 20)).workspace
+    small = Grid(grid.occupied, 0.1, "m", (3.0, -2.0))
+    problem = Problem("test", small, (3.05, -1.95), (13.05, 8.05))
+    found = plan(problem)
+    assert found.objective == pytest.approx(curves.length(found.path), rel=1e-12)
+    assert found.objective == pytest.approx(0.1 * plan(field((50, 50, 20))).objective, rel=1e-6)
+
+
+def test_cut_short_goes_to_the_last_point_in_sight():
+    occupied = np.zeros((20, 20), dtype=bool)
+    occupied[5:, 10] = True
+    path = np.array([[1.5, 15.5], [3.5, 12.5], [5.5, 9.5], [9.5, 4.5], [10.5, 3.5], [12.5, 5.5], [14.5, 10.5], [17.5, 15.5]])
+    assert abc_ep._cut_short(occupied, path).tolist() == [[1.5, 15.5], [10.5, 3.5], [17.5, 15.5]]
+
+
+def test_cost_is_the_way_there_and_on_and_the_cones_around_points_chosen():
+    occupied = np.zeros((50, 50), dtype=bool)
+    occupied[10, 20] = True
+    path = np.array([[0.5, 0.5], [8.5, 6.5], [10.5, 10.5], [0.0, 0.0]])
+    target = np.array([40.5, 40.5])
+    point = np.array([13.9, 14.1])
+    # The cones have their height in the middle of the point's cell.
+    cones = max(0, 10 - math.dist((8.5, 6.5), (13.5, 14.5))) + max(0, 10 - math.dist((10.5, 10.5), (13.5, 14.5)))
+    expected = 0.5 * math.dist((10.5, 10.5), point) + math.dist(point, target) + 2 * cones
+    assert abc_ep._cost(occupied, target, path, 3, point, 10.0, 0.5, 2.0) == pytest.approx(expected, rel=1e-12)
+    assert abc_ep._cost(occupied, target, path, 3, np.array([25.5, 10.5]), 10.0, 0.5, 2.0) == abc_ep._UNSEEN
+
+
+def test_children_keep_the_lengths_of_their_legs():
+    """Of children of children, every kind of mutation: legs as measured anew, one change at a time."""
+    rng = np.random.default_rng(0)
+    grid = drawn(0).workspace
+    room = 400
+    points, legs = np.empty((2, room, 2)), np.empty((2, room))
+    points[0, :2] = [[0.5, 0.5], [100.5, 100.5]]
+    legs[0, 0] = abc_ep._leg(grid.occupied, points[0], 0, 1e6)
+    count = 2
+    differences = []
+    for _ in range(room - 2):
+        new = abc_ep._mutated(rng, grid.occupied, points[0], legs[0], count, points[1], legs[1], 0.5, 0.2, 2.5, 0.3, 1e6)
+        measured = [abc_ep._leg(grid.occupied, points[1], p, 1e6) for p in range(new - 1)]
+        assert legs[1, : new - 1].tolist() == measured
+        kept = set(map(tuple, points[0, :count])) & set(map(tuple, points[1, :new]))
+        assert len(kept) >= count - 1
+        assert points[1, 0].tolist() == [0.5, 0.5]
+        assert points[1, new - 1].tolist() == [100.5, 100.5]
+        differences.append((count, new - count))
+        count = new
+        points, legs = points[::-1], legs[::-1]
+    assert all(change == 1 for before, change in differences if before == 2)
+    changes = [change for before, change in differences if before > 2]
+    assert np.mean(np.array(changes) == 0) == pytest.approx(0.5, abs=0.1)
+    assert np.mean(np.array(changes) == -1) == pytest.approx(0.2, abs=0.08)
+
+
+def test_rank_is_by_wins_then_cost_and_the_cheapest_is_first():
+    rng = np.random.default_rng(1)
+    for _ in range(50):
+        cost = rng.integers(0, 8, 12).astype(float)
+        slots = rng.permutation(12)
+        wins = abc_ep._wins(rng, cost, 5)
+        assert (wins[cost == cost.min()] == 5).all()
+        expected = sorted(slots.tolist(), key=lambda slot: (-wins[slot], cost[slot]))
+        abc_ep._rank(slots, wins, cost)
+        assert slots.tolist() == expected
+        assert cost[slots[0]] == cost.min()
+
+
+def test_settings():
+    kinds = planner_settings(abc_ep)
+    assert set(kinds) == set(SETTINGS)
+    assert not any(setting_fault(kinds[name], value) for name, value in SETTINGS.items())
+    bad = {"sources": 1, "cycles": -1, "trial_limit": 0, "reach": 1.5, "most_points": -1, "population": 0, "generations": -1}
+    bad |= {"move_share": 1.2, "removal_share": -0.1, "spread": -1.0, "opponents": 0, "blocked_penalty": math.nan, "step_weight": -1.0}
+    assert all(setting_fault(kinds[name], value) for name, value in bad.items())
+    abc_ep.check(SETTINGS)
+    with pytest.raises(ValueError, match="move_share: with removal_share 1[.]1; expected at most 1"):
+        abc_ep.check(SETTINGS | {"move_share": 0.9})

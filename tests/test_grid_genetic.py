@@ -1,0 +1,251 @@
+"""The genetic algorithm over paths of cells: its paths, its operators against plain references, degenerate cases, settings."""
+
+import math
+
+import numpy as np
+import pytest
+
+from bezierplan import cell_length, curves
+from bezierplan.exact import bounds
+from bezierplan.exact.checker import check
+from bezierplan.exact.region import region
+from bezierplan.planners import grid_genetic
+from bezierplan.problem import Problem, planner_settings, setting_fault
+from bezierplan.workspaces import random_field
+from bezierplan.workspaces.grid import Grid, from_lines
+
+SETTINGS = {
+    "population": 60,
+    "generations": 80,
+    "crossover_probability": 0.8,
+    "mutation_probability": 0.2,
+    "diagonal_cost": 1.5,
+    "attempts": 40,
+    "longest_walk": 6.0,
+    "least_detour": 3,
+    "detour_share": 0.125,
+    "straight_on": 0.8,
+}
+
+
+def drawn(number, radius=0.06, obstacles=25, side=100):
+    """A random field, both pairs of corners in turn."""
+    start, target = [((0, 0), (side, side)), ((side, 0), (0, side))][number % 2]
+    ends = {"start": start, "target": target, "side": side, "obstacles": obstacles}
+    grid = random_field.field({"radius": radius, "clear_ends": 2.0, "unit": "cell"}, ends, f"test/{number}")
+    return Problem("test", grid, tuple(map(float, start)), tuple(map(float, target)))
+
+
+def on_map(*lines, start=None, target=None):
+    """From the lower left to the upper right cell of a map, unless told otherwise."""
+    grid = from_lines(list(lines), 1.0, "cell")
+    rows, columns = grid.occupied.shape
+    return Problem("test", grid, start or (0.5, 0.5), target or (columns - 0.5, rows - 0.5))
+
+
+def plan(problem, seed=0, **changes):
+    return grid_genetic.plan(problem, np.random.default_rng(seed), **(SETTINGS | changes))
+
+
+def least(problem):
+    grid = problem.workspace
+    return bounds.lattice_path(grid.occupied, grid.cell_of(*problem.start), grid.cell_of(*problem.target), 1.5, "free").length * grid.cell
+
+
+@pytest.mark.parametrize("number", range(12))
+def test_paths_are_free_and_cost_what_is_said(number):
+    problem = drawn(number)
+    found = plan(problem, seed=number)
+    grid = problem.workspace
+    assert found.claimed_feasible
+    assert found.path.points[[0, -1]].tolist() == [list(problem.start), list(problem.target)]
+    assert cell_length.occupied_cells(*cell_length.touched_cells(*cell_length.samples(found.path, grid)), grid.occupied) == 0
+    assert check(curves.bezier_pieces(found.path), region(grid)).feasible
+    assert found.objective == cell_length.length4(found.path, grid) == cell_length.length8(found.path, grid)
+    assert least(problem) <= found.objective <= 1.03 * least(problem)
+    assert (np.diff(found.history) <= 0).all()
+    assert found.history[-1] == found.objective
+    assert found.evaluations == 60 * 81
+    assert found.extra["first_walks"] == 60
+
+
+def test_paths_are_next_to_the_cheapest_ones():
+    problems = [drawn(number) for number in range(12)]
+    first, final = (np.mean([plan(each, generations=count).objective / least(each) - 1 for each in problems]) for count in (0, 80))
+    assert final < 0.01
+    assert final < 0.5 * first
+
+
+@pytest.mark.parametrize("ends", [((0, 0), (100, 100)), ((100, 0), (0, 100)), ((100, 100), (0, 0))])
+def test_an_empty_field_gives_the_straight_line_at_once(ends):
+    start, target = (tuple(map(float, end)) for end in ends)
+    problem = drawn(0, obstacles=0)._replace(start=start, target=target)
+    found = plan(problem, generations=0)
+    assert found.objective == 150
+    assert found.path.points.tolist() == [list(start), list(target)]
+
+
+def test_a_sealed_target_is_a_plan_without_a_path():
+    found = plan(on_map("...#.", "...##", "....."))
+    assert found.path is None
+    assert found.objective == math.inf
+    assert not found.claimed_feasible
+    assert found.stop == "no way"
+    assert found.extra == {"first_walks": 0}
+
+
+def test_a_start_without_a_free_neighbour():
+    assert plan(on_map("....", "##..", ".#..")).path is None
+
+
+def test_a_diagonal_step_may_pass_between_two_occupied_cells():
+    found = plan(on_map("#.", ".#"))
+    assert found.objective == 1.5
+    assert found.path.points.tolist() == [[0.5, 0.5], [1.5, 1.5]]
+
+
+def test_few_first_walks_are_filled_with_copies():
+    # Walks through a winding corridor are given up if they may not be much longer than it is.
+    corridor = on_map("........", "#######.", "........", ".#######", "........")
+    found = plan(corridor, attempts=1)
+    assert 0 < found.extra["first_walks"] < 60
+    assert found.objective == least(corridor)
+
+
+def test_start_equal_to_target_is_answered_without_a_search():
+    found = plan(on_map("....", "....", target=(0.5, 0.5)))
+    assert found.objective == 0
+    assert found.evaluations == 60
+    assert len(found.history) == 1
+    assert curves.length(found.path) == 0
+
+
+def test_start_and_target_need_not_be_centres_of_cells():
+    found = plan(on_map("....", "....", start=(0.2, 0.9), target=(3.6, 1.1)))
+    assert found.path.points.tolist() == [[0.2, 0.9], [0.5, 0.5], [1.5, 1.5], [3.5, 1.5], [3.6, 1.1]] or (
+        found.path.points[[0, 1, -2, -1]].tolist() == [[0.2, 0.9], [0.5, 0.5], [3.5, 1.5], [3.6, 1.1]]
+    )
+    assert found.objective == 3.5
+
+
+def test_costs_are_in_units():
+    grid = drawn(0).workspace
+    problem = Problem("test", Grid(grid.occupied, 0.1, "m", (3.0, -2.0)), (3.05, -1.95), (13.05, 8.05))
+    assert plan(problem).objective == pytest.approx(0.1 * plan(drawn(0)).objective, rel=1e-12)
+
+
+def test_same_seed_gives_the_same_bits():
+    one, other = plan(drawn(3), seed=7), plan(drawn(3), seed=7)
+    assert np.array_equal(one.history, other.history)
+    assert np.array_equal(one.path.points, other.path.points)
+
+
+def walker(grid, longest_walk=1000, detour=(3, 4), straight_on=0.8):
+    walled = np.pad(grid, 1, constant_values=True)
+    return walled.ravel(), walled.shape[1], longest_walk, *detour, straight_on
+
+
+def is_path(cells, walled, columns):
+    row, column = np.divmod(cells, columns)
+    steps = np.maximum(abs(np.diff(row)), abs(np.diff(column)))
+    return bool((steps == 1).all() and not walled[cells].any())
+
+
+def test_walks_go_to_their_goal_over_free_neighbours():
+    rng = np.random.default_rng(0)
+    grid = rng.random((30, 30)) < 0.3
+    grid[0, 0] = grid[29, 29] = False
+    given = walker(grid)
+    columns = given[1]
+    walk = np.empty(2000, dtype=np.int64)
+    walk[0] = columns + 1
+    reached = 0
+    for _ in range(50):
+        count = grid_genetic._extend(rng, given, walk, 1, 30 * columns + 30)
+        assert count <= 1001
+        if count:
+            reached += 1
+            assert walk[count - 1] == 30 * columns + 30
+            assert is_path(walk[:count], given[0], columns)
+    assert reached > 40
+
+
+def test_a_walk_may_have_as_many_steps_as_allowed_and_no_more():
+    rng = np.random.default_rng(0)
+    columns = 12
+    walk = np.full(100, columns + 1)
+    free = np.zeros((10, 10), dtype=bool)
+    assert grid_genetic._extend(rng, walker(free, longest_walk=9), walk, 1, 10 * columns + 10) == 10
+    assert grid_genetic._extend(rng, walker(free, longest_walk=8), walk, 1, 10 * columns + 10) == 0
+
+
+def test_loops_are_cut_from_the_last_visit_on():
+    rng = np.random.default_rng(0)
+    last_visit = np.empty(30, dtype=np.int64)
+    for _ in range(100):
+        walk = rng.integers(0, 30, 60)
+        expected, k = [], 0
+        while k < len(walk):
+            expected.append(walk[k])
+            k = max(np.flatnonzero(walk == walk[k])) + 1
+        cut = walk.copy()
+        count = grid_genetic._cut_loops(cut, len(cut), last_visit)
+        assert cut[:count].tolist() == expected
+        assert len(set(expected)) == count
+
+
+def test_crossover_joins_at_an_inner_cell_of_both():
+    rng = np.random.default_rng(0)
+    head, tail = np.array([0, 1, 2, 3, 4, 5]), np.array([0, 9, 3, 8, 1, 5])
+    place, common, walk = np.full(10, -1), np.empty(10, dtype=np.int64), np.empty(20, dtype=np.int64)
+    children = set()
+    for _ in range(100):
+        count = grid_genetic._join(rng, head, tail, place, common, walk)
+        children.add(tuple(walk[:count].tolist()))
+        assert (place == -1).all()
+    assert children == {(0, 1, 5), (0, 1, 2, 3, 8, 1, 5)}
+    assert grid_genetic._join(rng, head, np.array([0, 9, 8, 5]), place, common, walk) == 0
+
+
+def test_mutation_replaces_what_lies_between_two_cells():
+    rng = np.random.default_rng(0)
+    grid = np.zeros((20, 20), dtype=bool)
+    given = walker(grid)
+    columns = given[1]
+    # Along the left border and then along the upper one.
+    path = np.array([row * columns + 1 for row in range(1, 21)] + [20 * columns + column for column in range(2, 21)])
+    walk, last_visit = np.empty(3000, dtype=np.int64), np.empty(len(given[0]), dtype=np.int64)
+    shorter = 0
+    for _ in range(200):
+        walk[: len(path)] = path
+        count = grid_genetic._walk_anew(rng, given, walk, len(path), last_visit)
+        assert (walk[0], walk[count - 1]) == (path[0], path[-1])
+        assert is_path(walk[:count], given[0], columns)
+        kept = 0
+        while kept < count and walk[kept] == path[kept]:
+            kept += 1
+        # What is not new is the path's own tail.
+        assert path[-1] == walk[count - 1]
+        shorter += count < len(path)
+        assert grid_genetic._cost(walk, count, columns, 1.5) <= 38
+    assert 60 < shorter < 140
+
+
+def test_a_failed_walk_leaves_the_path_as_it_is():
+    given = walker(np.zeros((20, 20), dtype=bool), longest_walk=1)
+    columns = given[1]
+    path = np.array([row * columns + 1 for row in range(1, 21)])
+    walk, last_visit = np.empty(3000, dtype=np.int64), np.empty(len(given[0]), dtype=np.int64)
+    walk[:20] = path
+    for seed in range(20):
+        assert grid_genetic._walk_anew(np.random.default_rng(seed), given, walk, 20, last_visit) == 20
+        assert np.array_equal(walk[:20], path)
+
+
+def test_settings():
+    kinds = planner_settings(grid_genetic)
+    assert set(kinds) == set(SETTINGS)
+    assert not any(setting_fault(kinds[name], value) for name, value in SETTINGS.items())
+    bad = {"population": 1, "generations": -1, "crossover_probability": 1.1, "mutation_probability": -0.1, "diagonal_cost": 0.9}
+    bad |= {"attempts": 0, "longest_walk": 0.5, "least_detour": 0, "detour_share": -1.0, "straight_on": 2.0}
+    assert all(setting_fault(kinds[name], value) for name, value in bad.items())
