@@ -1,0 +1,685 @@
+"""Genetic algorithm over sequences of cells of any length, with five mutation operators (meledje).
+
+A chromosome is a path: the numbers of the cells from start to target, joined by straight edges between the centres of the cells. An edge
+meets a cell if it passes through its interior; touching a side or a corner does not count. This is decided in whole numbers.
+
+Lengths, heights and energies in the kernels are in cells. Of a map with few cells all edges are measured once, of a larger one when they
+are asked for; the numbers are the same to the last bit.
+"""
+
+import math
+from functools import lru_cache
+from typing import Annotated, Literal, NamedTuple, get_args
+
+import numpy as np
+from numba import njit
+
+from bezierplan.problem import Path, Plan, Problem, Range
+from bezierplan.search.genetic import roulette
+from bezierplan.workspaces.grid import Grid
+
+workspaces = ("grid",)
+exact = True
+
+Mutation = Literal["random", "random_repair", "ref12", "ref21", "proposed"]
+Initial = Literal["feasible", "rejection", "unrestricted"]
+Selection = Literal["linear_rank", "best_half", "tournament"]
+_RANDOM, _RANDOM_REPAIR, _REF12, _REF21, _PROPOSED = range(5)
+_FEASIBLE, _REJECTION, _UNRESTRICTED = range(3)
+_LINEAR_RANK, _BEST_HALF, _TOURNAMENT = range(3)
+
+# Of a map with more cells than this no table of all edges is made: it would grow with the square of their number.
+TABLE_CELLS = 1024
+# So many walks, or random paths, are begun for one path of the first population before it counts as out of reach.
+_MOST_TRIES = 1_000_000
+# So often random mutation is repeated for a feasible path.
+_MOST_REPAIRS = 50
+# Smaller differences of two energies are rounding: between neighbours of a node, and between a path and the best so far.
+_TIE = 1e-12
+_IMPROVEMENT = 1e-9
+
+
+class Ground(NamedTuple):
+    """What edges are measured on, all of it in cells. Cells are numbered row by row from the bottom left.
+
+    occupied: bool (rows, columns). heights: (rows, columns), or (0, 0) on flat ground. friction: of the ground, at most 1 on most.
+    met, energy: (cells, cells) of the edge from a cell to another, the occupied cells that it meets and what it costs; or (0, 0).
+    """
+
+    occupied: np.ndarray
+    heights: np.ndarray
+    friction: float
+    met: np.ndarray
+    energy: np.ndarray
+
+
+class _Rules(NamedTuple):
+    """The settings of `plan` as the kernels read them, words as their places in `Mutation`, `Initial` and `Selection`."""
+
+    mutation: int
+    generations: int
+    stall: int
+    initial: int
+    most_nodes: int
+    selection: int
+    crossover_probability: float
+    one_cut: bool
+    mutation_probability: float
+    any_node: bool
+    keep_better: bool
+    same_signs: bool
+    penalty: float
+    elitism: int
+    best_so_far: bool
+
+
+class _Found(NamedTuple):
+    """path: the cells of the result, empty if there was no first population. objective: its energy and penalty. met: occupied cells it
+    meets. history: lowest objective so far, by generation. feasible_last: share of feasible paths in the last population.
+    made_infeasible: share of the mutated feasible paths that a mutation made infeasible. diversity: mean of `node_diversity`.
+    """
+
+    path: np.ndarray
+    objective: float
+    met: int
+    history: np.ndarray
+    evaluations: int
+    stalled: bool
+    feasible_last: float
+    made_infeasible: float
+    diversity: float
+
+
+def check(settings: dict) -> None:
+    """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
+    if settings["population"] % 2:
+        raise ValueError(f"population: {settings['population']}; parents are crossed in pairs, so an even number is needed")
+    if settings["friction"] == 0:
+        raise ValueError("friction: 0; climbing is weighed by its reciprocal, so a number above 0 is needed")
+
+
+def plan(
+    problem: Problem,
+    rng: np.random.Generator,
+    *,
+    mutation: Mutation,
+    population: Annotated[int, Range(2)],
+    generations: Annotated[int, Range(0)],
+    stall: Annotated[int, Range(1)],
+    initial: Initial,
+    most_nodes: Annotated[int, Range(1)],
+    selection: Selection,
+    crossover_probability: Annotated[float, Range(0, 1)],
+    cut: Literal["same", "independent"],
+    mutation_probability: Annotated[float, Range(0, 1)],
+    without_obstacle: Literal["any_node", "none"],
+    keep_better: bool,
+    direction: Literal["forward", "same_signs"],
+    random_node: Literal["free", "any"],
+    penalty: Annotated[float, Range(0)],
+    elitism: Annotated[int, Range(0, 1)],
+    result: Literal["last_generation", "best_so_far"],
+    optimal_within: Annotated[float, Range(0)],
+    friction: Annotated[float, Range(0)],
+) -> Plan:
+    """Path of least energy from cell to cell; its energy is its length, plus its climbs divided by the friction (meledje, Sections 2 and 3).
+
+    mutation: the operator, once a path with mutation_probability. stall: generations without improvement after which the search stops,
+    before `generations` are done. initial: the first population, of feasible walks from cell to visible cell; of random paths, of which
+    only feasible ones are kept (rejection); or of all of them; at most most_nodes inner nodes each. selection: how parents are drawn from
+    the population. crossover_probability: of a pair of parents; cut: behind the same number of nodes in both, or not. without_obstacle:
+    what `proposed` does to a path that meets no obstacle: any node is changed as by ref12, or none. keep_better: whether ref12 and proposed
+    keep a node that is better than all its neighbours. direction: which steps towards the target `ref21` accepts, within a right angle of
+    the straight line to it, or with the same signs. random_node: which cells `random` draws from. penalty: in units of length, for each
+    occupied cell that an edge meets. elitism: how many of the best so far replace a path. result: the best path of the last generation, or
+    the best so far. optimal_within: share of the optimum by which an optimal path may exceed it.
+
+    The planner's own test: no edge meets an occupied cell. Extra columns: optimum, the least energy of all feasible paths from cell to
+    cell; optimal, near_optimal, infeasible, one of which is true; feasible_last, the share of feasible paths in the last population;
+    made_infeasible, the share of mutated feasible paths that became infeasible; node_diversity, the mean over generations of the chance
+    that an inner node of one path is no node of another. Raises ValueError if start or target is not the centre of a cell.
+    """
+    grid = problem.workspace
+    ground = ground_of(grid, friction)
+    start, target = (_cell_at(grid, end, getattr(problem, end)) for end in ("start", "target"))
+    optimum = cheapest(ground, start, target)[0]
+    starts, moves = rng.spawn(2)
+    if obstacles_met(ground, start, target) == 0:
+        # Nothing to search: a walk sees its target at once, and paths without inner nodes cannot change.
+        energy = edge_energy(ground, start, target)
+        found = _Found(np.array([start, target]), energy, 0, np.array([energy]), 1, False, 1.0, math.nan, 0.0)
+        stop = "direct"
+    elif math.isinf(optimum):
+        found, stop = _NOTHING, "no path"
+    else:
+        drawn = np.flatnonzero(~grid.occupied.ravel() | (random_node == "any"))
+        ends = [start, target]
+        found = _search(
+            starts,
+            moves,
+            ground,
+            start,
+            target,
+            np.setdiff1d(np.flatnonzero(~grid.occupied), ends),
+            np.setdiff1d(drawn, ends),
+            population,
+            _Rules(
+                mutation=get_args(Mutation).index(mutation),
+                generations=generations,
+                stall=stall,
+                initial=get_args(Initial).index(initial),
+                most_nodes=most_nodes,
+                selection=get_args(Selection).index(selection),
+                crossover_probability=float(crossover_probability),
+                one_cut=cut == "same",
+                mutation_probability=float(mutation_probability),
+                any_node=without_obstacle == "any_node",
+                keep_better=keep_better,
+                same_signs=direction == "same_signs",
+                penalty=penalty / grid.cell,
+                elitism=elitism,
+                best_so_far=result == "best_so_far",
+            ),
+        )
+        stop = "no first population" if not len(found.path) else "stall" if found.stalled else "generations"
+    feasible = len(found.path) > 0 and found.met == 0
+    optimal = feasible and found.objective <= optimum * (1 + optimal_within)
+    return Plan(
+        path=Path("polyline", centres(grid, found.path)) if len(found.path) else None,
+        objective=found.objective * grid.cell,
+        claimed_feasible=feasible,
+        evaluations=found.evaluations,
+        history=found.history * grid.cell,
+        stop=stop,
+        extra={
+            "optimum": optimum * grid.cell,
+            "optimal": optimal,
+            "near_optimal": feasible and not optimal,
+            "infeasible": not feasible,
+            "feasible_last": found.feasible_last,
+            "made_infeasible": found.made_infeasible,
+            "node_diversity": found.diversity,
+        },
+    )
+
+
+_NOTHING = _Found(np.empty(0, dtype=np.int64), math.inf, 0, np.array([math.inf]), 1, False, 0.0, math.nan, 0.0)
+
+
+def _cell_at(grid: Grid, end: str, point: tuple[float, float]) -> int:
+    row, column = grid.cell_of(*point)
+    number = int(row * grid.occupied.shape[1] + column)
+    if point != grid.centre(number):
+        raise ValueError(f"{end}: {point}; paths go from cell to cell, so the centre of a cell is needed, such as {grid.centre(number)}")
+    return number
+
+
+def centres(grid: Grid, cells: np.ndarray) -> np.ndarray:
+    """Centres (n, 2) of cells (n,), in units."""
+    return np.array([grid.centre(cell) for cell in cells.tolist()]).reshape(-1, 2)
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# The ground: edges and what they cost
+
+
+def ground_of(grid: Grid, friction: float) -> Ground:
+    """The ground of a grid, with all its edges measured if it has no more than `TABLE_CELLS` cells. Not to be changed."""
+    return _ground(grid.occupied.shape, grid.occupied.tobytes(), float(friction), TABLE_CELLS)
+
+
+@lru_cache(maxsize=8)
+def _ground(shape: tuple[int, int], occupied: bytes, friction: float, table_cells: int) -> Ground:
+    nothing = np.empty((0, 0))
+    cells = np.frombuffer(occupied, dtype=bool).reshape(shape).copy()
+    bare = Ground(cells, nothing, friction, np.empty((0, 0), dtype=np.uint16), nothing)
+    return bare._replace(**dict(zip(("met", "energy"), _tables(bare)))) if cells.size <= table_cells else bare
+
+
+@njit(cache=True)
+def _tables(ground):
+    cells = ground.occupied.size
+    met, energy = np.empty((cells, cells), dtype=np.uint16), np.empty((cells, cells))
+    for one in range(cells):
+        for other in range(cells):
+            met[one, other] = obstacles_met(ground, one, other)
+            energy[one, other] = edge_energy(ground, one, other)
+    return met, energy
+
+
+@njit(cache=True)
+def obstacles_met(ground: Ground, one: int, other: int) -> int:
+    """How many occupied cells the edge between two cells meets, these included (meledje, eq. 3: beta)."""
+    if ground.met.size:
+        return int(ground.met[one, other])
+    return _passed(ground, one, other)[0]
+
+
+@njit(cache=True)
+def edge_energy(ground: Ground, one: int, other: int) -> float:
+    """What the edge from a cell to another costs: its length, and what it climbs divided by the friction (meledje, eq. 2: epsilon)."""
+    if ground.energy.size:
+        return ground.energy[one, other]
+    length = _distance(ground, one, other)
+    return length + _passed(ground, one, other)[1] / ground.friction if ground.heights.size else length
+
+
+@njit(cache=True)
+def _distance(ground, one, other):
+    columns = ground.occupied.shape[1]
+    across, up = other % columns - one % columns, other // columns - one // columns
+    return np.sqrt(float(across * across + up * up))
+
+
+@njit(cache=True)
+def _passed(ground, one, other):
+    """Occupied cells that an edge meets, and the sum of its climbs from cell to cell.
+
+    The edge crosses its next upright grid line after (2 i + 1) / (2 across) of its way, its next level one after (2 j + 1) / (2 up); through
+    a corner it leads from cell to cell without a third.
+    """
+    columns = ground.occupied.shape[1]
+    row, column = one // columns, one % columns
+    across, up = other % columns - column, other // columns - row
+    right, upward = (1 if across > 0 else -1), (1 if up > 0 else -1)
+    across, up = abs(across), abs(up)
+    met, climb = int(ground.occupied[row, column]), 0.0
+    i = j = 0
+    while i < across or j < up:
+        height = ground.heights[row, column] if ground.heights.size else 0.0
+        ahead = (2 * i + 1) * up - (2 * j + 1) * across
+        if ahead <= 0:
+            i += 1
+            column += right
+        if ahead >= 0:
+            j += 1
+            row += upward
+        met += int(ground.occupied[row, column])
+        if ground.heights.size:
+            climb += max(ground.heights[row, column] - height, 0.0)
+    return met, climb
+
+
+def cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.ndarray]:
+    """Least energy, in cells, of a path from cell to cell that meets no obstacle, and its cells; infinite and none without such a path."""
+    return _cheapest_known(_Same(ground), start, target)
+
+
+class _Same:
+    """A ground as a key: `_ground` gives the same object for the same content."""
+
+    def __init__(self, ground: Ground) -> None:
+        self.ground = ground
+
+    def __hash__(self) -> int:
+        return id(self.ground)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and self.ground is other.ground
+
+
+@lru_cache(maxsize=64)
+def _cheapest_known(same: _Same, start: int, target: int) -> tuple[float, np.ndarray]:
+    energy, before = _cheapest(same.ground, start, target)
+    if math.isinf(energy):
+        return energy, np.empty(0, dtype=np.int64)
+    path = [target]
+    while path[-1] != start:
+        path.append(int(before[path[-1]]))
+    return energy, np.array(path[::-1])
+
+
+@njit(cache=True)
+def _cheapest(ground, start, target):
+    """Least energy from start to target, and the cell before each cell on its way, by A* with the straight distance.
+
+    An edge is looked at only if it would be a gain: of a large map few are.
+    """
+    cells = ground.occupied.size
+    energy, before, done = np.full(cells, np.inf), np.full(cells, -1), ground.occupied.ravel().copy()
+    energy[start] = 0.0
+    while True:
+        here, least = -1, np.inf
+        for cell in range(cells):
+            if not done[cell] and energy[cell] + _distance(ground, cell, target) < least:
+                here, least = cell, energy[cell] + _distance(ground, cell, target)
+        if here < 0 or here == target:
+            return energy[target], before
+        done[here] = True
+        for cell in range(cells):
+            if not done[cell] and energy[here] + _distance(ground, here, cell) < energy[cell] and obstacles_met(ground, here, cell) == 0:
+                through = energy[here] + edge_energy(ground, here, cell)
+                if through < energy[cell]:
+                    energy[cell], before[cell] = through, here
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# The search
+
+
+@njit(cache=True)
+def _search(starts, moves, ground, start, target, free, drawn, population, rules):
+    """The genetic algorithm. free: the free cells without start and target; drawn: those that random mutation draws from."""
+    paths, lengths = np.empty((population, rules.most_nodes + 2), dtype=np.int64), np.empty(population, dtype=np.int64)
+    for i in range(population):
+        paths[i, 0] = start
+        lengths[i] = _first_path(starts, paths[i], target, free, ground, rules)
+        if lengths[i] == 0:
+            return _Found(np.empty(0, dtype=np.int64), np.inf, 0, np.full(1, np.inf), 1, False, 0.0, np.nan, 0.0)
+    children, child_lengths = paths.copy(), lengths.copy()
+    objective, met = np.empty(population), np.empty(population, dtype=np.int64)
+    ranks = np.arange(population, 0, -1).astype(np.float64)
+    history = np.empty(rules.generations + 1)
+    best, best_length, best_objective, best_met = paths[0].copy(), 0, np.inf, 0
+    improved = evaluations = feasible = spoiled = 0
+    diversity = 0.0
+
+    for generation in range(rules.generations + 1):
+        for i in range(population):
+            objective[i], met[i] = _evaluate(paths[i, : lengths[i]], ground, rules.penalty)
+        evaluations += population
+        diversity += node_diversity(paths, lengths, ground.occupied.size)
+        order = np.argsort(objective, kind="mergesort")
+        first = order[0]
+        if objective[first] < best_objective - _IMPROVEMENT:
+            if len(best) < lengths[first]:
+                best = np.empty(paths.shape[1], dtype=np.int64)
+            best_length, best_objective, best_met = lengths[first], objective[first], met[first]
+            _copy(paths[first], best, best_length)
+            improved = generation
+        history[generation] = best_objective
+        stalled = generation - improved >= rules.stall
+        if stalled or generation == rules.generations:
+            break
+
+        parents = _select(moves, order, ranks, rules.selection)
+        if not rules.one_cut and 2 * lengths.max() > children.shape[1]:
+            children = np.empty((population, 2 * lengths.max()), dtype=np.int64)
+        for i in range(0, population, 2):
+            mother, father = parents[i], parents[i + 1]
+            if moves.random() < rules.crossover_probability:
+                cut = other_cut = moves.integers(1, min(lengths[mother], lengths[father]))
+                if not rules.one_cut:
+                    cut, other_cut = moves.integers(1, lengths[mother]), moves.integers(1, lengths[father])
+            else:
+                cut, other_cut = lengths[mother], lengths[father]
+            child_lengths[i] = _join(paths[mother], cut, paths[father], other_cut, lengths[father], children[i])
+            child_lengths[i + 1] = _join(paths[father], other_cut, paths[mother], cut, lengths[mother], children[i + 1])
+        if children.shape[1] > paths.shape[1]:
+            paths = np.empty_like(children)
+        paths, children = children, paths
+        lengths, child_lengths = child_lengths, lengths
+        for i in range(population):
+            if moves.random() < rules.mutation_probability and lengths[i] > 2:
+                path = paths[i, : lengths[i]]
+                was_feasible = _path_met(path, ground) == 0
+                evaluations += _mutate(moves, path, drawn, ground, rules)
+                feasible += was_feasible
+                spoiled += was_feasible and _path_met(path, ground) > 0
+        if rules.elitism and len(best) <= paths.shape[1]:
+            _copy(best, paths[0], best_length)
+            lengths[0] = best_length
+
+    if not rules.best_so_far:
+        best, best_length, best_objective, best_met = paths[first], lengths[first], objective[first], met[first]
+    return _Found(
+        best[:best_length].copy(),
+        best_objective,
+        best_met,
+        history[: generation + 1].copy(),
+        evaluations,
+        stalled,
+        (met == 0).mean(),
+        spoiled / feasible if feasible else np.nan,
+        diversity / (generation + 1),
+    )
+
+
+@njit(cache=True)
+def _copy(source, target, length):
+    for k in range(length):
+        target[k] = source[k]
+
+
+@njit(cache=True)
+def _join(head, cut, tail, tail_cut, tail_length, child):
+    """The first `cut` nodes of one path and those behind the first `tail_cut` of another, written to a child; returns its length.
+
+    Cuts behind the last node leave the head as it is.
+    """
+    for k in range(cut):
+        child[k] = head[k]
+    for k in range(tail_cut, tail_length):
+        child[cut + k - tail_cut] = tail[k]
+    return cut + tail_length - tail_cut
+
+
+@njit(cache=True)
+def _evaluate(path, ground, penalty):
+    """Energy of a path with its penalty, and the occupied cells that its edges meet (meledje, eqs. 1 to 3)."""
+    energy = 0.0
+    for k in range(len(path) - 1):
+        energy += edge_energy(ground, path[k], path[k + 1])
+    met = _path_met(path, ground)
+    return energy + penalty * met, met
+
+
+@njit(cache=True)
+def _path_met(path, ground):
+    met = 0
+    for k in range(len(path) - 1):
+        met += obstacles_met(ground, path[k], path[k + 1])
+    return met
+
+
+@njit(cache=True)
+def node_diversity(paths: np.ndarray, lengths: np.ndarray, cells: int) -> float:
+    """Chance that an inner node of one path (n, ...) is no node of another one, of so many cells; 0 without inner nodes."""
+    having, last = np.zeros(cells, dtype=np.int64), np.full(cells, -1)
+    for i in range(len(paths)):
+        for k in range(1, lengths[i] - 1):
+            if last[paths[i, k]] != i:
+                last[paths[i, k]] = i
+                having[paths[i, k]] += 1
+    nodes = lonely = 0
+    for count in having:
+        nodes += count
+        lonely += count * (len(paths) - count)
+    return lonely / (nodes * (len(paths) - 1)) if nodes else 0.0
+
+
+# The first population (meledje, Section 2.3).
+
+
+@njit(cache=True)
+def _first_path(rng, path, target, free, ground, rules):
+    """A random path, written behind its start; returns its number of nodes, 0 if none was found."""
+    for _ in range(_MOST_TRIES):
+        length = _walk(rng, path, target, free, ground) if rules.initial == _FEASIBLE else _random_path(rng, path, target, free)
+        if length and (rules.initial != _REJECTION or _path_met(path[:length], ground) == 0):
+            return length
+    return 0
+
+
+@njit(cache=True)
+def _walk(rng, path, target, free, ground):
+    """A walk from cell to visible cell, none of them twice, until the target is visible; 0 if it gets too long, or sees no new cell."""
+    length = 1
+    while obstacles_met(ground, path[length - 1], target) > 0:
+        cell = _visible_cell(rng, path[:length], free, ground) if length < len(path) - 1 else -1
+        if cell < 0:
+            return 0
+        path[length] = cell
+        length += 1
+    path[length] = target
+    return length + 1
+
+
+@njit(cache=True)
+def _visible_cell(rng, path, free, ground):
+    """A uniformly drawn cell that is visible from the last one of a path and not among its cells, -1 if there is none."""
+    for _ in range(len(free)):
+        cell = free[rng.integers(0, len(free))]
+        if obstacles_met(ground, path[-1], cell) == 0 and not _among(cell, path):
+            return cell
+    # Few or none are left: look at all.
+    seen = np.empty_like(free)
+    count = 0
+    for cell in free:
+        if obstacles_met(ground, path[-1], cell) == 0 and not _among(cell, path):
+            seen[count] = cell
+            count += 1
+    return seen[rng.integers(0, count)] if count else -1
+
+
+@njit(cache=True)
+def _among(cell, path):
+    for node in path:
+        if node == cell:
+            return True
+    return False
+
+
+@njit(cache=True)
+def _random_path(rng, path, target, free):
+    """Any number of inner nodes that fits, each any free cell."""
+    inner = rng.integers(0, len(path) - 1)
+    for k in range(1, inner + 1):
+        path[k] = free[rng.integers(0, len(free))]
+    path[inner + 1] = target
+    return inner + 2
+
+
+# Selection (meledje, Section 2.5).
+
+
+@njit(cache=True)
+def _select(rng, order, ranks, selection):
+    """As many parents as paths, with replacement. order: paths, the best first; ranks: their weights for a linear ranking."""
+    if selection == _LINEAR_RANK:
+        return order[roulette(rng, ranks, len(order))]
+    parents = np.empty_like(order)
+    for i in range(len(order)):
+        if selection == _BEST_HALF:
+            parents[i] = order[rng.integers(0, len(order) // 2)]
+        else:
+            parents[i] = order[min(rng.integers(0, len(order)), rng.integers(0, len(order)))]
+    return parents
+
+
+# Mutation (meledje, Section 3). All operators change one inner node of a path in place, and leave the number of nodes.
+
+
+@njit(cache=True)
+def _mutate(rng, path, drawn, ground, rules):
+    """Apply the operator once; returns how many paths it evaluated."""
+    if rules.mutation == _RANDOM:
+        path[rng.integers(1, len(path) - 1)] = drawn[rng.integers(0, len(drawn))]
+        return 0
+    if rules.mutation == _RANDOM_REPAIR:
+        return _random_repair(rng, path, drawn, ground)
+    if rules.mutation == _REF21:
+        return _ref21(rng, path, ground, rules.same_signs)
+    k = _blocked_node(rng, path, ground) if rules.mutation == _PROPOSED else 0
+    if k == 0:
+        if rules.mutation == _PROPOSED and not rules.any_node:
+            return 0
+        k = rng.integers(1, len(path) - 1)
+    return _best_neighbour(path, k, ground, rules)
+
+
+@njit(cache=True)
+def _random_repair(rng, path, drawn, ground):
+    """Random mutation, repeated until the path is feasible."""
+    for _ in range(_MOST_REPAIRS):
+        k = rng.integers(1, len(path) - 1)
+        before = path[k]
+        path[k] = drawn[rng.integers(0, len(drawn))]
+        if _path_met(path, ground) == 0:
+            return 0
+        path[k] = before
+    return 0
+
+
+@njit(cache=True)
+def _blocked_node(rng, path, ground):
+    """A random inner node whose edge to the next node meets an obstacle, 0 if there is none (Table 1, step 1)."""
+    count = 0
+    for k in range(1, len(path) - 1):
+        count += obstacles_met(ground, path[k], path[k + 1]) > 0
+    if count == 0:
+        return 0
+    chosen = rng.integers(0, count)
+    for k in range(1, len(path) - 1):
+        if obstacles_met(ground, path[k], path[k + 1]) > 0:
+            if chosen == 0:
+                return k
+            chosen -= 1
+    return 0
+
+
+@njit(cache=True)
+def _best_neighbour(path, k, ground, rules):
+    """Put the free neighbour cell that gives the best path in the place of node k (Table 1, steps 2 to 4; reference 12).
+
+    Of two that are equally good, the first from the lower left, row by row. Only the two edges of the node change.
+    """
+    columns = ground.occupied.shape[1]
+    neighbours, count = _free_neighbours(path[k], ground)
+    best, least = path[k], np.inf
+    if rules.keep_better:
+        least = _cost_through(path, k, path[k], ground, rules.penalty)
+    for cell in neighbours[:count]:
+        cost = _cost_through(path, k, cell, ground, rules.penalty)
+        if cost < least - _TIE:
+            best, least = cell, cost
+    path[k] = best
+    return count
+
+
+@njit(cache=True)
+def _cost_through(path, k, cell, ground, penalty):
+    """Energy and penalty of the two edges that node k would have in a cell."""
+    met = obstacles_met(ground, path[k - 1], cell) + obstacles_met(ground, cell, path[k + 1])
+    return edge_energy(ground, path[k - 1], cell) + edge_energy(ground, cell, path[k + 1]) + penalty * met
+
+
+@njit(cache=True)
+def _free_neighbours(cell, ground):
+    """The free ones of the eight cells around a cell, row by row from the lower left, and how many they are."""
+    rows, columns = ground.occupied.shape
+    neighbours, count = np.empty(8, dtype=np.int64), 0
+    for row in range(max(cell // columns - 1, 0), min(cell // columns + 2, rows)):
+        for column in range(max(cell % columns - 1, 0), min(cell % columns + 2, columns)):
+            if row * columns + column != cell and not ground.occupied[row, column]:
+                neighbours[count] = row * columns + column
+                count += 1
+    return neighbours, count
+
+
+@njit(cache=True)
+def _ref21(rng, path, ground, same_signs):
+    """Replace a random inner node by the first of its free neighbours, in random order, that lies in the direction of the target and whose
+    two edges are free (reference 21).
+    """
+    k = rng.integers(1, len(path) - 1)
+    neighbours, count = _free_neighbours(path[k], ground)
+    for tried in range(count):
+        chosen = rng.integers(tried, count)
+        neighbours[tried], neighbours[chosen] = neighbours[chosen], neighbours[tried]
+        cell = neighbours[tried]
+        if _towards(path[0], cell, path[-1], ground.occupied.shape[1], same_signs):
+            if obstacles_met(ground, path[k - 1], cell) == 0 and obstacles_met(ground, cell, path[k + 1]) == 0:
+                path[k] = cell
+                return tried + 1
+    return count
+
+
+@njit(cache=True)
+def _towards(start, cell, target, columns, same_signs):
+    """Does the way from a cell to the target have the direction of the way from the start to it?"""
+    across, up = target % columns - cell % columns, target // columns - cell // columns
+    whole_across, whole_up = target % columns - start % columns, target // columns - start // columns
+    if same_signs:
+        return np.sign(across) == np.sign(whole_across) and np.sign(up) == np.sign(whole_up)
+    return across * whole_across + up * whole_up > 0
