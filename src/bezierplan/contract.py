@@ -241,7 +241,8 @@ class _Case(NamedTuple):
     """A planner's plans for one problem, all of them fit to be looked at.
 
     blocked: the region of the problem. plans: one a generator. again: the first of them made again. reseeded: likewise, with the global
-    generators in another state. runs: all of these. columns: names of extra columns on the first problem. exact: what the planner declares.
+    generators in another state. runs: all of these. columns: names of extra columns on the first problem. exact, keeps_best: what the
+    planner declares.
     """
 
     problem: Problem
@@ -253,6 +254,7 @@ class _Case(NamedTuple):
     runs: list[_Run]
     columns: set[str]
     exact: bool
+    keeps_best: bool
 
 
 def _findings(module: ModuleType, settings: dict[str, Any]) -> Iterator[Finding]:
@@ -266,8 +268,8 @@ def _findings(module: ModuleType, settings: dict[str, Any]) -> Iterator[Finding]
                 continue
             plan, again, reseeded, *others = (run.plan for run in runs)
             columns = set(plan.extra) if columns is None else columns
-            exact = getattr(module, "exact", False)
-            case = _Case(problem, blocked, settings, [plan, *others], again, reseeded, runs, columns, exact)
+            declared = getattr(module, "exact", False), getattr(module, "keeps_best", True)
+            case = _Case(problem, blocked, settings, [plan, *others], again, reseeded, runs, columns, *declared)
             for name, fact in _FACTS.items():
                 yield Finding(problem.name, name, *fact(case))
             if problem.name.endswith(_SEALED):
@@ -335,8 +337,8 @@ def _plan_fault(plan: Any, blocked: Region) -> str:
         "evaluations: expected a whole number, at least 1": _is_whole(plan.evaluations) and plan.evaluations >= 1,
         "history: expected an array of numbers, (generations + 1,)": _is_array(plan.history, 1) and len(plan.history) > 0,
         "stop: expected a word": isinstance(plan.stop, str),
-        "extra: expected names with numbers": isinstance(plan.extra, dict)
-        and all(isinstance(name, str) and _is_number(value) for name, value in plan.extra.items()),
+        "extra: expected names with numbers or truths": isinstance(plan.extra, dict)
+        and all(isinstance(name, str) and (_is_number(value) or isinstance(value, bool)) for name, value in plan.extra.items()),
         "path: expected None or a Path": plan.path is None or isinstance(plan.path, Path),
     }
     fault = next((what for what, right in fit.items() if not right), "")
@@ -391,7 +393,7 @@ def _history_falls(case: _Case) -> tuple[bool, str]:
         # Written so that a value that is not a number fails as well.
         if not (plan.history[1:] <= plan.history[:-1]).all():
             return False, "rises; expected the best objective so far"
-        if plan.path is not None and plan.history[-1] != plan.objective:
+        if plan.path is not None and plan.history[-1] != plan.objective and (case.keeps_best or plan.history[-1] > plan.objective):
             return False, f"ends with {plan.history[-1]}; expected the objective, {plan.objective}"
     return True, ""
 

@@ -104,6 +104,11 @@ def _held_history(runs: pd.DataFrame) -> np.ndarray:
     return np.concatenate(runs["history"].to_list())[starts[:, None] + columns]
 
 
+def _lowest_objective(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Lowest objective (n,) of any generation, whichever one the planner's result is taken from."""
+    return _held_history(runs)[:, -1]
+
+
 def _first_generation_within(share: float, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     """First generation (n,) whose best objective so far is at most 1 + share times the final one."""
     held = _held_history(runs)
@@ -292,6 +297,13 @@ METRICS: dict[str, Metric] = {
         "generation", "first generation within 5 % of the run's final objective", False, partial(_first_generation_within, 0.05)
     ),
     "improvement_30": Metric("-", "share of the improvement of the objective made by generation 30", False, partial(_improvement_by, 30)),
+    "objective_best": Metric("u", "lowest objective of any generation", False, _lowest_objective),
+    "optimal": Metric("-", "whether the final path is feasible and optimal, by the planner's own test", False),
+    "near_optimal": Metric("-", "whether the final path is feasible but not optimal, by the planner's own test", False),
+    "infeasible": Metric("-", "whether the final path is infeasible, by the planner's own test", False),
+    "feasible_last": Metric("-", "share of feasible paths in the last population", False),
+    "made_infeasible": Metric("-", "share of the mutated feasible paths that mutation made infeasible", False),
+    "node_diversity": Metric("-", "chance that an inner node of a path is no node of another of its population, mean over generations", False),
     "max_curvature": Metric(
         "1/u",
         f"largest absolute curvature over {CURVATURE_SAMPLES} samples, corners between pieces left out",

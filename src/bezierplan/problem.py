@@ -6,9 +6,10 @@ A planner is a module with a function
 
 whose keyword-only arguments are its settings, all without default values: annotated with `bool`, `int`, `float`, `Literal[...]`, or
 `Annotated[int, Range(...)]`. It may also have `workspaces`, the kinds of workspace that it serves; `exact = True`, if its own test of
-feasibility is meant to agree with the certified one; `deterministic = True`, if it draws no random number; and `check(settings)`, which
-raises ValueError for settings that do not fit together; `track(problem, rng, **settings)`, the control points (iterations + 1, n, 2) of
-the best path after each iteration of the run that `plan` makes of the same arguments, for figures that show how a run came to its path.
+feasibility is meant to agree with the certified one; `keeps_best = False`, if its result can be worse than the best path that it met;
+`deterministic = True`, if it draws no random number; `check(settings)`, which raises ValueError for settings that do not fit together; and
+`track(problem, rng, **settings)`, the control points (iterations + 1, n, 2) of the best path after each iteration of the run that `plan`
+makes of the same arguments, for figures that show how a run came to its path.
 """
 
 import importlib
@@ -46,7 +47,7 @@ class Plan(NamedTuple):
     """What a planner answers.
 
     path: None if it found nothing to show. objective: its own final value, in its own rule. claimed_feasible: its own test of the path.
-    evaluations: paths whose objective it asked for. history: its best objective after generation 0, 1, ..., (generations + 1,).
+    evaluations: paths whose objective it asked for. history: its best objective so far after generation 0, 1, ..., (generations + 1,).
     stop: why it ended. extra: further columns of the runs table, by name.
     """
 
@@ -56,7 +57,7 @@ class Plan(NamedTuple):
     evaluations: int
     history: np.ndarray
     stop: str
-    extra: dict[str, float]
+    extra: dict[str, float | bool]
 
 
 class Range(NamedTuple):

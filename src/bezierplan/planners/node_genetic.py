@@ -20,6 +20,7 @@ from bezierplan.workspaces.grid import Grid
 
 workspaces = ("grid",)
 exact = True
+keeps_best = False
 
 Mutation = Literal["random", "random_repair", "ref12", "ref21", "proposed"]
 Initial = Literal["feasible", "rejection", "unrestricted"]
@@ -247,7 +248,7 @@ def _tables(ground):
     return met, energy
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def obstacles_met(ground: Ground, one: int, other: int) -> int:
     """How many occupied cells the edge between two cells meets, these included (meledje, eq. 3: beta)."""
     if ground.met.size:
@@ -255,7 +256,7 @@ def obstacles_met(ground: Ground, one: int, other: int) -> int:
     return _passed(ground, one, other)[0]
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def edge_energy(ground: Ground, one: int, other: int) -> float:
     """What the edge from a cell to another costs: its length, and what it climbs divided by the friction (meledje, eq. 2: epsilon)."""
     if ground.energy.size:
@@ -398,9 +399,9 @@ def _search(starts, moves, ground, start, target, free, drawn, population, rules
         for i in range(0, population, 2):
             mother, father = parents[i], parents[i + 1]
             if moves.random() < rules.crossover_probability:
-                cut = other_cut = moves.integers(1, min(lengths[mother], lengths[father]))
+                cut = other_cut = 1 + _below(moves, min(lengths[mother], lengths[father]) - 1)
                 if not rules.one_cut:
-                    cut, other_cut = moves.integers(1, lengths[mother]), moves.integers(1, lengths[father])
+                    cut, other_cut = 1 + _below(moves, lengths[mother] - 1), 1 + _below(moves, lengths[father] - 1)
             else:
                 cut, other_cut = lengths[mother], lengths[father]
             child_lengths[i] = _join(paths[mother], cut, paths[father], other_cut, lengths[father], children[i])
@@ -433,6 +434,12 @@ def _search(starts, moves, ground, start, target, free, drawn, population, rules
         spoiled / feasible if feasible else np.nan,
         diversity / (generation + 1),
     )
+
+
+@njit(cache=True)
+def _below(rng, count):
+    """A uniform whole number below another one, many times as fast as `rng.integers`."""
+    return int(rng.random() * count)
 
 
 @njit(cache=True)
@@ -506,36 +513,38 @@ def _walk(rng, path, target, free, ground):
     """A walk from cell to visible cell, none of them twice, until the target is visible; 0 if it gets too long, or sees no new cell."""
     length = 1
     while obstacles_met(ground, path[length - 1], target) > 0:
-        cell = _visible_cell(rng, path[:length], free, ground) if length < len(path) - 1 else -1
-        if cell < 0:
+        if length == len(path) - 1:
             return 0
-        path[length] = cell
+        path[length] = -1
+        for _ in range(len(free)):
+            cell = free[_below(rng, len(free))]
+            if obstacles_met(ground, path[length - 1], cell) == 0 and not _among(cell, path, length):
+                path[length] = cell
+                break
+        if path[length] < 0:
+            path[length] = _one_of_few(rng, path, length, free, ground)
+            if path[length] < 0:
+                return 0
         length += 1
     path[length] = target
     return length + 1
 
 
 @njit(cache=True)
-def _visible_cell(rng, path, free, ground):
-    """A uniformly drawn cell that is visible from the last one of a path and not among its cells, -1 if there is none."""
-    for _ in range(len(free)):
-        cell = free[rng.integers(0, len(free))]
-        if obstacles_met(ground, path[-1], cell) == 0 and not _among(cell, path):
-            return cell
-    # Few or none are left: look at all.
-    seen = np.empty_like(free)
-    count = 0
+def _one_of_few(rng, path, length, free, ground):
+    """A uniformly drawn cell that is visible from the last one of a path and not among its cells, after a look at all; -1 without any."""
+    seen, count = np.empty_like(free), 0
     for cell in free:
-        if obstacles_met(ground, path[-1], cell) == 0 and not _among(cell, path):
+        if obstacles_met(ground, path[length - 1], cell) == 0 and not _among(cell, path, length):
             seen[count] = cell
             count += 1
-    return seen[rng.integers(0, count)] if count else -1
+    return seen[_below(rng, count)] if count else -1
 
 
 @njit(cache=True)
-def _among(cell, path):
-    for node in path:
-        if node == cell:
+def _among(cell, path, length):
+    for k in range(length):
+        if path[k] == cell:
             return True
     return False
 
@@ -543,9 +552,9 @@ def _among(cell, path):
 @njit(cache=True)
 def _random_path(rng, path, target, free):
     """Any number of inner nodes that fits, each any free cell."""
-    inner = rng.integers(0, len(path) - 1)
+    inner = _below(rng, len(path) - 1)
     for k in range(1, inner + 1):
-        path[k] = free[rng.integers(0, len(free))]
+        path[k] = free[_below(rng, len(free))]
     path[inner + 1] = target
     return inner + 2
 
@@ -561,9 +570,9 @@ def _select(rng, order, ranks, selection):
     parents = np.empty_like(order)
     for i in range(len(order)):
         if selection == _BEST_HALF:
-            parents[i] = order[rng.integers(0, len(order) // 2)]
+            parents[i] = order[_below(rng, len(order) // 2)]
         else:
-            parents[i] = order[min(rng.integers(0, len(order)), rng.integers(0, len(order)))]
+            parents[i] = order[min(_below(rng, len(order)), _below(rng, len(order)))]
     return parents
 
 
@@ -574,7 +583,7 @@ def _select(rng, order, ranks, selection):
 def _mutate(rng, path, drawn, ground, rules):
     """Apply the operator once; returns how many paths it evaluated."""
     if rules.mutation == _RANDOM:
-        path[rng.integers(1, len(path) - 1)] = drawn[rng.integers(0, len(drawn))]
+        path[1 + _below(rng, len(path) - 2)] = drawn[_below(rng, len(drawn))]
         return 0
     if rules.mutation == _RANDOM_REPAIR:
         return _random_repair(rng, path, drawn, ground)
@@ -584,7 +593,7 @@ def _mutate(rng, path, drawn, ground, rules):
     if k == 0:
         if rules.mutation == _PROPOSED and not rules.any_node:
             return 0
-        k = rng.integers(1, len(path) - 1)
+        k = 1 + _below(rng, len(path) - 2)
     return _best_neighbour(path, k, ground, rules)
 
 
@@ -592,9 +601,9 @@ def _mutate(rng, path, drawn, ground, rules):
 def _random_repair(rng, path, drawn, ground):
     """Random mutation, repeated until the path is feasible."""
     for _ in range(_MOST_REPAIRS):
-        k = rng.integers(1, len(path) - 1)
+        k = 1 + _below(rng, len(path) - 2)
         before = path[k]
-        path[k] = drawn[rng.integers(0, len(drawn))]
+        path[k] = drawn[_below(rng, len(drawn))]
         if _path_met(path, ground) == 0:
             return 0
         path[k] = before
@@ -609,7 +618,7 @@ def _blocked_node(rng, path, ground):
         count += obstacles_met(ground, path[k], path[k + 1]) > 0
     if count == 0:
         return 0
-    chosen = rng.integers(0, count)
+    chosen = _below(rng, count)
     for k in range(1, len(path) - 1):
         if obstacles_met(ground, path[k], path[k + 1]) > 0:
             if chosen == 0:
@@ -637,7 +646,7 @@ def _best_neighbour(path, k, ground, rules):
     return count
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _cost_through(path, k, cell, ground, penalty):
     """Energy and penalty of the two edges that node k would have in a cell."""
     met = obstacles_met(ground, path[k - 1], cell) + obstacles_met(ground, cell, path[k + 1])
@@ -662,10 +671,10 @@ def _ref21(rng, path, ground, same_signs):
     """Replace a random inner node by the first of its free neighbours, in random order, that lies in the direction of the target and whose
     two edges are free (reference 21).
     """
-    k = rng.integers(1, len(path) - 1)
+    k = 1 + _below(rng, len(path) - 2)
     neighbours, count = _free_neighbours(path[k], ground)
     for tried in range(count):
-        chosen = rng.integers(tried, count)
+        chosen = tried + _below(rng, count - tried)
         neighbours[tried], neighbours[chosen] = neighbours[chosen], neighbours[tried]
         cell = neighbours[tried]
         if _towards(path[0], cell, path[-1], ground.occupied.shape[1], same_signs):
