@@ -9,7 +9,7 @@ from bezierplan.exact.region import region
 from bezierplan.study import alternatives, job, methods_changed, problems_job, with_alternative
 
 STUDIES = study_file.load(study_file.read_config({}))
-# What a run finds, as opposed to the settings that it was given.
+# What a run finds beside its extra columns, as opposed to the settings that it was given.
 FOUND = ("objective", "history", "path_points", "evaluations")
 REPEATS = 3
 
@@ -25,7 +25,7 @@ def found(study, experiment, method):
         for repeat in range(REPEATS):
             plan = running.run(described, condition, repeat, made[name])
             row = running.row(described, condition, repeat, plan, blocked)
-            rows.append({key: row[key] for key in FOUND})
+            rows.append({key: row[key] for key in (*FOUND, *plan.extra)})
     return json.dumps(rows)
 
 

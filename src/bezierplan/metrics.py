@@ -303,7 +303,7 @@ METRICS: dict[str, Metric] = {
     "infeasible": Metric("-", "whether the final path is infeasible, by the planner's own test", False),
     "feasible_last": Metric("-", "share of feasible paths in the last population", False),
     "made_infeasible": Metric("-", "share of the mutated feasible paths that mutation made infeasible", False),
-    "node_diversity": Metric("-", "chance that an inner node of a path is no node of another of its population, mean over generations", False),
+    "node_diversity": Metric("-", "mean over generations of the chance that a path's inner node is no node of another", False),
     "max_curvature": Metric(
         "1/u",
         f"largest absolute curvature over {CURVATURE_SAMPLES} samples, corners between pieces left out",

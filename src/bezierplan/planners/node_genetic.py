@@ -123,7 +123,7 @@ def plan(
     optimal_within: Annotated[float, Range(0)],
     friction: Annotated[float, Range(0)],
 ) -> Plan:
-    """Path of least energy from cell to cell; its energy is its length, plus its climbs divided by the friction (meledje, Sections 2 and 3).
+    """Path of least energy from cell to cell: its length, plus its climbs divided by the friction (meledje, Sections 2 and 3).
 
     mutation: the operator, once a path with mutation_probability. stall: generations without improvement after which the search stops,
     before `generations` are done. initial: the first population, of feasible walks from cell to visible cell; of random paths, of which
@@ -276,8 +276,8 @@ def _distance(ground, one, other):
 def _passed(ground, one, other):
     """Occupied cells that an edge meets, and the sum of its climbs from cell to cell.
 
-    The edge crosses its next upright grid line after (2 i + 1) / (2 across) of its way, its next level one after (2 j + 1) / (2 up); through
-    a corner it leads from cell to cell without a third.
+    The edge crosses its next upright grid line after (2 i + 1) / (2 across) of its way, its next level one after (2 j + 1) / (2 up);
+    through a corner it leads from cell to cell without a third.
     """
     columns = ground.occupied.shape[1]
     row, column = one // columns, one % columns
@@ -633,7 +633,6 @@ def _best_neighbour(path, k, ground, rules):
 
     Of two that are equally good, the first from the lower left, row by row. Only the two edges of the node change.
     """
-    columns = ground.occupied.shape[1]
     neighbours, count = _free_neighbours(path[k], ground)
     best, least = path[k], np.inf
     if rules.keep_better:
@@ -677,10 +676,10 @@ def _ref21(rng, path, ground, same_signs):
         chosen = tried + _below(rng, count - tried)
         neighbours[tried], neighbours[chosen] = neighbours[chosen], neighbours[tried]
         cell = neighbours[tried]
-        if _towards(path[0], cell, path[-1], ground.occupied.shape[1], same_signs):
-            if obstacles_met(ground, path[k - 1], cell) == 0 and obstacles_met(ground, cell, path[k + 1]) == 0:
-                path[k] = cell
-                return tried + 1
+        accepted = _towards(path[0], cell, path[-1], ground.occupied.shape[1], same_signs)
+        if accepted and obstacles_met(ground, path[k - 1], cell) == 0 and obstacles_met(ground, cell, path[k + 1]) == 0:
+            path[k] = cell
+            return tried + 1
     return count
 
 

@@ -1,0 +1,515 @@
+"""The genetic algorithm over nodes (meledje): its edges against an independent test, its optimum, its operators, degenerate cases."""
+
+import itertools
+import math
+from pathlib import Path as File
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import dijkstra
+
+from bezierplan import curves
+from bezierplan.exact.checker import check
+from bezierplan.exact.region import region
+from bezierplan.planners import node_genetic
+from bezierplan.problem import Problem, planner_settings, setting_fault
+from bezierplan.workspaces import files
+from bezierplan.workspaces.grid import Grid, from_lines
+
+MAPS = File(__file__).parents[1] / "config" / "studies" / "meledje" / "workspaces"
+# Least energies from the lower left to the upper right corner, by a program of its own.
+OPTIMA = {"env1_initial": 26.268314, "env1_modified": 28.946764, "env2_initial": 35.548689, "env2_modified": 32.194010}
+SETTINGS = {
+    "mutation": "proposed",
+    "population": 20,
+    "generations": 30,
+    "stall": 20,
+    "initial": "feasible",
+    "most_nodes": 12,
+    "selection": "linear_rank",
+    "crossover_probability": 1.0,
+    "cut": "same",
+    "mutation_probability": 0.3,
+    "without_obstacle": "any_node",
+    "keep_better": False,
+    "direction": "forward",
+    "random_node": "free",
+    "penalty": 15.0,
+    "elitism": 0,
+    "result": "last_generation",
+    "optimal_within": 1e-6,
+    "friction": 1.0,
+}
+OPERATORS = ("random", "random_repair", "ref12", "ref21", "proposed")
+BLOCK = from_lines(["......", "..##..", "..##..", "......"], 1.0, "cell")
+
+
+def grid_of(name, cell=1.0):
+    return files.load({"kind": "grid", "file": f"{name}.txt", "cell": cell, "unit": "cell"}, MAPS)
+
+
+def problem(grid, start=0, target=None):
+    return Problem("test", grid, grid.centre(start), grid.centre(grid.occupied.size - 1 if target is None else target))
+
+
+def plan(where, seed=0, **changes):
+    return node_genetic.plan(where, np.random.default_rng(seed), **(SETTINGS | changes))
+
+
+ENVIRONMENTS = {name: problem(grid_of(name)) for name in OPTIMA}
+
+
+def random_grid(seed, shape=(9, 12), share=0.3):
+    occupied = np.random.default_rng(seed).random(shape) < share
+    occupied[0, 0] = occupied[-1, -1] = False
+    return Grid(occupied, 1.0, "cell")
+
+
+def cells_of(path, grid):
+    """Numbers of the cells in whose centres a path has its points."""
+    column, row = np.floor(path.points / grid.cell).astype(int).T
+    return row * grid.occupied.shape[1] + column
+
+
+def meets(one, other, cell, columns):
+    """Whether the edge between two cells passes through the interior of a cell, by corners on both sides, in half cells."""
+    (x0, y0), (x1, y1) = ((2 * (c % columns) + 1, 2 * (c // columns) + 1) for c in (one, other))
+    left, low = 2 * (cell % columns), 2 * (cell // columns)
+    if not (min(x0, x1) < left + 2 and max(x0, x1) > left and min(y0, y1) < low + 2 and max(y0, y1) > low):
+        return False
+    if one == other:
+        return one == cell
+    sides = [(x1 - x0) * (y - y0) - (y1 - y0) * (x - x0) for x, y in itertools.product((left, left + 2), (low, low + 2))]
+    return min(sides) < 0 < max(sides)
+
+
+def met(one, other, grid):
+    occupied = np.flatnonzero(grid.occupied).tolist()
+    return sum(meets(one, other, cell, grid.occupied.shape[1]) for cell in occupied)
+
+
+def length(one, other, columns):
+    return math.dist(divmod(one, columns), divmod(other, columns))
+
+
+# Edges
+
+
+@given(st.integers(0, 10_000), st.tuples(st.integers(1, 9), st.integers(1, 9)))
+@settings(max_examples=40, deadline=None)
+def test_edges_meet_the_cells_whose_interior_they_pass(seed, shape):
+    grid = Grid(np.random.default_rng(seed).random(shape) < 0.4, 1.0, "cell")
+    ground = node_genetic.ground_of(grid, 1.0)
+    for one, other in np.random.default_rng(seed).integers(0, grid.occupied.size, (40, 2)).tolist():
+        assert node_genetic.obstacles_met(ground, one, other) == met(one, other, grid)
+        assert node_genetic.edge_energy(ground, one, other) == length(one, other, shape[1])
+
+
+def test_an_edge_between_two_cells_that_touch_at_a_corner_is_free():
+    ground = node_genetic.ground_of(from_lines([".#.", "#..", "..."], 1.0, "cell"), 1.0)
+    assert node_genetic.obstacles_met(ground, 3, 7) == 2
+    assert node_genetic.obstacles_met(ground, 4, 6) == 0
+
+
+@pytest.mark.parametrize("mutation", OPERATORS)
+def test_edges_measured_on_demand_give_the_same_bits(mutation, monkeypatch):
+    where = ENVIRONMENTS["env2_modified"]
+    with_table = plan(where, mutation=mutation)
+    monkeypatch.setattr(node_genetic, "TABLE_CELLS", 0)
+    assert node_genetic.ground_of(where.workspace, 1.0).met.size == 0
+    on_demand = plan(where, mutation=mutation)
+    assert on_demand.history.tobytes() == with_table.history.tobytes()
+    assert on_demand.path.points.tobytes() == with_table.path.points.tobytes()
+    assert on_demand.extra == pytest.approx(with_table.extra, abs=0, nan_ok=True)
+
+
+# The optimum
+
+
+def reference_optimum(grid, start, target):
+    """Length of the shortest path over free cells, by Dijkstra's algorithm over all pairs that see each other."""
+    cells, columns = grid.occupied.size, grid.occupied.shape[1]
+    free = np.flatnonzero(~grid.occupied).tolist()
+    pairs = [(one, other) for one, other in itertools.combinations(free, 2) if met(one, other, grid) == 0]
+    if not pairs:
+        return math.inf
+    one, other = np.array(pairs).T
+    lengths = [length(a, b, columns) for a, b in pairs]
+    return dijkstra(csr_array((lengths, (one, other)), shape=(cells, cells)), directed=False, indices=start)[target]
+
+
+@pytest.mark.parametrize("name", OPTIMA)
+def test_optimum_of_the_four_maps(name):
+    grid = ENVIRONMENTS[name].workspace
+    energy, path = node_genetic.cheapest(node_genetic.ground_of(grid, 1.0), 0, 255)
+    assert energy == pytest.approx(OPTIMA[name], abs=1e-6)
+    assert math.fsum(length(a, b, 16) for a, b in itertools.pairwise(path.tolist())) == pytest.approx(energy)
+    assert all(met(a, b, grid) == 0 for a, b in itertools.pairwise(path.tolist()))
+    assert plan(ENVIRONMENTS[name], generations=0).extra["optimum"] == energy
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_optimum_of_random_maps(seed):
+    grid = random_grid(seed, (6, 7), 0.4)
+    energy, _ = node_genetic.cheapest(node_genetic.ground_of(grid, 1.0), 0, grid.occupied.size - 1)
+    assert energy == pytest.approx(reference_optimum(grid, 0, grid.occupied.size - 1))
+
+
+# Whole runs
+
+
+@pytest.mark.parametrize(("mutation", "name"), list(itertools.product(OPERATORS, OPTIMA)))
+def test_objective_claim_and_class_of_the_result(mutation, name):
+    grid, columns = ENVIRONMENTS[name].workspace, 16
+    for seed in range(4):
+        found = plan(ENVIRONMENTS[name], seed, mutation=mutation, generations=12)
+        edges = list(itertools.pairwise(cells_of(found.path, grid).tolist()))
+        obstacles = sum(met(a, b, grid) for a, b in edges)
+        assert found.objective == pytest.approx(math.fsum(length(a, b, columns) for a, b in edges) + 15 * obstacles)
+        assert found.claimed_feasible == (obstacles == 0) == check(curves.bezier_pieces(found.path), region(grid)).feasible
+        classes = [found.extra[key] for key in ("optimal", "near_optimal", "infeasible")]
+        assert sum(classes) == 1
+        assert found.extra["infeasible"] == (obstacles > 0)
+        assert found.extra["optimal"] == (obstacles == 0 and found.objective < OPTIMA[name] + 1e-5)
+        assert found.history[-1] <= found.objective
+        assert len(edges) <= SETTINGS["most_nodes"] + 1
+
+
+@pytest.mark.parametrize("name", OPTIMA)
+def test_optimum_is_found_and_never_beaten(name):
+    found = [plan(ENVIRONMENTS[name], seed, population=80, generations=100) for seed in range(30)]
+    assert any(each.extra["optimal"] for each in found)
+    assert all(each.objective > OPTIMA[name] - 1e-5 for each in found if each.claimed_feasible)
+
+
+def test_first_populations_do_not_depend_on_the_operator():
+    first = {plan(ENVIRONMENTS["env1_initial"], 3, mutation=mutation).history[0] for mutation in OPERATORS}
+    assert len(first) == 1
+
+
+def test_lengths_and_penalties_are_in_units():
+    small, large = (plan(problem(grid_of("env1_initial", cell)), 5, penalty=15.0 * cell) for cell in (1.0, 10.0))
+    assert large.objective == pytest.approx(10 * small.objective)
+    assert large.path.points == pytest.approx(10 * small.path.points)
+    assert large.extra["optimum"] == pytest.approx(10 * small.extra["optimum"])
+
+
+def test_search_stops_after_generations_without_improvement():
+    for seed in range(5):
+        found = plan(ENVIRONMENTS["env1_initial"], seed, generations=100, stall=6)
+        improved = int((found.history <= found.history[-1]).argmax())
+        assert found.stop == "stall"
+        assert len(found.history) == improved + 7
+    assert plan(ENVIRONMENTS["env1_initial"], generations=5, stall=100).stop == "generations"
+
+
+def test_evaluations_are_the_population_of_each_generation_and_the_neighbours_tried():
+    where = ENVIRONMENTS["env1_initial"]
+    assert plan(where, mutation="random", generations=7, stall=100).evaluations == 20 * 8
+    tried = plan(where, mutation="ref12", generations=7, stall=100, mutation_probability=1.0).evaluations - 20 * 8
+    assert 20 * 7 * 2 < tried <= 20 * 7 * 8
+
+
+def test_the_best_path_so_far_is_kept_if_wanted():
+    where = ENVIRONMENTS["env2_initial"]
+    runs = [plan(where, seed, mutation="random") for seed in range(10)]
+    assert any(found.objective > found.history[-1] for found in runs)
+    for seed in range(10):
+        kept, best = plan(where, seed, mutation="random", elitism=1), plan(where, seed, mutation="random", result="best_so_far")
+        assert kept.objective == pytest.approx(kept.history[-1], abs=1e-9)
+        assert best.objective == best.history[-1] == runs[seed].history[-1]
+
+
+@pytest.mark.parametrize("selection", ["linear_rank", "best_half", "tournament"])
+def test_only_independent_cuts_make_longer_paths(selection):
+    few = {"initial": "unrestricted", "most_nodes": 2, "generations": 2, "population": 2, "selection": selection}
+    most = {
+        cut: max(len(plan(ENVIRONMENTS["env2_initial"], seed, cut=cut, **few).path.points) for seed in range(100))
+        for cut in ("same", "independent")
+    }
+    assert most["same"] == 4 < most["independent"]
+
+
+def test_without_a_penalty_infeasible_results_are_told():
+    found = [plan(ENVIRONMENTS["env1_initial"], seed, penalty=0.0, generations=100) for seed in range(5)]
+    assert all(each.extra["infeasible"] and not each.claimed_feasible for each in found)
+    assert all(each.objective < OPTIMA["env1_initial"] for each in found)
+
+
+# First populations
+
+
+def first_paths(grid, initial="feasible", count=300, most_nodes=12, seed=0):
+    """Random first paths, as lists of cells."""
+    ground = node_genetic.ground_of(grid, 1.0)
+    rules = node_genetic._Rules(4, 1, 1, ("feasible", "rejection", "unrestricted").index(initial), *[0] * 11)
+    free = np.setdiff1d(np.flatnonzero(~grid.occupied), [0, grid.occupied.size - 1])
+    rng, paths = np.random.default_rng(seed), []
+    for _ in range(count):
+        path = np.zeros(most_nodes + 2, dtype=np.int64)
+        paths.append(path[: node_genetic._first_path(rng, path, grid.occupied.size - 1, free, ground, rules)].tolist())
+    return paths
+
+
+@pytest.mark.parametrize("name", OPTIMA)
+def test_first_paths_are_feasible_walks(name):
+    grid = ENVIRONMENTS[name].workspace
+    for path in first_paths(grid, count=50):
+        assert path[0] == 0
+        assert path[-1] == 255
+        assert len(set(path)) == len(path) <= 14
+        assert all(met(a, b, grid) == 0 for a, b in itertools.pairwise(path))
+        assert all(met(cell, 255, grid) > 0 for cell in path[:-2])
+
+
+def test_first_step_of_a_walk_is_uniform_among_visible_cells():
+    visible = [cell for cell in range(1, 23) if not BLOCK.occupied.flat[cell] and met(0, cell, BLOCK) == 0]
+    steps = [path[1] for path in first_paths(BLOCK, count=20_000)]
+    counts = np.array([steps.count(cell) for cell in visible])
+    assert counts.sum() == len(steps)
+    expected = len(steps) / len(visible)
+    assert ((counts - expected) ** 2 / expected).sum() < 2 * len(visible) + 20
+
+
+def test_the_last_cells_that_are_left_are_found():
+    """From the start of a corridor one cell is visible beside 300 that are not."""
+    occupied = np.ones((20, 20), dtype=bool)
+    occupied[0, :3] = occupied[:3, 2] = occupied[2, 2:] = occupied[2:, 5:] = False
+    grid = Grid(occupied, 1.0, "cell")
+    paths = first_paths(grid, count=30)
+    assert {path[1] for path in paths} == {1, 2}
+
+
+def test_walks_that_see_no_new_cell_begin_again():
+    """A dead end of a single cell beside the start."""
+    grid = from_lines(["##..", "##.#", "#..#", "..##"], 1.0, "cell")
+    for path in first_paths(grid, count=100):
+        assert path[-1] == 15
+
+
+@pytest.mark.parametrize("initial", ["rejection", "unrestricted"])
+def test_random_first_paths(initial):
+    paths = first_paths(BLOCK, initial, count=400)
+    free = sum(sum(met(a, b, BLOCK) for a, b in itertools.pairwise(path)) == 0 for path in paths)
+    assert (free == 400) == (initial == "rejection")
+    assert {len(path) - 2 for path in paths} >= set(range(1, 4))
+    assert max(map(len, paths)) <= 14
+
+
+# Operators
+
+
+def mutated(path, grid, mutation, seed=0, **changes):
+    """A path after one mutation, and how many paths were evaluated."""
+    words = {"any_node": True, "keep_better": False, "same_signs": False, "penalty": 15.0} | changes
+    rules = node_genetic._Rules(OPERATORS.index(mutation), 1, 1, 0, 12, 0, 1.0, True, 1.0, **words, elitism=0, best_so_far=False)
+    path = np.array(path)
+    drawn = np.setdiff1d(np.flatnonzero(~grid.occupied), [path[0], path[-1]])
+    tried = node_genetic._mutate(np.random.default_rng(seed), path, drawn, node_genetic.ground_of(grid, 1.0), rules)
+    return path.tolist(), tried
+
+
+def cost(path, grid):
+    return sum(length(a, b, grid.occupied.shape[1]) + 15 * met(a, b, grid) for a, b in itertools.pairwise(path))
+
+
+def around(cell, grid):
+    """Free neighbours of a cell, row by row from the lower left."""
+    rows, columns = grid.occupied.shape
+    found = []
+    for up, across in itertools.product((-1, 0, 1), repeat=2):
+        row, column = cell // columns + up, cell % columns + across
+        if (up, across) != (0, 0) and 0 <= row < rows and 0 <= column < columns and not grid.occupied[row, column]:
+            found.append(row * columns + column)
+    return found
+
+
+def random_paths(grid, count=60, inner=4):
+    free = np.flatnonzero(~grid.occupied)
+    for path in np.random.default_rng(1).choice(free, (count, inner)).tolist():
+        yield [0, *path, grid.occupied.size - 1]
+
+
+def changed(before, after):
+    return [k for k in range(len(before)) if before[k] != after[k]]
+
+
+@pytest.mark.parametrize("mutation", OPERATORS)
+def test_an_operator_changes_at_most_one_inner_node_to_a_free_cell(mutation):
+    grid = random_grid(2)
+    moved = 0
+    for seed, path in enumerate(random_paths(grid)):
+        after, _ = mutated(path, grid, mutation, seed)
+        places = changed(path, after)
+        assert len(places) <= 1
+        assert {0, len(path) - 1}.isdisjoint(places)
+        assert not grid.occupied.flat[after].any()
+        moved += len(places)
+    assert moved > 0 or mutation == "random_repair"
+
+
+@pytest.mark.parametrize(("mutation", "keep_better"), list(itertools.product(["ref12", "proposed"], [False, True])))
+def test_the_best_neighbour_takes_the_place_of_a_node(mutation, keep_better):
+    grid = random_grid(3)
+    kept = 0
+    for seed, path in enumerate(random_paths(grid)):
+        after, tried = mutated(path, grid, mutation, seed, keep_better=keep_better)
+        if after == path:
+            kept += 1
+            assert keep_better or any(not around(node, grid) for node in path[1:-1])
+            continue
+        (k,) = changed(path, after)
+        costs = [cost([*path[:k], cell, *path[k + 1 :]], grid) for cell in around(path[k], grid)]
+        assert tried == len(costs)
+        assert cost(after, grid) == pytest.approx(min(costs))
+        assert after[k] == around(path[k], grid)[int(np.argmax(np.array(costs) < min(costs) + 1e-9))]
+        assert not keep_better or cost(after, grid) < cost(path, grid)
+    assert (kept > 0) == keep_better
+
+
+def test_the_proposed_mutation_changes_a_node_before_an_obstacle():
+    grid = random_grid(4)
+    seen = 0
+    for seed, path in enumerate(random_paths(grid)):
+        blocked = [k for k in range(1, len(path) - 1) if met(path[k], path[k + 1], grid) > 0]
+        after, tried = mutated(path, grid, "proposed", seed, any_node=False)
+        assert (tried > 0) <= bool(blocked)
+        if changed(path, after):
+            assert changed(path, after)[0] in blocked
+            seen += 1
+    assert seen > 20
+
+
+def test_a_feasible_path_is_changed_as_by_reference_12_or_not_at_all():
+    path = [0, 1, 4, 23]
+    assert sum(met(a, b, BLOCK) for a, b in itertools.pairwise(path)) == 0
+    for seed in range(20):
+        assert mutated(path, BLOCK, "proposed", seed, any_node=False) == (path, 0)
+        assert mutated(path, BLOCK, "proposed", seed) == mutated(path, BLOCK, "ref12", seed)
+
+
+@pytest.mark.parametrize("same_signs", [False, True])
+def test_reference_21_steps_towards_the_target_along_free_edges(same_signs):
+    grid = random_grid(5, share=0.15)
+    columns = grid.occupied.shape[1]
+    target = np.array(divmod(grid.occupied.size - 1, columns))
+    moved = 0
+    for seed, path in enumerate(random_paths(grid)):
+        after, _ = mutated(path, grid, "ref21", seed, same_signs=same_signs)
+        for k in changed(path, after):
+            moved += 1
+            way = target - divmod(after[k], columns)
+            assert (np.sign(way) == 1).all() if same_signs else way @ target > 0
+            assert after[k] in around(path[k], grid)
+            assert met(after[k - 1], after[k], grid) == met(after[k], after[k + 1], grid) == 0
+    assert moved > 3
+
+
+def test_reference_21_leaves_a_path_without_such_a_neighbour():
+    walls = from_lines(["..#.", "####", ".#.."], 1.0, "cell")
+    assert mutated([0, 0, 11], walls, "ref21") == ([0, 0, 11], 0)
+
+
+def test_repaired_random_mutation_stays_feasible():
+    path = [0, 1, 4, 23]
+    after = [mutated(path, BLOCK, "random_repair", seed)[0] for seed in range(50)]
+    assert all(sum(met(a, b, BLOCK) for a, b in itertools.pairwise(each)) == 0 for each in after)
+    assert len(set(map(tuple, after))) > 5
+    spoiled = [mutated(path, BLOCK, "random", seed)[0] for seed in range(50)]
+    assert any(sum(met(a, b, BLOCK) for a, b in itertools.pairwise(each)) > 0 for each in spoiled)
+
+
+def test_random_mutation_draws_occupied_cells_if_it_may():
+    shares = {
+        drawn: plan(ENVIRONMENTS["env1_initial"], 1, mutation="random", random_node=drawn).extra["made_infeasible"]
+        for drawn in ("free", "any")
+    }
+    assert shares["free"] != shares["any"]
+
+
+def test_children_of_a_path_of_two_nodes_change_places():
+    one, other = np.array([0, 23, 0, 0]), np.array([0, 5, 7, 23])
+    child = np.zeros(4, dtype=np.int64)
+    assert node_genetic._join(one, 1, other, 1, 4, child) == 4
+    assert child.tolist() == [0, 5, 7, 23]
+    assert node_genetic._join(other, 1, one, 1, 2, child) == 2
+    assert child[:2].tolist() == [0, 23]
+
+
+# Measures
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_node_diversity_is_the_chance_that_a_node_is_foreign(seed):
+    rng = np.random.default_rng(seed)
+    lengths = rng.integers(2, 8, 12)
+    paths = rng.integers(0, 15, (12, 8))
+    inner = [set(path[1 : n - 1].tolist()) for path, n in zip(paths, lengths)]
+    foreign = [node not in other for i, nodes in enumerate(inner) for node in nodes for j, other in enumerate(inner) if j != i]
+    assert node_genetic.node_diversity(paths, lengths, 15) == pytest.approx(np.mean(foreign))
+
+
+def test_shares_of_feasible_paths():
+    where = ENVIRONMENTS["env1_initial"]
+    assert plan(where, generations=0).extra["feasible_last"] == 1.0
+    assert math.isnan(plan(where, generations=0).extra["made_infeasible"])
+    assert plan(where, mutation="random", generations=10).extra["made_infeasible"] > 0.5
+    assert plan(where, mutation="random_repair", generations=10).extra["made_infeasible"] == 0.0
+
+
+# Degenerate and bad input
+
+
+def test_a_target_in_sight_needs_no_search():
+    found = plan(problem(from_lines(["....", "...."], 1.0, "cell")))
+    assert found.stop == "direct"
+    assert found.objective == pytest.approx(math.sqrt(10))
+    assert found.extra["optimal"]
+    assert len(found.history) == found.evaluations == 1
+
+
+def test_start_is_target():
+    found = plan(problem(BLOCK, 3, 3))
+    assert found.objective == 0
+    assert found.extra["optimal"]
+
+
+@pytest.mark.parametrize("lines", [["..#.", "####", "...."], [".#.", "###", ".#."]])
+def test_no_way(lines):
+    found = plan(problem(from_lines(lines, 1.0, "cell")))
+    assert found.path is None
+    assert found.stop == "no path"
+    assert found.extra["infeasible"]
+    assert not found.claimed_feasible
+
+
+def test_a_target_out_of_reach_of_so_few_nodes():
+    where = problem(from_lines(["...", ".#.", ".#.", ".#."], 1.0, "cell"), 0, 2)
+    found = plan(where, most_nodes=1)
+    assert found.path is None
+    assert found.stop == "no first population"
+    assert plan(where, most_nodes=2).claimed_feasible
+
+
+def test_starts_between_centres_are_refused():
+    with pytest.raises(ValueError, match=r"start: \(0.7, 0.5\).*centre of a cell.*\(0.5, 0.5\)"):
+        plan(Problem("test", BLOCK, (0.7, 0.5), (5.5, 3.5)))
+
+
+@pytest.mark.parametrize(("setting", "value", "wanted"), [("population", 61, "even number"), ("friction", 0.0, "above 0")])
+def test_settings_that_do_not_fit(setting, value, wanted):
+    with pytest.raises(ValueError, match=f"{setting}: .*{wanted}"):
+        node_genetic.check(SETTINGS | {setting: value})
+
+
+@pytest.mark.parametrize(
+    ("setting", "value"),
+    [("mutation_probability", 1.2), ("crossover_probability", -0.1), ("penalty", -1.0), ("mutation", "ref13"), ("most_nodes", 0)],
+)
+def test_settings_out_of_range(setting, value):
+    annotation = planner_settings(node_genetic)[setting]
+    assert setting_fault(annotation, SETTINGS[setting]) is None
+    assert setting_fault(annotation, value) is not None
