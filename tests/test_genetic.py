@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from bezierplan.search.genetic import complement_bit, roulette, swap_tails
+from bezierplan.search.genetic import complement_bit, redraw_gene, roulette, swap_tails
 
 BITS = 8
 chromosomes = st.lists(st.integers(0, 255), min_size=6, max_size=6).map(lambda genes: np.array(genes, dtype=np.int64))
@@ -49,12 +49,23 @@ def test_roulette_draws_in_proportion_to_fitness():
     assert stats.chisquare(np.bincount(drawn), 100_000 * fitness / fitness.sum()).pvalue > 1e-3
 
 
-@pytest.mark.parametrize("operator", [roulette, swap_tails, complement_bit])
+def test_redrawn_genes_are_uniform_over_genes_and_alleles():
+    rng, alleles, counts = np.random.default_rng(0), np.array([7, 9, 300]), np.zeros((4, 3))
+    for _ in range(6000):
+        chromosome = np.full(4, -1)
+        redraw_gene(rng, chromosome, alleles)
+        (gene,) = np.flatnonzero(chromosome != -1)
+        counts[gene] += alleles == chromosome[gene]
+    assert stats.chisquare(counts.ravel()).pvalue > 1e-3
+
+
+@pytest.mark.parametrize("operator", [roulette, swap_tails, complement_bit, redraw_gene])
 def test_kernels_agree_with_their_plain_python(operator):
     arguments = {
         roulette: lambda: (np.random.default_rng(3), np.array([0.5, 1.5, 0.1]), 20),
         swap_tails: lambda: (np.array([1, 2, 3]), np.array([250, 251, 252]), 11, BITS),
         complement_bit: lambda: (np.array([1, 2, 3]), 17, BITS),
+        redraw_gene: lambda: (np.random.default_rng(4), np.array([1, 2, 3]), np.array([10, 20, 30])),
     }[operator]
     compiled, plain = arguments(), arguments()
     results = operator(*compiled), operator.py_func(*plain)

@@ -34,3 +34,9 @@ def swap_tails(one: np.ndarray, other: np.ndarray, cut: int, bits: int) -> None:
 def complement_bit(chromosome: np.ndarray, position: int, bits: int) -> None:
     """Complement, in place, one bit of a chromosome, counted from its beginning (song2016, Section III-E: mutation)."""
     chromosome[position // bits] ^= 1 << (bits - 1 - position % bits)
+
+
+@njit(cache=True)
+def redraw_gene(rng: np.random.Generator, chromosome: np.ndarray, alleles: np.ndarray) -> None:
+    """Replace, in place, one random gene of a chromosome by a random one of some alleles, which may be the gene that it was."""
+    chromosome[rng.integers(0, len(chromosome))] = alleles[rng.integers(0, len(alleles))]
