@@ -131,3 +131,62 @@ def test_units():
     assert metrics.unit("length", "m") == "m"
     assert metrics.unit("max_curvature", "cell") == "1/cell"
     assert metrics.unit("evaluations", "m") == "-"
+
+
+CORNERED = [(0, 0), (5, 5), (15, 5), (15, 5), (25, 15), (35, 25)]
+
+
+@pytest.mark.parametrize(
+    ("name", "of_polyline", "of_curve"),
+    [
+        ("heading_max", math.pi / 4, None),
+        ("turning", math.pi / 2, math.pi / 2),
+        ("corners", 2, 0),
+        ("length_over_polygon", 1, None),
+    ],
+)
+def test_headings(name, of_polyline, of_curve):
+    """A curve turns from its first to its last leg, here without an inflection; it has no corner, and is shorter than its polygon."""
+    assert value(name, "polyline", CORNERED) == pytest.approx(of_polyline)
+    quarter = [(5, 5), (5, 35), (35, 35)]
+    if of_curve is not None:
+        assert value(name, "bezier", quarter) == pytest.approx(of_curve, abs=2e-3)
+    else:
+        assert value(name, "bezier", quarter) < {"heading_max": 0.01, "length_over_polygon": 0.9}[name]
+
+
+def test_a_point_and_a_line_do_not_turn():
+    for points in ([(5, 5), (5, 5)], [(5, 5), (15, 15), (35, 35)]):
+        found = [value(name, "polyline", points) for name in ("heading_max", "turning", "corners", "length_over_polygon")]
+        assert found == pytest.approx([0, 0, 0, 1])
+
+
+def test_pieces_of_a_smooth_curve_have_no_corners():
+    assert value("corners", "piecewise_quadratic", [(5, 5), (5, 35), (35, 35), (35, 5)]) == 0
+    # A repeated control point stops the curve, which then turns.
+    assert value("corners", "piecewise_quadratic", [(5, 5), (5, 35), (5, 35), (35, 35)]) == 1
+
+
+@pytest.mark.parametrize(
+    ("points", "clearance"),
+    [
+        ([(0, 0), (0, 40)], 10.0),
+        ([(0, 0), (5, 5), (5, 35)], 5.0),
+        ([(0, 40), (40, 40)], 20.0),
+        ([(0, 0), (40, 0)], 10.0),
+        ([(0, 30), (30, 0)], 0.0),
+        ([(25, 35), (35, 25)], 10 * math.sqrt(2)),
+    ],
+)
+def test_clearance_to_occupied_cells_does_not_count_the_border(points, clearance):
+    assert value("obstacle_clearance", "polyline", points) == pytest.approx(clearance, abs=1e-8)
+
+
+def test_clearance_in_an_empty_grid_is_infinite():
+    empty = {"across": PROBLEMS["across"]._replace(workspace=from_lines(["..", ".."], 20.0, "unit"))}
+    assert metrics.values(runs([("polyline", [(0, 0), (40, 40)])]), "obstacle_clearance", empty)[0] == math.inf
+
+
+def test_excess_over_the_reference():
+    table = runs(length=[31.0, 30.5], reference=[30.25, np.nan])
+    assert metrics.values(table, "excess_reference", PROBLEMS).to_list() == pytest.approx([0.75, math.nan], nan_ok=True)

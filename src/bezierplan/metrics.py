@@ -6,6 +6,7 @@ is also read where only the names matter, so it imports pandas, and what draws c
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -27,6 +28,10 @@ CURVATURE_SAMPLES = 601
 FINE_SAMPLES = 4001
 # Samples of a path by which its way round the circles is told.
 CLASS_SAMPLES = 2001
+# Samples of a curved piece between which its heading is compared (ma2020: 2,000 chords).
+HEADING_SAMPLES = 2001
+# A smaller change of heading, in radians, is no corner.
+CORNER = 1e-6
 
 
 class Metric(NamedTuple):
@@ -94,6 +99,11 @@ def _outlier(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
 def _gap_reference(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     """Length over that of the best known path of the same kind, minus 1 (n,); not a number where none is known."""
     return runs["length"] / runs["reference"] - 1
+
+
+def _excess_reference(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Length minus that of the best known path of the same kind (n,); not a number where none is known."""
+    return runs["length"] - runs["reference"]
 
 
 def _held_history(runs: pd.DataFrame) -> np.ndarray:
@@ -221,6 +231,70 @@ def _distinct_points(path: Path) -> int:
     return len(set(map(tuple, path.points.tolist())))
 
 
+def _steps(points: np.ndarray) -> np.ndarray:
+    """Steps (m, 2) between points (n, 2), those of length 0 left out."""
+    steps = np.diff(points, axis=0)
+    return steps[np.hypot(*steps.T) > 0]
+
+
+def _headings(steps: np.ndarray) -> np.ndarray:
+    """Absolute changes of heading (n - 1,), in radians, between steps (n, 2)."""
+    cross = steps[:-1, 0] * steps[1:, 1] - steps[:-1, 1] * steps[1:, 0]
+    return np.abs(np.arctan2(cross, (steps[:-1] * steps[1:]).sum(axis=1)))
+
+
+def _path_headings(path: Path) -> np.ndarray:
+    """Changes of heading along a path; a curve is taken as chords between samples."""
+    from bezierplan import curves
+
+    if path.curve == "polyline":
+        return _headings(_steps(path.points))
+    return _headings(_steps(curves.sample_matrix(path.curve, len(path.points), HEADING_SAMPLES) @ path.points))
+
+
+def _heading_max(path: Path) -> float:
+    return float(_path_headings(path).max(initial=0.0))
+
+
+def _turning(path: Path) -> float:
+    return float(_path_headings(path).sum())
+
+
+def _corners(path: Path) -> int:
+    """Joints of a path's pieces at which its heading changes."""
+    from bezierplan import curves
+
+    legs = [steps for steps in map(_steps, curves.bezier_pieces(path)) if len(steps)]
+    return sum(int(_headings(np.array([one[-1], other[0]]))[0] > CORNER) for one, other in itertools.pairwise(legs))
+
+
+def _length_over_polygon(path: Path) -> float:
+    from bezierplan import curves
+
+    polygon = np.hypot(*np.diff(path.points, axis=0).T).sum()
+    return curves.length(path) / polygon if polygon else 1.0
+
+
+def _obstacle_clearance(runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
+    """Least distance (n,) of a path in a grid to its occupied cells; infinite without any.
+
+    The checker's clearance, which counts the border, in the same grid with so many free cells around it that the border is farthest.
+    """
+    from bezierplan import curves
+    from bezierplan.exact import checker
+    from bezierplan.exact.region import region
+
+    wide, found = {}, []
+    for path, name in zip(_paths(runs), runs["problem"]):
+        grid = problems[name].workspace
+        margin = sum(grid.occupied.shape)
+        if name not in wide:
+            wide[name] = region(Grid(np.pad(grid.occupied, margin), grid.cell, grid.unit))
+        moved = path._replace(points=(grid.in_cells(path.points) + margin) * grid.cell)
+        found.append(checker.check(curves.bezier_pieces(moved), wide[name]).clearance if grid.occupied.any() else np.inf)
+    return found
+
+
 def _in_occupied_cells(points: np.ndarray, grid: Grid) -> int:
     """How many of the points (n, 2), in units, lie in occupied cells; a point on a grid line belongs to the cell above or to the right.
 
@@ -279,8 +353,9 @@ METRICS: dict[str, Metric] = {
     "failed": Metric("-", "without a path that the certified checker accepts", False, lambda runs, problems: ~runs["feasible"].astype(bool)),
     "falsely_claimed": Metric("-", "free by the planner's own test, colliding by the checker's", False, partial(_disagrees, True)),
     "wrongly_rejected": Metric("-", "free by the checker's test, not by the planner's own", False, partial(_disagrees, False)),
+    "obstacle_clearance": Metric("u", "least distance to the occupied cells of a grid, its border not counted", True, _obstacle_clearance),
     "collision_depth": Metric("u", "largest depth of the path in obstacles or beyond the border", False),
-    "clearance": Metric("u", "least distance to the obstacles", False),
+    "clearance": Metric("u", "least distance to the obstacles and the border", False),
     "evaluations": Metric("-", "paths whose objective the planner asked for", False),
     "generations": Metric("-", "generations really done", False),
     "rank": Metric("-", "rank of the objective among the rows of the table, within one unit", False, _rank, among_rows=True),
@@ -319,9 +394,14 @@ METRICS: dict[str, Metric] = {
         True,
         partial(_of_path, _zero_speed_points),
     ),
+    "heading_max": Metric("rad", "largest change of heading between neighbouring chords", True, partial(_of_path, _heading_max)),
+    "turning": Metric("rad", "changes of heading, all added", True, partial(_of_path, _turning)),
+    "corners": Metric("-", "joints of a path's pieces at which its heading changes", True, partial(_of_path, _corners)),
+    "length_over_polygon": Metric("-", "length / length of the control polygon", True, partial(_of_path, _length_over_polygon)),
     "distinct_points": Metric("-", "control points that differ from each other", False, partial(_of_path, _distinct_points)),
     "occupied_points": Metric("-", "control points in occupied cells of a grid", True, partial(_of_path_on_grid, _occupied_points)),
     "gap_reference": Metric("-", "length / length of the best known path of the same kind - 1", True, _gap_reference),
+    "excess_reference": Metric("u", "length - length of the best known path of the same kind", True, _excess_reference),
     "cells4": Metric("u", "cells that the path touches, 1.5 for a diagonal step", True, partial(_cell_length, "length4")),
     "cells8": Metric("u", "the same without the corners of the sequence of cells", True, partial(_cell_length, "length8")),
     "bound8": Metric("u", "least length of a path of free cells, 1.5 for a diagonal step", False),

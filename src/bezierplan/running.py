@@ -4,7 +4,7 @@ A job is a mapping with these keys, all of them names and plain values (`study.j
 
     study, experiment, method    names
     planner, settings            the planner and its settings, by name
-    problems                     problem name -> its workspace's name, and where it is drawn its layout and obstacles
+    problems                     problem name -> its workspace's name, and if it has them layout, obstacles, and settings that go with it
     vary                         setting or level -> list of values; every combination of problems and values is a condition
     levels                       level -> value, as text -> settings that go with it
     seeds                        a run's seed comes from its id (`own`), from its id without the method (`shared`), or from study,
@@ -71,10 +71,10 @@ def run_id(job: dict, condition: Condition, repeat: int) -> str:
 
 
 def settings_in(job: dict, condition: Condition) -> dict[str, Any]:
-    """The settings of the job's method under a condition. Levels stand for the settings that go with them; what is varied and is no setting
-    of the planner is left out.
+    """The settings of the job's method under a condition: what goes with its problem is put in, then what is varied. Levels stand for the
+    settings that go with them; what is varied and is no setting of the planner is left out.
     """
-    settings = dict(job["settings"])
+    settings = job["settings"] | job["problems"][condition.problem].get("settings", {})
     for name, value in condition.values.items():
         settings |= job["levels"][name][str(value).lower()] if name in job["levels"] else {name: value}
     accepted = planner_settings(planner_module(job["planner"]))
@@ -109,7 +109,7 @@ def row(job: dict, condition: Condition, repeat: int, plan: Plan, blocked: Any) 
         "experiment": job["experiment"],
         "condition": condition.name,
         "problem": condition.problem,
-        **job["problems"][condition.problem],
+        **{key: value for key, value in job["problems"][condition.problem].items() if key != "settings"},
         "method": job["method"],
         "repeat": repeat,
         "planner": job["planner"],

@@ -50,6 +50,14 @@ class Study:
         common = {name: value for name, value in self.settings.items() if name in accepted}
         return common | self.methods[method].get("settings", {})
 
+    def settings_on(self, problem: dict, method: str) -> dict[str, dict]:
+        """Settings that go with a described problem, as {"settings": ...}: those that a method's planner has and the method itself leaves
+        open; empty without any.
+        """
+        accepted = planner_settings(planner_module(self.planner(method))).keys() - self.methods[method].get("settings", {}).keys()
+        settings = {name: value for name, value in problem.get("settings", {}).items() if name in accepted}
+        return {"settings": settings} if settings else {}
+
     def planner(self, method: str) -> str:
         """The planner of a method: a name, or the path of a file as seen from here."""
         planner = self.methods[method]["planner"]
@@ -119,7 +127,10 @@ def relative(path: Path) -> str:
 
 def problems_job(study: Study, experiment: str, scale: str) -> dict:
     """What the problems of an experiment depend on, the content of map files apart."""
-    described = study.problems_of(experiment, scale)
+    described = {
+        name: {key: value for key, value in problem.items() if key != "settings"}
+        for name, problem in study.problems_of(experiment, scale).items()
+    }
     workspaces = {name: study.workspaces[name] for name in sorted({problem["workspace"] for problem in described.values()})}
     return {"study": study.key, "problems": described, "workspaces": workspaces}
 
@@ -134,7 +145,9 @@ def job(study: Study, experiment: str, method: str, scale: str, chunk: int) -> d
         "method": method,
         "planner": study.planner(method),
         "settings": {name: value for name, value in study.resolved(method).items() if name not in content.get("vary", {})},
-        "problems": {name: _place(problem) for name, problem in study.problems_of(experiment, scale).items()},
+        "problems": {
+            name: _place(problem) | study.settings_on(problem, method) for name, problem in study.problems_of(experiment, scale).items()
+        },
         "vary": content.get("vary", {}),
         "levels": {name: level for name, level in study.levels.items() if name in content.get("vary", {})},
         "seeds": content.get("seeds", "own"),
@@ -350,6 +363,9 @@ def caption(study: Study, artefact: str, scale: str) -> str:
             sentences.append(f"{study.labels.get(method, method)}: {study.planner(method)}{_listed(apart, ' with ')}")
         if shared:
             sentences.append(f"All:{_listed(shared, ' ')}" if len(methods) > 1 else f"Settings:{_listed(shared, ' ')}")
+        for problem in content["problems"]:
+            if "settings" in study.problems[problem]:
+                sentences.append(f"On {study.labels.get(problem, problem)}:{_listed(study.problems[problem]['settings'], ' ')}")
         sentences.append(f"{content['repeats'][scale]} runs of each method on each problem")
     return ". ".join(sentences) + "."
 

@@ -98,6 +98,8 @@ def _check(study: Study) -> None:
         _check_workspace(study, name, place)
     for name, problem in study.problems.items():
         _known(problem["workspace"], study.workspaces, f"{place}: problems: {name}: workspace")
+        for setting in problem.get("settings", {}):
+            _known(setting, used, f"{place}: problems: {name}: settings")
         _check_problem(study, name, problem, f"{place}: problems: {name}")
     for name in study.experiments:
         _check_experiment(study, name, f"{place}: experiments: {name}")
@@ -264,7 +266,9 @@ def _check_experiment(study: Study, name: str, place: str) -> None:
                 served = ", ".join(module.workspaces)
                 raise Fault(f"{place}: methods: {method}: its planner serves workspaces of kind {served}, not {kind} ({problem})")
         described = job(study, name, method, "full", 0)
-        for condition in conditions(list(described["problems"])[:1], experiment.get("vary", {})):
+        # One problem for each set of settings that go with problems.
+        apart = {str(place.get("settings")): problem for problem, place in reversed(described["problems"].items())}
+        for condition in conditions(list(apart.values()), experiment.get("vary", {})):
             where = f"{place}: vary: {condition.name}: {method}" if condition.values else f"{place}: methods: {method}"
             _check_settings(module, settings_in(described, condition), where)
 
@@ -272,9 +276,7 @@ def _check_experiment(study: Study, name: str, place: str) -> None:
 def _columns(study: Study, experiment: str) -> set[str]:
     """Columns of the runs table of an experiment that a selection may name."""
     methods = study.methods_of(experiment)
-    places = {
-        key for problem in study.problems_of(experiment, "smoke").values() for key in PLACE if key in problem
-    }
+    places = {key for problem in study.problems_of(experiment, "smoke").values() for key in PLACE if key in problem}
     varied = study.experiments[experiment].get("vary", {})
     settings = (setting for name in methods for setting in study.resolved(name))
     return {"straight_line", "bound", "bound8", *RUN_COLUMNS, *places, *varied, *settings}
@@ -306,7 +308,8 @@ def _check_table(study: Study, table: dict, place: str) -> None:
             _known(column, {"value", "statistic", *_columns(study, experiment)}, f"{place}: {key}")
     for number, value in enumerate(table["values"]):
         _known(value["metric"], metrics.METRICS, f"{place}: values: {number}: metric")
-        _known(value["statistic"], statistics.STATISTICS, f"{place}: values: {number}: statistic")
+        for name in _listed(value["statistic"]):
+            _known(name, statistics.STATISTICS, f"{place}: values: {number}: statistic")
         _check_where(study, experiment, value.get("where", {}), f"{place}: values: {number}: where")
     if "published" in table:
         _check_published(study, experiment, study.folder / "published" / table["published"], place)

@@ -1,0 +1,429 @@
+"""Genetic algorithm for the control points of one Bezier curve on a grid: the shortest curve (BCA), or one that also keeps a safety
+distance from the obstacles (BCA-Q) (ma2020, Section 3).
+
+A chromosome is the sequence of the free control points, each gene the binary number of a free cell; cells are numbered row by row from the
+top left (ma2020, eqs. 10 and 11, whose signs as printed lie outside the map). Lengths in the kernels are in cells.
+
+All forms of the fitness are told as a cost, the reciprocal of the fitness: the roulette takes 1 / cost, and the least cost is the best.
+"""
+
+import math
+from functools import cache
+from typing import Annotated, Literal, NamedTuple, get_args
+
+import numpy as np
+from numba import njit
+
+from bezierplan import curves
+from bezierplan.problem import Path, Plan, Problem, Range
+from bezierplan.search.genetic import complement_bit, roulette, swap_tails
+from bezierplan.workspaces.grid import ON_LINE, Grid
+
+workspaces = ("grid",)
+
+Fitness = Literal["length", "repaired", "literal_weights", "hard_safety", "reciprocal_literal", "as_printed"]
+FitnessFeasible = Literal["collision_free", "clearance"]
+Mutation = Literal["bit_flip", "cell", "per_gene"]
+_LENGTH, _REPAIRED, _LITERAL_WEIGHTS, _HARD_SAFETY, _RECIPROCAL_LITERAL, _AS_PRINTED = range(6)
+_BIT_FLIP, _CELL, _PER_GENE = range(3)
+
+# Draws of a bit until the flipped gene is a free cell; then the gene stays. Draws of a chromosome until its curve is free.
+_FLIP_TRIES = 50
+_FEASIBLE_TRIES = 200
+# Two grid lines crossed at parameters of a chord that differ by less are crossed in their common corner.
+_AT_CORNER = 1e-12
+
+
+def check(settings: dict) -> None:
+    """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
+    if settings["population"] % 2:
+        raise ValueError(f"population: {settings['population']}; parents are crossed in pairs, so an even number is needed")
+    if settings["length_weight"] == 0:
+        raise ValueError("length_weight: 0; a path without any cost has no fitness, so a number above 0 is needed")
+
+
+def plan(
+    problem: Problem,
+    rng: np.random.Generator,
+    *,
+    control_points: Annotated[int, Range(0, 60)],
+    samples: Annotated[int, Range(2)],
+    initial: Literal["uniform", "sorted", "feasible"],
+    population: Annotated[int, Range(2)],
+    generations: Annotated[int, Range(0)],
+    crossover_probability: Annotated[float, Range(0, 1)],
+    mutation_probability: Annotated[float, Range(0, 1)],
+    mutation: Mutation,
+    elitism: Annotated[int, Range(0, 1)],
+    fitness: Fitness,
+    fitness_feasible: FitnessFeasible,
+    length_weight: Annotated[float, Range(0)],
+    safety_weight: Annotated[float, Range(0)],
+    safety_distance: Annotated[float, Range(0)],
+    collision_factor: Annotated[float, Range(0)],
+    collision_surcharge: Annotated[float, Range(0)],
+) -> Plan:
+    """Bezier curve with `control_points` free control points in centres of free cells (ma2020, Sections 3.2 to 3.4).
+
+    samples: points of the curve that are tested and measured, uniform in the parameter, both ends included. initial: genes are free cells
+    drawn uniformly; the same `sorted` by x + y; or drawn again until the curve is free of collisions, at most 200 times (`feasible`).
+    crossover_probability: of a pair of parents, cut between two genes. mutation_probability: of a chromosome, one random bit of one gene is
+    flipped, so that the gene stays a free cell (`bit_flip`), or the gene becomes a random free `cell`; or of each gene, a bit is flipped
+    (`per_gene`). elitism: how many of the best so far replace a chromosome.
+
+    fitness: 1 / cost. With the length L, c of n samples colliding, G = L (1 + collision_factor c / n) + collision_surcharge [c > 0], the
+    weights w1 = length_weight and w2 = safety_weight, the straight distance D and the safety term F of eq. 14 (1 for c > 0), the cost is
+
+        length              G (BCA)
+        repaired            w1 G / D + w2 F (BCA-Q)
+        literal_weights     w1 G + w2 F
+        hard_safety         G + collision_surcharge F
+        reciprocal_literal  L of a feasible path, w1 L + w2 F of the others
+        as_printed          1 / L of a feasible path, w1 L + w2 F of the others (eq. 12)
+
+    fitness_feasible: what feasible means in the last two: collision_free, or in addition nowhere nearer to an obstacle than the safety
+    distance (clearance). safety_distance and collision_surcharge are in units of length.
+
+    The planner's own test: no colliding sample. Extra columns: bad_samples, the number of colliding samples; safety_term, F of the path.
+
+    Raises ValueError for a map without a free cell.
+    """
+    grid = problem.workspace
+    if problem.start == problem.target:
+        # A point: no length to search for, and no distance to divide by.
+        point = Path("bezier", np.array([problem.start, problem.target]))
+        return Plan(point, 0.0, True, 1, np.zeros(1), "generations", {"bad_samples": 0, "safety_term": 0.0})
+    if control_points == 0:
+        # Nothing to search: one chromosome, the straight line.
+        population, generations = 1, 0
+    rules = _Rules(
+        crossover_probability,
+        mutation_probability,
+        get_args(Mutation).index(mutation),
+        elitism,
+        get_args(Fitness).index(fitness),
+        get_args(FitnessFeasible).index(fitness_feasible),
+        float(length_weight),
+        float(safety_weight),
+        safety_distance / grid.cell,
+        float(collision_factor),
+        collision_surcharge / grid.cell,
+        math.dist(problem.start, problem.target) / grid.cell,
+        grid.cell,
+    )
+    cells = _cells(grid, math.ceil(rules.safety_distance))
+    curve = _curve(problem, control_points, samples)
+    starts, moves = rng.spawn(2)
+    codes = cells.free[starts.integers(0, len(cells.free), size=(population, control_points))]
+    if initial == "sorted":
+        along = cells.centres[codes].sum(axis=2)
+        codes = np.take_along_axis(codes, along.argsort(axis=1, kind="stable"), axis=1)
+    elif initial == "feasible":
+        _redraw(starts, codes, cells, curve)
+
+    best, history = _search(moves, codes, cells, curve, rules, generations)
+    _, bad, clearance = _measure(best, cells, curve, np.empty((3, samples)), True)
+    points = np.vstack([problem.start, grid.in_units(cells.centres[best]), problem.target])
+    return Plan(
+        path=Path("bezier", points),
+        objective=history[-1],
+        claimed_feasible=bad == 0,
+        evaluations=population * (generations + 1),
+        history=history,
+        stop="generations",
+        extra={"bad_samples": int(bad), "safety_term": _safety_term(bad, clearance, rules.safety_distance)},
+    )
+
+
+class _Cells(NamedTuple):
+    """The grid for the kernels, x along columns and y along rows, in cells.
+
+    occupied: bool (rows, columns), the bottom row first. centres: (cells, 2), by code. legal: bool (2**bits,), whether a code is a free
+    cell. free: the codes of the free cells. near: (n, 2), column and row of occupied cells; those that may lie within the safety distance
+    of a point of the cell (row, column) are near[first[i] : first[i + 1]] with i = columns row + column.
+    """
+
+    occupied: np.ndarray
+    centres: np.ndarray
+    legal: np.ndarray
+    free: np.ndarray
+    near: np.ndarray
+    first: np.ndarray
+
+
+class _Curve(NamedTuple):
+    """ends: (2, samples), x and y of what start and target give to the samples, in cells. free: (control points, samples), the weights of
+    the free control points."""
+
+    ends: np.ndarray
+    free: np.ndarray
+
+
+class _Rules(NamedTuple):
+    """Settings of `plan` for the kernels, choices by their numbers, lengths in cells; straight: from start to target; cell: its side."""
+
+    crossover_probability: float
+    mutation_probability: float
+    mutation: int
+    elitism: int
+    fitness: int
+    clear_is_feasible: int
+    length_weight: float
+    safety_weight: float
+    safety_distance: float
+    collision_factor: float
+    collision_surcharge: float
+    straight: float
+    cell: float
+
+
+def code_centres(rows: int, columns: int) -> np.ndarray:
+    """Centres (cells, 2) of the cells by code, in cells: numbered row by row from the top left, from 0 (ma2020, eqs. 10 and 11, which
+    number from 1).
+    """
+    down, along = np.indices((rows, columns)).reshape(2, -1)
+    return np.column_stack([along + 0.5, rows - down - 0.5])
+
+
+def _cells(grid: Grid, reach: int) -> _Cells:
+    """The grid for the kernels; near are the occupied cells at most `reach` columns and rows away."""
+    rows, columns = grid.occupied.shape
+    legal = np.zeros(1 << (rows * columns - 1).bit_length(), dtype=bool)
+    legal[: rows * columns] = ~grid.occupied[::-1].ravel()
+    free = np.flatnonzero(legal)
+    if not len(free):
+        raise ValueError("all cells are occupied; expected a free cell for the control points")
+    row, column = np.indices((rows, columns)).reshape(2, -1)
+    occupied = np.argwhere(grid.occupied)
+    at, which = np.nonzero((abs(row[:, None] - occupied[:, 0]) <= reach) & (abs(column[:, None] - occupied[:, 1]) <= reach))
+    near = np.ascontiguousarray(occupied[which][:, ::-1])
+    return _Cells(grid.occupied, code_centres(rows, columns), legal, free, near, np.searchsorted(at, np.arange(rows * columns + 1)))
+
+
+def _curve(problem: Problem, control_points: int, samples: int) -> _Curve:
+    ends, free = _basis(control_points, samples)
+    return _Curve(problem.workspace.in_cells(np.array([problem.start, problem.target])).T @ ends, free)
+
+
+@cache
+def _basis(control_points: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
+    """Weights of start and target (2, samples) and of the free control points (n, samples) in the samples of a curve."""
+    basis = curves.sample_matrix("bezier", control_points + 2, samples).T
+    return basis[[0, -1]], np.ascontiguousarray(basis[1:-1])
+
+
+@njit(cache=True)
+def _search(rng, codes, cells, curve, rules, generations):
+    """Genes (control points,) of the best chromosome, and the least cost so far (generations + 1,).
+
+    codes: (population, control points), the first generation, which is changed.
+    """
+    population, genes = codes.shape
+    bits = int(np.log2(len(cells.legal)) + 0.5)
+    cost, parent_cost = np.empty(population), np.empty(population)
+    parents, drawn = np.full_like(codes, -1), np.zeros(population, dtype=np.int64)  # the first generation inherits nothing
+    best, best_cost = codes[0].copy(), np.inf
+    history = np.empty(generations + 1)
+    scratch = np.empty((3, curve.ends.shape[1]))
+
+    for generation in range(generations + 1):
+        for i in range(population):
+            # A child that is equal to one of its parents has its cost, which leaves every result as it is.
+            mother, father = drawn[i - i % 2], drawn[min(i | 1, population - 1)]
+            if generation > 0 and _same(codes[i], parents[mother]):
+                cost[i] = parent_cost[mother]
+            elif generation > 0 and _same(codes[i], parents[father]):
+                cost[i] = parent_cost[father]
+            else:
+                cost[i] = _cost(codes[i], cells, curve, rules, scratch)
+            if cost[i] < best_cost:
+                _copy(codes[i], best)
+                best_cost = cost[i]
+        history[generation] = best_cost
+        if generation == generations:
+            break
+
+        parents, codes = codes, parents
+        parent_cost, cost = cost, parent_cost
+        drawn = roulette(rng, 1.0 / parent_cost, population)
+        for i in range(population):
+            _copy(parents[drawn[i]], codes[i])
+        for i in range(0, population, 2):
+            if rng.random() < rules.crossover_probability and genes > 1:
+                swap_tails(codes[i], codes[i + 1], bits * rng.integers(1, genes), bits)
+        for i in range(population):
+            _mutate(rng, codes[i], bits, cells, rules)
+        if rules.elitism:
+            _copy(best, codes[0])
+    return best, history
+
+
+@njit(cache=True)
+def _redraw(rng, codes, cells, curve):
+    """Draw every chromosome anew, in place, until its curve is free of collisions."""
+    scratch = np.empty((3, curve.ends.shape[1]))
+    for i in range(len(codes)):
+        for _ in range(_FEASIBLE_TRIES):
+            if _measure(codes[i], cells, curve, scratch, False)[1] == 0:
+                break
+            for gene in range(codes.shape[1]):
+                codes[i, gene] = cells.free[rng.integers(0, len(cells.free))]
+
+
+@njit(cache=True)
+def _mutate(rng, genes, bits, cells, rules):
+    """Change random genes of a chromosome in place (ma2020, Section 3.4)."""
+    if rules.mutation == _PER_GENE:
+        for gene in range(len(genes)):
+            if rng.random() < rules.mutation_probability:
+                _flip(rng, genes, gene, bits, cells.legal)
+    elif rng.random() < rules.mutation_probability:
+        gene = rng.integers(0, len(genes))
+        if rules.mutation == _BIT_FLIP:
+            _flip(rng, genes, gene, bits, cells.legal)
+        else:
+            genes[gene] = cells.free[rng.integers(0, len(cells.free))]
+
+
+@njit(cache=True)
+def _flip(rng, genes, gene, bits, legal):
+    """Flip a random bit of a gene in place; a bit that makes it no free cell is drawn again."""
+    before = genes[gene]
+    for _ in range(_FLIP_TRIES):
+        complement_bit(genes, gene * bits + rng.integers(0, bits), bits)
+        if legal[genes[gene]]:
+            return
+        genes[gene] = before
+
+
+@njit(cache=True)
+def _cost(genes, cells, curve, rules, scratch):
+    """Cost of a chromosome, the reciprocal of its fitness (`plan` has the forms)."""
+    length, bad, clearance = _measure(genes, cells, curve, scratch, rules.fitness != _LENGTH)
+    priced = length * (1.0 + rules.collision_factor * bad / curve.ends.shape[1]) + rules.collision_surcharge * (bad > 0)
+    if rules.fitness == _LENGTH:
+        return priced * rules.cell
+    safety = _safety_term(bad, clearance, rules.safety_distance)
+    if rules.fitness == _REPAIRED:
+        return rules.length_weight * priced / rules.straight + rules.safety_weight * safety
+    if rules.fitness == _LITERAL_WEIGHTS:
+        return rules.length_weight * priced * rules.cell + rules.safety_weight * safety
+    if rules.fitness == _HARD_SAFETY:
+        return (priced + rules.collision_surcharge * safety) * rules.cell
+    if bad > 0 or (rules.clear_is_feasible and clearance < rules.safety_distance):
+        return rules.length_weight * length * rules.cell + rules.safety_weight * safety
+    return length * rules.cell if rules.fitness == _RECIPROCAL_LITERAL else 1.0 / (length * rules.cell)
+
+
+@njit(cache=True)
+def _safety_term(bad, clearance, safety_distance):
+    """How much the safety distance is undercut, from 0 to 1 (ma2020, eq. 14; 1 for a path that collides)."""
+    if safety_distance == 0 or (bad == 0 and clearance >= safety_distance):
+        return 0.0
+    return 1.0 if bad > 0 else (1.0 - clearance / safety_distance) ** 2
+
+
+@njit(cache=True)
+def _measure(genes, cells, curve, scratch, with_clearance):
+    """Length in cells of the polyline through a curve's samples, the number of colliding samples, and the least distance of the samples to
+    the occupied cells nearby: infinite without one, 0 for a path that collides or if it is not asked for.
+
+    scratch: (3, samples).
+    """
+    x, y, chords = scratch[0], scratch[1], scratch[2]
+    samples = len(x)
+    for s in range(samples):
+        x[s], y[s] = curve.ends[0, s], curve.ends[1, s]
+    for k in range(len(genes)):
+        column, row = cells.centres[genes[k], 0], cells.centres[genes[k], 1]
+        for s in range(samples):
+            x[s] += column * curve.free[k, s]
+            y[s] += row * curve.free[k, s]
+    # Roots and their sum in two loops: the first one can then use vector instructions.
+    for s in range(samples - 1):
+        dx, dy = x[s + 1] - x[s], y[s + 1] - y[s]
+        chords[s] = np.sqrt(dx * dx + dy * dy)
+    length = 0.0
+    for s in range(samples - 1):
+        length += chords[s]
+    bad = _collisions(x, y, cells.occupied)
+    return length, bad, _clearance(x, y, cells) if with_clearance and bad == 0 else 0.0
+
+
+@njit(cache=True)
+def _collisions(x, y, occupied):
+    """How many samples lie inside an occupied cell, or end a chord that passes through one between its two ends. Touching is allowed."""
+    rows, columns = occupied.shape
+    bad = 0
+    column, row = min(int(x[0]), columns - 1), min(int(y[0]), rows - 1)
+    for s in range(len(x)):
+        last_column, last_row = column, row
+        column, row = min(int(x[s]), columns - 1), min(int(y[s]), rows - 1)
+        if occupied[row, column] and _inside(x[s], column) and _inside(y[s], row):
+            bad += 1
+        elif abs(column - last_column) + abs(row - last_row) > 1:
+            bad += _cuts(x[s - 1], y[s - 1], x[s], y[s], occupied)
+    return bad
+
+
+@njit(cache=True)
+def _inside(value, cell):
+    """Whether a coordinate lies between the two grid lines of its column or row; rounding alone must not decide."""
+    return cell + ON_LINE < value < cell + 1 - ON_LINE
+
+
+@njit(cache=True)
+def _cuts(x, y, x_end, y_end, occupied):
+    """Whether a chord passes through an occupied cell on its way between the cells of its ends.
+
+    It is divided so that no part crosses two grid lines of a kind; a part that crosses one of each passes through one more cell.
+    """
+    rows, columns = occupied.shape
+    parts = int(max(abs(x_end - x), abs(y_end - y))) + 1
+    step_x, step_y = (x_end - x) / parts, (y_end - y) / parts
+    column, row = min(int(x), columns - 1), min(int(y), rows - 1)
+    for part in range(1, parts + 1):
+        next_x, next_y = x + step_x, y + step_y
+        next_column, next_row = min(int(next_x), columns - 1), min(int(next_y), rows - 1)
+        if part < parts and occupied[next_row, next_column] and _inside(next_x, next_column) and _inside(next_y, next_row):
+            return True
+        if column != next_column and row != next_row:
+            to_line_x = (max(column, next_column) - x) / step_x
+            to_line_y = (max(row, next_row) - y) / step_y
+            if to_line_x < to_line_y - _AT_CORNER and occupied[row, next_column]:
+                return True
+            if to_line_y < to_line_x - _AT_CORNER and occupied[next_row, column]:
+                return True
+        x, y, column, row = next_x, next_y, next_column, next_row
+    return False
+
+
+@njit(cache=True)
+def _clearance(x, y, cells):
+    """Least distance in cells of the samples to the occupied cells listed as near their own; infinite without one."""
+    rows, columns = cells.occupied.shape
+    least = np.inf
+    for s in range(len(x)):
+        cell = columns * min(int(y[s]), rows - 1) + min(int(x[s]), columns - 1)
+        for k in range(cells.first[cell], cells.first[cell + 1]):
+            column, row = cells.near[k, 0], cells.near[k, 1]
+            dx = max(column - x[s], 0.0, x[s] - column - 1)
+            dy = max(row - y[s], 0.0, y[s] - row - 1)
+            least = min(least, dx * dx + dy * dy)
+    return np.sqrt(least)
+
+
+@njit(cache=True)
+def _same(one, other):
+    """Whether two chromosomes are equal."""
+    for k in range(len(one)):
+        if one[k] != other[k]:
+            return False
+    return True
+
+
+@njit(cache=True)
+def _copy(source, target):
+    """Copy an array of one dimension. Compiles in no time, unlike numpy's assignment to a slice."""
+    for k in range(len(source)):
+        target[k] = source[k]

@@ -1,0 +1,337 @@
+"""BCA and BCA-Q of ma2020: the cost of a chromosome against an independent reference, its operators, degenerate cases, settings."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bezierplan import curves
+from bezierplan.exact import checker
+from bezierplan.exact.region import region
+from bezierplan.planners import bca
+from bezierplan.problem import Problem, planner_settings, setting_fault
+from bezierplan.workspaces.grid import Grid, from_lines
+
+SETTINGS = {
+    "control_points": 8,
+    "samples": 201,
+    "initial": "uniform",
+    "population": 20,
+    "generations": 10,
+    "crossover_probability": 0.9,
+    "mutation_probability": 0.1,
+    "mutation": "bit_flip",
+    "elitism": 1,
+    "fitness": "length",
+    "fitness_feasible": "collision_free",
+    "length_weight": 0.8,
+    "safety_weight": 0.1,
+    "safety_distance": 0.25,
+    "collision_factor": 5.0,
+    "collision_surcharge": 10.0,
+}
+OPEN = Grid(np.zeros((20, 20), dtype=bool), 1.0, "cell")
+STRAIGHT = 20 * math.sqrt(2)
+BLOCK = from_lines(["....", ".##.", ".##.", "...."], 1.0, "cell")
+WALL = from_lines(["..#..", "..#..", "..#.."], 1.0, "cell")
+
+
+def random_grid(seed, share=0.15):
+    occupied = np.random.default_rng(seed).random((20, 20)) < share
+    occupied[:2, :2] = occupied[-2:, -2:] = False
+    return Grid(occupied, 1.0, "cell")
+
+
+def plan(grid=OPEN, seed=0, start=(0.0, 0.0), target=None, **changes):
+    target = target or (grid.bounds[1], grid.bounds[3])
+    return bca.plan(Problem("test", grid, start, target), np.random.default_rng(seed), **(SETTINGS | changes))
+
+
+def reference(path, grid, samples):
+    """Length, share of samples inside occupied cells, and least distance of the samples to occupied cells, by numpy alone, in cells."""
+    points = curves.sample_matrix("bezier", len(path.points), samples) @ path.points / grid.cell
+    row, column = np.nonzero(grid.occupied)
+    dx = np.maximum(column - points[:, :1], points[:, :1] - column - 1)
+    dy = np.maximum(row - points[:, 1:], points[:, 1:] - row - 1)
+    inside = ((dx < -1e-9) & (dy < -1e-9)).any(axis=1)
+    distance = np.hypot(np.maximum(dx, 0), np.maximum(dy, 0)).min(initial=math.inf)
+    return np.hypot(*np.diff(points, axis=0).T).sum(), inside.sum(), distance
+
+
+@pytest.mark.parametrize(
+    ("number", "centre"), [(1, (0.5, 19.5)), (20, (19.5, 19.5)), (381, (0.5, 0.5)), (400, (19.5, 0.5)), (23, (2.5, 18.5))]
+)
+def test_cells_are_numbered_from_the_top_left(number, centre):
+    assert tuple(bca.code_centres(20, 20)[number - 1]) == centre
+
+
+@given(st.integers(0, 10_000), st.sampled_from(["length", "repaired", "literal_weights", "hard_safety"]), st.sampled_from([0.25, 1.0, 1.6]))
+@settings(max_examples=60)
+def test_cost_of_the_forms_that_know_collisions(seed, fitness, distance):
+    grid = random_grid(seed)
+    found = plan(grid, seed=seed, fitness=fitness, safety_distance=distance, generations=4)
+    length, inside, clearance = reference(found.path, grid, 201)
+    bad = found.extra["bad_samples"]
+    # A chord can pass through a corner between two samples outside.
+    assert inside <= bad <= inside + 40
+    safety = 1.0 if bad else max(1 - clearance / distance, 0) ** 2
+    priced = length * (1 + 5 * bad / 201) + 10 * (bad > 0)
+    cost = {
+        "length": priced,
+        "repaired": 0.8 * priced / STRAIGHT + 0.1 * safety,
+        "literal_weights": 0.8 * priced + 0.1 * safety,
+        "hard_safety": priced + 10 * safety,
+    }
+    assert found.objective == pytest.approx(cost[fitness], rel=1e-12)
+    assert found.extra["safety_term"] == pytest.approx(safety, abs=1e-12)
+    assert found.claimed_feasible == (bad == 0)
+
+
+@given(st.integers(0, 10_000), st.sampled_from(["reciprocal_literal", "as_printed"]), st.sampled_from(["collision_free", "clearance"]))
+@settings(max_examples=40)
+def test_cost_of_the_literal_forms(seed, fitness, feasible):
+    grid = random_grid(seed, 0.05)
+    found = plan(grid, seed=seed, fitness=fitness, fitness_feasible=feasible, generations=4)
+    length, _, clearance = reference(found.path, grid, 201)
+    free = found.extra["bad_samples"] == 0 and (feasible == "collision_free" or clearance >= 0.25)
+    if not free:
+        assert found.objective == pytest.approx(0.8 * length + 0.1 * found.extra["safety_term"])
+    else:
+        assert found.objective == pytest.approx(length if fitness == "reciprocal_literal" else 1 / length)
+
+
+def test_as_printed_prefers_long_paths():
+    lengths = {fitness: curves.length(plan(fitness=fitness, generations=30).path) for fitness in ("length", "as_printed")}
+    assert lengths["as_printed"] > lengths["length"] + 3
+
+
+@given(st.integers(0, 10_000))
+@settings(max_examples=60)
+def test_a_claimed_path_has_no_sample_inside_an_obstacle_however_fine(seed):
+    grid = random_grid(seed)
+    found = plan(grid, seed=seed, initial="feasible", generations=6)
+    if found.claimed_feasible:
+        # Its chords are free; the curve leaves them by less than this.
+        check = checker.check(curves.bezier_pieces(found.path), region(grid))
+        assert check.feasible or check.depth < 0.01
+
+
+def chord(x, y, x_end, y_end, grid):
+    return bca._collisions(np.array([x, x_end]), np.array([y, y_end]), grid.occupied)
+
+
+@pytest.mark.parametrize(
+    ("ends", "bad"),
+    [
+        ((0.6, 0.9, 1.4, 1.5), 1),  # ends inside
+        ((1.1, 0.5, 0.5, 1.4), 0),  # past the corner: above the diagonal's free side
+        ((0.9, 3.2, 1.3, 2.9), 1),  # ends inside after a corner
+        ((0.8, 1.4, 1.3, 0.8), 1),  # cuts the corner (1, 1) of the block
+        ((0.8, 1.2, 1.2, 0.8), 0),  # touches that corner
+        ((0.8, 1.1, 1.1, 0.8), 0),  # passes outside of it
+        ((0.5, 1.0, 3.5, 1.0), 0),  # runs along its side
+        ((1.0, 0.5, 1.0, 3.5), 0),
+        ((0.5, 1.5, 3.5, 1.5), 1),  # a long chord right through
+        ((0.2, 2.6, 2.6, 3.9), 0),  # a long chord past
+        ((0.5, 2.2, 1.8, 3.7), 1),  # a long chord through a corner
+    ],
+)
+def test_chords_against_a_block(ends, bad):
+    assert chord(*ends, BLOCK) == bad
+
+
+def test_no_sample_is_counted_twice():
+    """A sample inside whose chord cuts another occupied cell on its way."""
+    grid = from_lines(["###", "#.#", "###"], 1.0, "cell")
+    assert chord(1.5, 1.5, 2.6, 2.7, grid) == 1
+
+
+def test_long_chords_are_cut_into_parts():
+    """Against the same chord in a hundred steps."""
+    rng = np.random.default_rng(0)
+    hits = 0
+    for trial in range(400):
+        grid = random_grid(trial, 0.1)
+        ends = rng.random(4) * 20
+        steps = np.linspace(0, 1, 2001)
+        x, y = ends[0] + steps * (ends[2] - ends[0]), ends[1] + steps * (ends[3] - ends[1])
+        fine = bca._collisions(x[1:], y[1:], grid.occupied)
+        if bca._collisions(x[:1], y[:1], grid.occupied) == 0 and fine != 1:  # starts free; no grazing
+            assert chord(*ends, grid) == (fine > 0)
+            hits += fine > 0
+    assert hits > 100
+
+
+def test_equal_children_are_not_measured_again(monkeypatch):
+    """The compiled search against its plain Python with every child measured."""
+    compiled = plan(random_grid(5), population=8, generations=6)
+    monkeypatch.setattr(bca, "_same", lambda *_: False)
+    monkeypatch.setattr(bca, "_search", bca._search.py_func)
+    plain = plan(random_grid(5), population=8, generations=6)
+    assert np.array_equal(compiled.history, plain.history)
+    assert np.array_equal(compiled.path.points, plain.path.points)
+
+
+def test_same_seed_gives_the_same_bits():
+    one, other = plan(random_grid(1), seed=7), plan(random_grid(1), seed=7)
+    assert np.array_equal(one.history, other.history)
+    assert np.array_equal(one.path.points, other.path.points)
+
+
+@pytest.mark.parametrize("mutation", ["bit_flip", "cell", "per_gene"])
+@pytest.mark.parametrize("initial", ["uniform", "sorted", "feasible"])
+def test_genes_are_free_cells(mutation, initial):
+    grid = random_grid(3, 0.4)
+    found = plan(grid, mutation=mutation, initial=initial, mutation_probability=1.0, elitism=0, generations=20)
+    column, row = np.floor(found.path.points[1:-1]).astype(int).T
+    assert not grid.occupied[row, column].any()
+    assert np.array_equal(found.path.points[1:-1] % 1, np.full((8, 2), 0.5))
+
+
+@given(st.integers(0, 10_000))
+def test_a_flip_changes_one_bit_or_nothing(seed):
+    rng = np.random.default_rng(seed)
+    legal = rng.random(512) < 0.1
+    genes = rng.choice(np.flatnonzero(legal), 4)
+    before = genes.copy()
+    bca._flip(rng, genes, 2, 9, legal)
+    assert legal[genes].all()
+    assert np.array_equal(np.delete(genes, 2), np.delete(before, 2))
+    assert int(genes[2] ^ before[2]).bit_count() <= 1
+
+
+def test_a_gene_without_a_legal_neighbour_stays():
+    legal = np.zeros(512, dtype=bool)
+    legal[5] = True
+    genes = np.array([5])
+    bca._flip(np.random.default_rng(0), genes, 0, 9, legal)
+    assert genes.tolist() == [5]
+
+
+def test_sorted_start_follows_the_way_to_the_target():
+    points = plan(initial="sorted", generations=0, population=2).path.points
+    assert (np.diff(points.sum(axis=1)) >= 0).all()
+
+
+def test_feasible_start():
+    grid = random_grid(2, 0.05)
+    assert not plan(grid, population=2, generations=0, seed=1).claimed_feasible
+    assert plan(grid, population=2, generations=0, seed=1, initial="feasible").claimed_feasible
+
+
+def test_no_mutation_and_no_crossover_only_copies():
+    found = plan(crossover_probability=0.0, mutation_probability=0.0, generations=30)
+    assert len(set(found.history.tolist())) == 1
+
+
+@pytest.mark.parametrize("elitism", [0, 1])
+def test_history_never_rises_and_counts_the_first_generation(elitism):
+    found = plan(generations=25, elitism=elitism)
+    assert len(found.history) == 26
+    assert (np.diff(found.history) <= 0).all()
+    assert found.history[-1] == found.objective
+    assert found.evaluations == 20 * 26
+
+
+def test_no_generation_leaves_the_best_of_the_first():
+    assert plan(generations=0).objective == plan(generations=5).history[0]
+
+
+@pytest.mark.parametrize("fitness", bca.Fitness.__args__)
+def test_start_equal_to_target_is_answered_without_a_search(fitness):
+    found = plan(start=(3.0, 4.0), target=(3.0, 4.0), fitness=fitness)
+    assert (found.objective, found.evaluations, len(found.history)) == (0, 1, 1)
+    assert found.claimed_feasible
+    assert curves.length(found.path) == 0
+
+
+@pytest.mark.parametrize(("grid", "free"), [(OPEN, True), (BLOCK, False)])
+def test_no_control_point_leaves_the_straight_line(grid, free):
+    found = plan(grid, control_points=0)
+    assert len(found.path.points) == 2
+    assert found.claimed_feasible == free
+    assert (found.evaluations, len(found.history)) == (1, 1)
+    if free:
+        assert found.objective == pytest.approx(STRAIGHT)
+
+
+def test_one_control_point_cannot_be_cut():
+    block = Grid(np.pad(np.ones((2, 2), dtype=bool), 2), 1.0, "cell")
+    found = plan(block, control_points=1, generations=30)
+    assert len(found.path.points) == 3
+    assert found.claimed_feasible
+
+
+def test_an_empty_map_has_no_safety_term():
+    found = plan(generations=40, fitness="repaired")
+    assert found.extra["safety_term"] == 0
+    assert found.objective == pytest.approx(0.8 * reference(found.path, OPEN, 201)[0] / STRAIGHT)
+    assert STRAIGHT - 1e-9 <= curves.length(found.path) < 1.2 * STRAIGHT
+
+
+def test_a_wall_ends_in_a_path_that_is_said_to_collide():
+    found = plan(WALL, start=(0.5, 1.5), target=(4.5, 1.5), generations=40, control_points=3)
+    assert not found.claimed_feasible
+    assert found.extra["bad_samples"] > 0
+    assert found.extra["safety_term"] == 1
+
+
+def test_no_safety_distance_is_never_undercut():
+    """Then BCA-Q is BCA on another scale, also for paths that collide."""
+    grid = random_grid(4, 0.3)
+    bca_q, shortest = (plan(grid, fitness=fitness, safety_distance=0, generations=30) for fitness in ("repaired", "length"))
+    assert bca_q.extra["safety_term"] == 0
+    assert bca_q.objective * STRAIGHT / 0.8 == pytest.approx(shortest.objective)
+    assert (
+        plan(WALL, fitness="repaired", safety_distance=0, control_points=0, start=(0.5, 1.5), target=(4.5, 1.5)).extra["safety_term"] == 0
+    )
+
+
+@pytest.mark.parametrize("fitness", ["length", "repaired", "hard_safety"])
+def test_the_unit_of_length_does_not_matter(fitness):
+    small = random_grid(6)
+    large = Grid(small.occupied, 10.0, "unit")
+    one = plan(small, fitness=fitness)
+    other = plan(large, fitness=fitness, safety_distance=2.5, collision_surcharge=100.0)
+    assert np.allclose(other.path.points, 10 * one.path.points)
+    assert other.objective == pytest.approx(one.objective * (1 if fitness == "repaired" else 10))
+
+
+def test_grids_need_not_be_square():
+    found = plan(Grid(np.zeros((3, 7), dtype=bool), 1.0, "cell"), generations=30)
+    assert found.path.points[:, 0].max() <= 7
+    assert found.path.points[:, 1].max() <= 3
+
+
+def test_a_full_map_is_an_error():
+    with pytest.raises(ValueError, match="all cells are occupied"):
+        plan(Grid(np.ones((3, 3), dtype=bool), 1.0, "cell"))
+
+
+@pytest.mark.parametrize(("changes", "named"), [({"population": 21}, "population: 21"), ({"length_weight": 0}, "length_weight: 0")])
+def test_settings_that_do_not_fit_together_are_named(changes, named):
+    with pytest.raises(ValueError, match=named):
+        bca.check(SETTINGS | changes)
+
+
+@pytest.mark.parametrize(
+    ("setting", "value"),
+    [
+        ("population", 1),
+        ("generations", -1),
+        ("crossover_probability", 1.1),
+        ("mutation_probability", -0.1),
+        ("safety_distance", -0.25),
+        ("safety_weight", -1),
+        ("control_points", -1),
+        ("samples", 1),
+        ("elitism", 2),
+        ("fitness", "shortest"),
+    ],
+)
+def test_values_out_of_range_are_faults(setting, value):
+    annotation = planner_settings(bca)[setting]
+    assert setting_fault(annotation, SETTINGS[setting]) is None
+    assert setting_fault(annotation, value) is not None
