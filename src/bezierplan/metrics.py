@@ -295,6 +295,12 @@ def _obstacle_clearance(runs: pd.DataFrame, problems: dict[str, Problem]) -> lis
     return found
 
 
+def _keeps_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Whether (n,) a path keeps its planner's safety distance from the obstacles; not a number where the planner has none."""
+    kept = np.array(_obstacle_clearance(runs, problems)) >= runs["safety_distance"]
+    return kept.astype(float).where(runs["safety_distance"].notna()).to_numpy()
+
+
 def _in_occupied_cells(points: np.ndarray, grid: Grid) -> int:
     """How many of the points (n, 2), in units, lie in occupied cells; a point on a grid line belongs to the cell above or to the right.
 
@@ -354,6 +360,7 @@ METRICS: dict[str, Metric] = {
     "falsely_claimed": Metric("-", "free by the planner's own test, colliding by the checker's", False, partial(_disagrees, True)),
     "wrongly_rejected": Metric("-", "free by the checker's test, not by the planner's own", False, partial(_disagrees, False)),
     "obstacle_clearance": Metric("u", "least distance to the occupied cells of a grid, its border not counted", True, _obstacle_clearance),
+    "keeps_distance": Metric("-", "whether the planner's safety distance from the occupied cells is kept", True, _keeps_distance),
     "collision_depth": Metric("u", "largest depth of the path in obstacles or beyond the border", False),
     "clearance": Metric("u", "least distance to the obstacles and the border", False),
     "evaluations": Metric("-", "paths whose objective the planner asked for", False),

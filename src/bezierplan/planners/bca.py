@@ -16,7 +16,7 @@ from numba import njit
 
 from bezierplan import curves
 from bezierplan.problem import Path, Plan, Problem, Range
-from bezierplan.search.genetic import complement_bit, roulette, swap_tails
+from bezierplan.search.genetic import complement_bit, redraw_gene, roulette, swap_tails
 from bezierplan.workspaces.grid import ON_LINE, Grid
 
 workspaces = ("grid",)
@@ -278,11 +278,10 @@ def _mutate(rng, genes, bits, cells, rules):
             if rng.random() < rules.mutation_probability:
                 _flip(rng, genes, gene, bits, cells.legal)
     elif rng.random() < rules.mutation_probability:
-        gene = rng.integers(0, len(genes))
         if rules.mutation == _BIT_FLIP:
-            _flip(rng, genes, gene, bits, cells.legal)
+            _flip(rng, genes, rng.integers(0, len(genes)), bits, cells.legal)
         else:
-            genes[gene] = cells.free[rng.integers(0, len(cells.free))]
+            redraw_gene(rng, genes, cells.free)
 
 
 @njit(cache=True)
