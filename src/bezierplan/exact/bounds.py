@@ -14,6 +14,7 @@ from bezierplan.exact.checker import TOLERANCE, check, first_collision
 from bezierplan.exact.region import CircleRegion, GridRegion, PolygonRegion, from_origin, occupied_around, region, walled
 from bezierplan.problem import Problem
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.lattice import STEPS, Corners, neighbours
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -124,19 +125,16 @@ def lattice_path(
     start: tuple[int, int],
     target: tuple[int, int],
     diagonal_weight: float,
-    corner_rule: Literal["free", "one", "none"],
+    corner_rule: Corners,
 ) -> Bound:
     """The shortest path over the 8 neighbours of free cells, by Dijkstra's algorithm; length and points (x, y) in cells.
 
     occupied: bool (rows, columns). start, target: row and column. diagonal_weight: length of a diagonal step; others count 1. corner_rule:
-    how many of the two cells beside a diagonal step may be occupied: `free` both, `one` one, `none` none.
+    how many of the two cells beside a diagonal step may be occupied.
     Raises ValueError for an unknown rule and for a start or target outside of the grid.
     """
     from scipy.sparse import coo_array
 
-    allowed = {"free": 2, "one": 1, "none": 0}
-    if corner_rule not in allowed:
-        raise ValueError(f"unknown corner rule {corner_rule!r}; known: {', '.join(allowed)}")
     rows, columns = occupied.shape
     for name, (row, column) in (("start", start), ("target", target)):
         if not (0 <= row < rows and 0 <= column < columns):
@@ -144,23 +142,13 @@ def lattice_path(
     if occupied[start] or occupied[target]:
         return _no_path()
 
-    cells = walled(occupied)
-    number = np.arange(cells.size).reshape(cells.shape)
-    row, column = np.nonzero(~cells)
-    tails, heads, weights = [], [], []
-    for up, right, weight in ((0, 1, 1.0), (1, 0, 1.0), (1, 1, diagonal_weight), (1, -1, diagonal_weight)):
-        # The two cells beside a step; of a step along an axis these are the cells that it leaves and enters.
-        beside = cells[row, column + right].astype(int) + cells[row + up, column]
-        passable = ~cells[row + up, column + right] & (beside <= allowed[corner_rule])
-        tails.append(number[row, column][passable])
-        heads.append(number[row + up, column + right][passable])
-        weights.append(np.full(passable.sum(), weight))
-    edges = (np.concatenate(weights), (np.concatenate(tails), np.concatenate(heads)))
-    graph = coo_array(edges, shape=(cells.size, cells.size)).tocsr()
-    ends = (int(number[row + 1, column + 1]) for row, column in (start, target))
-    length, nodes = _dijkstra(graph, *ends)
-    row, column = np.divmod(nodes, cells.shape[1])
-    return Bound(length, np.column_stack([column - 0.5, row - 0.5]))
+    reached = neighbours(occupied, corner_rule)
+    tails, steps = np.nonzero(reached >= 0)
+    weights = np.where(STEPS[steps].all(axis=1), diagonal_weight, 1.0)
+    graph = coo_array((weights, (tails, reached[tails, steps])), shape=(occupied.size, occupied.size)).tocsr()
+    length, nodes = _dijkstra(graph, start[0] * columns + start[1], target[0] * columns + target[1])
+    row, column = np.divmod(nodes, columns)
+    return Bound(length, np.column_stack([column + 0.5, row + 0.5]))
 
 
 def _moved(bound: Bound, by: np.ndarray | tuple[float, float]) -> Bound:

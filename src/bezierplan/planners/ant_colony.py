@@ -1,0 +1,193 @@
+"""Ant colony optimisation over the cells of a grid (ACO), a rival in ma2020 (Section 4.1; its reference 28, without any parameters).
+
+Ants walk from cell to cell, drawn by trails that earlier ants laid and by the nearness of the target. By the trail update `ant_system` all
+ants of an iteration lay trails (Dorigo, Maniezzo and Colorni 1996). By `ant_colony_system` only the best path so far gets one, and ants may
+also wear trails off and take the most attractive step outright (Dorigo and Gambardella 1997).
+"""
+
+from typing import Annotated, Any, Literal, NamedTuple
+
+import numpy as np
+from numba import njit
+
+from bezierplan.problem import Path, Plan, Problem, Range
+from bezierplan.search.cell_paths import length, put, step_between
+from bezierplan.workspaces.lattice import Corners, Lattice, lattice, points
+
+workspaces = ("grid",)
+exact = True
+
+
+class Colony(NamedTuple):
+    """What a colony found.
+
+    best: (n,) cells of the shortest path, none if no ant arrived. history: (iterations,) the least length so far, in cells. paths: (ants,
+    cells) those of the last iteration's ants, with sizes (ants,), 0 for an ant that died.
+    """
+
+    best: np.ndarray
+    history: np.ndarray
+    paths: np.ndarray
+    sizes: np.ndarray
+
+
+def plan(
+    problem: Problem,
+    rng: np.random.Generator,
+    *,
+    corners: Corners,
+    ants: Annotated[int, Range(1)],
+    iterations: Annotated[int, Range(1)],
+    trail_weight: Annotated[float, Range(0)],
+    heuristic_weight: Annotated[float, Range(0)],
+    target_heuristic: Annotated[float, Range(0)],
+    initial_trail: Annotated[float, Range(0)],
+    evaporation: Annotated[float, Range(0, 1)],
+    deposit: Annotated[float, Range(0)],
+    trail_update: Literal["ant_system", "ant_colony_system"],
+    exploitation: Annotated[float, Range(0, 1)],
+    local_evaporation: Annotated[float, Range(0, 1)],
+) -> Plan:
+    """Shortest path over the 8-connected lattice of a grid; its objective is its length in units, infinite without a path.
+
+    corners: how many of the cells beside a diagonal step may be occupied. An ant draws its next cell among the unvisited neighbours, in
+    proportion to trail**trail_weight * heuristic**heuristic_weight. The heuristic is 1 over the distance to the target in cells, and
+    target_heuristic for the target itself. An ant without a neighbour left dies. initial_trail: on every step. evaporation: share that a
+    trail loses in an iteration. deposit: an ant adds it, divided by its path's length in cells, to each step of its path, both ways.
+
+    trail_update: ant_system, or ant_colony_system, by which evaporation and deposit, this one times the evaporation, are for the steps of
+    the best path so far only. exploitation: probability q0 of taking the most attractive step. local_evaporation: share by which an ant
+    brings the trail of its step back to the initial one.
+
+    Raises ValueError for a start or target that is in no free cell.
+    """
+    settings = locals()
+    grid = problem.workspace
+    colony = search(lattice(grid, problem.start, problem.target, corners), rng, settings)
+    found = len(colony.best) > 0
+    return Plan(
+        path=Path("polyline", points(grid, problem.start, problem.target, colony.best)) if found else None,
+        objective=colony.history[-1] * grid.cell,
+        claimed_feasible=found,
+        evaluations=ants * len(colony.history),
+        history=colony.history * grid.cell,
+        stop="iterations" if found else "no path",
+        extra={},
+    )
+
+
+def search(places: Lattice, rng: np.random.Generator, settings: dict[str, Any]) -> Colony:
+    """The search behind `plan`, with its settings; others are left alone. One iteration if start and target lie in one cell."""
+    distance = np.hypot(places.row - places.row[places.target], places.column - places.column[places.target])
+    distance[places.target] = 1.0
+    heuristic = 1.0 / distance
+    heuristic[places.target] = settings["target_heuristic"]
+    rules = _Rules(
+        settings["ants"],
+        1 if places.start == places.target else settings["iterations"],
+        *(float(settings[name]) for name in _Rules._fields[2:-1]),  # a whole number would compile kernels anew
+        settings["trail_update"] == "ant_colony_system",
+    )
+    return Colony(*_colony(rng, places, heuristic ** settings["heuristic_weight"], rules))
+
+
+class _Rules(NamedTuple):
+    """Settings of `plan`; best_only is the trail update ant_colony_system."""
+
+    ants: int
+    iterations: int
+    trail_weight: float
+    initial_trail: float
+    evaporation: float
+    deposit: float
+    exploitation: float
+    local_evaporation: float
+    best_only: bool
+
+
+@njit(cache=True)
+def _colony(rng, lattice, heuristic, rules):
+    """Best path, history, and the last iteration's paths with their sizes, as in `Colony`. heuristic: (cells,) with its weight."""
+    cells = len(lattice.row)
+    trail = np.full((cells, 8), rules.initial_trail)
+    visits = np.full(cells, -1)
+    paths, sizes = np.empty((rules.ants, cells), dtype=np.int64), np.empty(rules.ants, dtype=np.int64)
+    best, best_size, best_length = np.empty(cells, dtype=np.int64), 0, np.inf
+    history = np.empty(rules.iterations)
+
+    for iteration in range(rules.iterations):
+        for ant in range(rules.ants):
+            sizes[ant] = _walk(rng, lattice, trail, heuristic, rules, paths[ant], visits, iteration * rules.ants + ant)
+            if sizes[ant]:
+                walked = length(paths[ant, : sizes[ant]], lattice)
+                if walked < best_length:
+                    best_size, best_length = put(paths[ant, : sizes[ant]], best, 0), walked
+        history[iteration] = best_length
+        if iteration == rules.iterations - 1:
+            break
+
+        if rules.best_only:
+            for k in range(1, best_size):
+                _lay(lattice, trail, best[k - 1], best[k], 1.0 - rules.evaporation, rules.evaporation * rules.deposit / best_length)
+        else:
+            for cell in range(cells):
+                for step in range(8):
+                    trail[cell, step] *= 1.0 - rules.evaporation
+            for ant in range(rules.ants):
+                if sizes[ant]:
+                    amount = rules.deposit / length(paths[ant, : sizes[ant]], lattice)
+                    for k in range(1, sizes[ant]):
+                        _lay(lattice, trail, paths[ant, k - 1], paths[ant, k], 1.0, amount)
+    return best[:best_size], history, paths, sizes
+
+
+@njit(cache=True)
+def _walk(rng, lattice, trail, heuristic, rules, path, visits, ant):
+    """Let an ant walk. Returns the size of its path, which is set, or 0 if it dies. visits: (cells,) the number of the last ant there."""
+    steps, attraction = np.empty(8, dtype=np.int64), np.empty(8)
+    cell = lattice.start
+    path[0] = cell
+    visits[cell] = ant
+    size = 1
+    while cell != lattice.target:
+        open_steps = 0
+        for step in range(8):
+            other = lattice.neighbours[cell, step]
+            if other >= 0 and visits[other] != ant:
+                steps[open_steps] = step
+                attraction[open_steps] = trail[cell, step] ** rules.trail_weight * heuristic[other]
+                open_steps += 1
+        if open_steps == 0:
+            return 0
+        other = lattice.neighbours[cell, steps[_choose(rng, attraction[:open_steps], rules.exploitation)]]
+        if rules.local_evaporation > 0:
+            _lay(lattice, trail, cell, other, 1.0 - rules.local_evaporation, rules.local_evaporation * rules.initial_trail)
+        cell = other
+        path[size] = cell
+        visits[cell] = ant
+        size += 1
+    return size
+
+
+@njit(cache=True)
+def _choose(rng, attraction, exploitation):
+    """A random place of an array (n,), in proportion to what stands there, or uniformly if all is 0; by exploitation, the largest one's."""
+    if exploitation > 0 and rng.random() < exploitation:
+        return np.argmax(attraction)
+    total = attraction.sum()
+    if total == 0:
+        return rng.integers(0, len(attraction))
+    draw = rng.random() * total
+    for k in range(len(attraction) - 1):
+        draw -= attraction[k]
+        if draw < 0:
+            return k
+    return len(attraction) - 1
+
+
+@njit(cache=True)
+def _lay(lattice, trail, one, other, kept, added):
+    """Keep a share of the trail of a step, in both directions, and add to it."""
+    there, back = step_between(lattice, one, other), step_between(lattice, other, one)
+    trail[one, there] = kept * trail[one, there] + added
+    trail[other, back] = kept * trail[other, back] + added

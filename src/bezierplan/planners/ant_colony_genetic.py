@@ -1,0 +1,98 @@
+"""Ant colony optimisation followed by a genetic algorithm over the cells of a grid (ACO-GA), one of ma2020's rivals (Section 4.1).
+
+Its reference 30 (SmartPATH) gives the scheme: ants find the first paths, and a genetic algorithm with a crossover of its own betters them.
+Of two parents that share a cell the first child gets the shorter head and the shorter tail; the second child is the second parent.
+"""
+
+from typing import Annotated, Literal
+
+import numpy as np
+
+from bezierplan.planners import ant_colony
+from bezierplan.problem import Path, Plan, Problem, Range
+from bezierplan.search import cell_paths
+from bezierplan.workspaces.lattice import Corners, lattice, points
+
+workspaces = ("grid",)
+exact = True
+
+
+def check(settings: dict) -> None:
+    """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
+    if settings["population"] % 2:
+        raise ValueError(f"population: {settings['population']}; parents are crossed in pairs, so an even number is needed")
+
+
+def plan(
+    problem: Problem,
+    rng: np.random.Generator,
+    *,
+    corners: Corners,
+    ants: Annotated[int, Range(1)],
+    iterations: Annotated[int, Range(1)],
+    trail_weight: Annotated[float, Range(0)],
+    heuristic_weight: Annotated[float, Range(0)],
+    target_heuristic: Annotated[float, Range(0)],
+    initial_trail: Annotated[float, Range(0)],
+    evaporation: Annotated[float, Range(0, 1)],
+    deposit: Annotated[float, Range(0)],
+    trail_update: Literal["ant_system", "ant_colony_system"],
+    exploitation: Annotated[float, Range(0, 1)],
+    local_evaporation: Annotated[float, Range(0, 1)],
+    population: Annotated[int, Range(2)],
+    generations: Annotated[int, Range(0)],
+    crossover_probability: Annotated[float, Range(0, 1)],
+    mutation_probability: Annotated[float, Range(0, 1)],
+    mutation: Literal["one_cell", "reconnect"],
+    longest_join: Annotated[int, Range(2)],
+    elitism: Annotated[int, Range(0, 1)],
+) -> Plan:
+    """Shortest path over the 8-connected lattice of a grid; its objective is its length in units, infinite without a path.
+
+    corners to local_evaporation: those of `ant_colony`. The first population is the best path of all ants and those of the last iteration's
+    ants, repeated in turn. crossover_probability: of a pair of parents. mutation_probability: of a child; mutation: a random inner cell of
+    its path becomes another one beside the same cells (one_cell), or a part is joined anew by way of a random cell, within longest_join
+    cells (reconnect). Children lose their loops. elitism: whether the best so far replaces a child.
+
+    The history has the iterations of the ants, then the generations. Raises ValueError for a start or target that is in no free cell.
+    """
+    settings = locals()
+    grid = problem.workspace
+    places = lattice(grid, problem.start, problem.target, corners)
+    first, moves = rng.spawn(2)
+    colony = ant_colony.search(places, first, settings)
+    best, history = colony.best, colony.history
+    found = len(best) > 0
+    if found and places.start != places.target:
+        rules = cell_paths.Rules(
+            float(crossover_probability),
+            True,
+            float(mutation_probability),
+            cell_paths.ONE_CELL if mutation == "one_cell" else cell_paths.RECONNECT,
+            longest_join,
+            0,
+            True,
+            elitism,
+        )
+        best, later = cell_paths.evolve(moves, places, *_first_population(colony, population), generations, rules)
+        history = np.concatenate([history, later[1:]])
+    return Plan(
+        path=Path("polyline", points(grid, problem.start, problem.target, best)) if found else None,
+        objective=history[-1] * grid.cell,
+        claimed_feasible=found,
+        evaluations=ants * len(colony.history) + population * (len(history) - len(colony.history)),
+        history=history * grid.cell,
+        stop="generations" if found else "no path",
+        extra={},
+    )
+
+
+def _first_population(colony: ant_colony.Colony, population: int) -> tuple[np.ndarray, np.ndarray]:
+    """Paths (population, cells) and their sizes (population,)."""
+    paths, sizes = np.empty((population, colony.paths.shape[1]), dtype=np.int64), np.full(population, len(colony.best))
+    paths[:, : len(colony.best)] = colony.best
+    arrived = np.flatnonzero(colony.sizes)
+    if len(arrived):
+        ants = np.resize(arrived, population - 1)
+        paths[1:], sizes[1:] = colony.paths[ants], colony.sizes[ants]
+    return paths, sizes

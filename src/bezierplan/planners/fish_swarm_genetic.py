@@ -1,0 +1,162 @@
+"""Artificial fish swarm followed by a genetic algorithm over the cells of a grid (ASFA-GA), one of ma2020's rivals (Section 4.1).
+
+Its reference 31 is known by its title alone. Fish forage from cell to cell, now and then drawn to one of them that is nearer to the target;
+the paths of those that arrive are the first population of a genetic algorithm, which mutates a path by foraging a part of it anew.
+"""
+
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from numba import njit
+
+from bezierplan.problem import Path, Plan, Problem, Range
+from bezierplan.search import cell_paths
+from bezierplan.workspaces.lattice import Corners, lattice, points
+
+workspaces = ("grid",)
+exact = True
+
+
+def check(settings: dict) -> None:
+    """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
+    if settings["population"] % 2:
+        raise ValueError(f"population: {settings['population']}; parents are crossed in pairs, so an even number is needed")
+
+
+def plan(
+    problem: Problem,
+    rng: np.random.Generator,
+    *,
+    corners: Corners,
+    fish: Annotated[int, Range(1)],
+    tries: Annotated[int, Range(0)],
+    sight: Annotated[float, Range(0)],
+    crowding: Annotated[float, Range(0)],
+    follow_every: Annotated[int, Range(1)],
+    releases: Annotated[int, Range(1)],
+    longest_path: Annotated[int, Range(1)],
+    longest_walk: Annotated[int, Range(1)],
+    population: Annotated[int, Range(2)],
+    generations: Annotated[int, Range(0)],
+    crossover_probability: Annotated[float, Range(0, 1)],
+    mutation_probability: Annotated[float, Range(0, 1)],
+    elitism: Annotated[int, Range(0, 1)],
+) -> Plan:
+    """Shortest path over the 8-connected lattice of a grid; its objective is its length in units, infinite without a path.
+
+    corners: how many of the cells beside a diagonal step may be occupied. A swarm of fish is released at the start until there are as many
+    paths as the population, at most so many releases. A fish enters no cell twice. tries: random neighbours that it looks at to find one
+    nearer to the target, before it takes any. Every follow_every steps it looks for others within sight, in cells, those that have arrived
+    included: if fewer than crowding times fish are there and the one nearest to the target is nearer than itself, it goes to the neighbour
+    nearest to that one. A fish without a neighbour left, or with longest_path cells behind it, dies. Fewer paths than the population are
+    repeated in turn.
+
+    crossover_probability: of a pair of parents. mutation_probability: of a child, a part of its path is foraged anew, within longest_walk
+    cells. Children lose their loops. elitism: whether the best so far replaces a child.
+
+    Raises ValueError for a start or target that is in no free cell.
+    """
+    grid = problem.workspace
+    places = lattice(grid, problem.start, problem.target, corners)
+    first, moves = rng.spawn(2)
+    if places.start == places.target:
+        # Nothing to search: all fish are there.
+        generations = 0
+        paths, sizes, released = np.array([[places.start]]), np.array([1]), 1
+    else:
+        swarm = _Swarm(fish, tries, float(sight), float(crowding), follow_every, longest_path)
+        paths, sizes, released = _release(first, places, swarm, population, releases)
+    found = len(sizes) > 0
+    best, history = np.empty(0, dtype=np.int64), np.array([np.inf])
+    if found:
+        rules = cell_paths.Rules(
+            float(crossover_probability), True, float(mutation_probability), cell_paths.WALK, longest_walk, tries, True, elitism
+        )
+        turns = np.resize(np.arange(len(sizes)), population)
+        best, history = cell_paths.evolve(moves, places, paths[turns], sizes[turns], generations, rules)
+    return Plan(
+        path=Path("polyline", points(grid, problem.start, problem.target, best)) if found else None,
+        objective=history[-1] * grid.cell,
+        claimed_feasible=found,
+        evaluations=fish * released + population * (len(history) - 1),
+        history=history * grid.cell,
+        stop="generations" if found else "no path",
+        extra={},
+    )
+
+
+class _Swarm(NamedTuple):
+    """Settings of `plan`."""
+
+    fish: int
+    tries: int
+    sight: float
+    crowding: float
+    follow_every: int
+    longest_path: int
+
+
+_SWIMMING, _ARRIVED, _DEAD = range(3)
+
+
+@njit(cache=True)
+def _release(rng, lattice, swarm, wanted, releases):
+    """The first paths (n, longest path) of fish that arrive, at most as many as wanted, their sizes (n,), and the number of releases."""
+    found, found_sizes = np.empty((wanted, swarm.longest_path), dtype=np.int64), np.empty(wanted, dtype=np.int64)
+    paths, sizes = np.empty((swarm.fish, swarm.longest_path), dtype=np.int64), np.empty(swarm.fish, dtype=np.int64)
+    visited = np.empty((swarm.fish, len(lattice.row)), dtype=np.int64)
+    cells, states = np.empty(swarm.fish, dtype=np.int64), np.empty(swarm.fish, dtype=np.int64)
+    arrived = released = 0
+    while arrived < wanted and released < releases:
+        released += 1
+        visited[:] = 0
+        visited[:, lattice.start] = 1
+        paths[:, 0] = cells[:] = lattice.start
+        sizes[:] = 1
+        states[:] = _SWIMMING
+        step = 0
+        while np.any(states == _SWIMMING):
+            step += 1
+            for i in range(swarm.fish):
+                if states[i] != _SWIMMING:
+                    continue
+                cell = -1
+                if step % swarm.follow_every == 0:
+                    cell = _follow(lattice, i, cells, states, visited[i], swarm)
+                if cell < 0:
+                    cell = cell_paths.forage(rng, lattice, cells[i], lattice.target, swarm.tries, visited[i])
+                if cell < 0 or sizes[i] == swarm.longest_path:
+                    states[i] = _DEAD
+                    continue
+                paths[i, sizes[i]] = cells[i] = cell
+                visited[i, cell] = 1
+                sizes[i] += 1
+                if cell == lattice.target:
+                    states[i] = _ARRIVED
+                    if arrived < wanted:
+                        found_sizes[arrived] = cell_paths.put(paths[i, : sizes[i]], found[arrived], 0)
+                        arrived += 1
+    return found[:arrived], found_sizes[:arrived], released
+
+
+@njit(cache=True)
+def _follow(lattice, i, cells, states, visited, swarm):
+    """The unvisited neighbour of a fish's cell that is nearest to its leader, the fish in sight nearest to the target; -1 if there is none.
+
+    Nor is there one if the leader is not nearer to the target than the fish itself, or if too many are in sight.
+    """
+    in_sight, leader, near = 0, -1, cell_paths.distance_square(lattice, cells[i], lattice.target)
+    for j in range(swarm.fish):
+        if j != i and states[j] != _DEAD and cell_paths.distance_square(lattice, cells[i], cells[j]) <= swarm.sight**2:
+            in_sight += 1
+            distance = cell_paths.distance_square(lattice, cells[j], lattice.target)
+            if distance < near:
+                leader, near = cells[j], distance
+    chosen = -1
+    if leader >= 0 and in_sight < swarm.crowding * swarm.fish:
+        for cell in lattice.neighbours[cells[i]]:
+            if cell >= 0 and not visited[cell]:
+                distance = cell_paths.distance_square(lattice, cell, leader)
+                if chosen < 0 or distance < near:
+                    chosen, near = cell, distance
+    return chosen

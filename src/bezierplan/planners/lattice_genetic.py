@@ -1,0 +1,193 @@
+"""Genetic algorithm for paths over the cells of a grid (GA), a rival in ma2020 (Section 4.1; its reference 29, without any parameters).
+
+By the coding `via_cells` a chromosome is a number of free cells, and inserted midpoints join them to a path: the algorithm of BCA without
+the Bezier curve. By `rows` a chromosome is a path itself, at first one through a random free cell of each row.
+"""
+
+from typing import Annotated, Literal
+
+import numpy as np
+from numba import njit
+
+from bezierplan.problem import Path, Plan, Problem, Range
+from bezierplan.search import cell_paths
+from bezierplan.search.genetic import redraw_gene, roulette, swap_tails
+from bezierplan.workspaces.lattice import Corners, Lattice, lattice, points
+
+workspaces = ("grid",)
+exact = True
+
+# Draws of one cell in each row until these can be joined.
+_MOST_DRAWS = 10_000
+
+
+def check(settings: dict) -> None:
+    """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
+    if settings["population"] % 2:
+        raise ValueError(f"population: {settings['population']}; parents are crossed in pairs, so an even number is needed")
+
+
+def plan(
+    problem: Problem,
+    rng: np.random.Generator,
+    *,
+    corners: Corners,
+    coding: Literal["via_cells", "rows"],
+    genes: Annotated[int, Range(0, 60)],
+    initial: Literal["uniform", "sorted"],
+    longest_join: Annotated[int, Range(2)],
+    undecodable_length: Annotated[float, Range(1)],
+    population: Annotated[int, Range(2)],
+    generations: Annotated[int, Range(0)],
+    crossover_probability: Annotated[float, Range(0, 1)],
+    mutation_probability: Annotated[float, Range(0, 1)],
+    elitism: Annotated[int, Range(0, 1)],
+) -> Plan:
+    """Shortest path over the 8-connected lattice of a grid; its objective is its length in units, infinite without a path.
+
+    corners: how many of the cells beside a diagonal step may be occupied. genes: free cells of a chromosome by the coding via_cells;
+    initial: drawn uniformly, and then perhaps sorted by column + row. longest_join: the most cells of a path, repeated ones included;
+    undecodable_length: in units, what a chromosome counts whose cells are not joined within that. crossover_probability: of a pair of
+    parents, cut between two genes. mutation_probability: of a chromosome, one gene becomes a random free cell. elitism: how many of the
+    best so far replace a chromosome.
+
+    The coding rows has no use for genes, initial and undecodable_length: parents are cut in a cell that both have, and by mutation a part
+    of a path is joined anew by way of a random cell.
+
+    Raises ValueError for a start or target that is in no free cell.
+    """
+    grid = problem.workspace
+    places = lattice(grid, problem.start, problem.target, corners)
+    starts, moves = rng.spawn(2)
+    if places.start == places.target:
+        # Nothing to search: one chromosome, without a gene.
+        population, generations, genes = 1, 0, 0
+    if coding == "via_cells":
+        free = np.flatnonzero(~places.occupied)
+        cells = np.empty((population, genes + 2), dtype=np.int64)
+        cells[:, 0], cells[:, -1] = places.start, places.target
+        cells[:, 1:-1] = free[starts.integers(0, len(free), size=(population, genes))]
+        if initial == "sorted":
+            order = np.argsort((places.row + places.column)[cells[:, 1:-1]], axis=1, kind="stable")
+            cells[:, 1:-1] = np.take_along_axis(cells[:, 1:-1], order, axis=1)
+        best, history = _search(
+            moves,
+            places,
+            free,
+            cells,
+            longest_join,
+            undecodable_length / grid.cell,
+            generations,
+            float(crossover_probability),
+            float(mutation_probability),
+            elitism,
+        )
+    else:
+        paths, sizes = _first_paths(starts, places, _rows_between(places), population, longest_join)
+        best, history = np.empty(0, dtype=np.int64), np.array([np.inf])
+        if sizes.all():
+            rules = cell_paths.Rules(
+                float(crossover_probability), False, float(mutation_probability), cell_paths.RECONNECT, longest_join, 0, False, elitism
+            )
+            best, history = cell_paths.evolve(moves, places, paths, sizes, generations, rules)
+    found = len(best) > 0
+    return Plan(
+        path=Path("polyline", points(grid, problem.start, problem.target, best)) if found else None,
+        objective=history[-1] * grid.cell,
+        claimed_feasible=found,
+        evaluations=population * len(history),
+        history=history * grid.cell,
+        stop="generations" if found else "no path",
+        extra={},
+    )
+
+
+@njit(cache=True)
+def _search(
+    rng,
+    lattice,
+    free,
+    cells,
+    longest_join,
+    undecodable_length,
+    generations,
+    crossover_probability,
+    mutation_probability,
+    elitism,
+):
+    """Path (n,) of the best chromosome, of no cells if none can be decoded, and the least length so far (generations + 1,).
+
+    cells: (population, genes + 2), with start and target. free: (n,) cells.
+    """
+    population, genes = cells.shape[0], cells.shape[1] - 2
+    bits = 1 + int(np.log2(len(lattice.row)))
+    parents = np.empty_like(cells)
+    path, marks = np.empty(longest_join, dtype=np.int64), np.zeros(len(lattice.row), dtype=np.int64)
+    lengths = np.empty(population)
+    best, best_path, best_length = cells[0].copy(), path[:0].copy(), np.inf
+    history = np.empty(generations + 1)
+
+    for generation in range(generations + 1):
+        for i in range(population):
+            size = cell_paths.join(lattice, cells[i], path, marks)
+            lengths[i] = cell_paths.length(path[:size], lattice) if size else undecodable_length
+            if size and lengths[i] < best_length:
+                cell_paths.put(cells[i], best, 0)
+                best_path, best_length = path[:size].copy(), lengths[i]
+        history[generation] = best_length
+        if generation == generations:
+            break
+
+        cells, parents = parents, cells
+        drawn = roulette(rng, 1.0 / lengths, population)
+        for i in range(population):
+            cell_paths.put(parents[drawn[i]], cells[i], 0)
+        for i in range(0, population, 2):
+            if genes > 1 and rng.random() < crossover_probability:
+                swap_tails(cells[i, 1:-1], cells[i + 1, 1:-1], bits * rng.integers(1, genes), bits)
+        for i in range(population):
+            if genes and rng.random() < mutation_probability:
+                redraw_gene(rng, cells[i, 1:-1], free)
+        if elitism:
+            cell_paths.put(best, cells[0], 0)
+    return best_path, history
+
+
+def _rows_between(places: Lattice) -> list[np.ndarray]:
+    """The free cells of each row between those of start and target, from start to target."""
+    first, last = places.row[places.start], places.row[places.target]
+    step = 1 if first < last else -1
+    return [np.flatnonzero((places.row == row) & ~places.occupied) for row in range(first + step, last, step)]
+
+
+def _first_paths(
+    rng: np.random.Generator, places: Lattice, rows: list[np.ndarray], population: int, longest: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Paths (population, longest) from start to target through a random cell of each row, and their sizes (population,); 0 for none."""
+    paths, sizes = np.zeros((population, longest), dtype=np.int64), np.zeros(population, dtype=np.int64)
+    if all(map(len, rows)):
+        choices = np.zeros((len(rows), len(places.row)), dtype=np.int64)
+        for row, free in enumerate(rows):
+            choices[row, : len(free)] = free
+        _fill(rng, places, choices, np.array([len(free) for free in rows], dtype=np.int64), paths, sizes)
+    return paths, sizes
+
+
+@njit(cache=True)
+def _fill(rng, lattice, choices, counts, paths, sizes):
+    """Set paths and their sizes, in place, until one of them cannot be found.
+
+    choices: (rows, n) the free cells of each row, with counts: (rows,).
+    """
+    marks = np.zeros(len(lattice.row), dtype=np.int64)
+    cells = np.empty(len(counts) + 2, dtype=np.int64)
+    cells[0], cells[-1] = lattice.start, lattice.target
+    for i in range(len(paths)):
+        for _ in range(_MOST_DRAWS):
+            for row in range(len(counts)):
+                cells[row + 1] = choices[row, rng.integers(0, counts[row])]
+            sizes[i] = cell_paths.join(lattice, cells, paths[i], marks)
+            if sizes[i]:
+                break
+        if sizes[i] == 0:
+            return

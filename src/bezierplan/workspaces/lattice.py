@@ -1,0 +1,87 @@
+"""The 8-connected lattice of a grid: paths from centre to centre of neighbouring free cells, and to start and target inside their cells.
+
+Cells have the numbers of `grid.Grid`; lengths are in cells.
+"""
+
+import math
+from typing import Literal, NamedTuple, get_args
+
+import numpy as np
+
+from bezierplan.workspaces.grid import Grid
+
+Corners = Literal["free", "one", "none"]
+"""How many of the two cells beside a diagonal step may be occupied: both, one, none."""
+
+STEPS = np.array([(0, -1), (0, 1), (1, 0), (-1, 0), (-1, -1), (1, -1), (-1, 1), (1, 1)])
+"""Rows and columns of the eight steps: W, E, N, S, SW, NW, SE, NE."""
+
+
+class Lattice(NamedTuple):
+    """The lattice of a problem, for kernels.
+
+    neighbours: (cells, 8) the number of the cell that each of `STEPS` reaches, -1 where it is not allowed. around: (cells, 8) the same
+    without any rule for corners, -1 only outside the grid and for occupied cells. occupied: bool (cells,). row, column: (cells,). start,
+    target: cells. diagonal: length of a diagonal step, others count 1. ends: length from start and target to the centres of their cells.
+    """
+
+    neighbours: np.ndarray
+    around: np.ndarray
+    occupied: np.ndarray
+    row: np.ndarray
+    column: np.ndarray
+    start: int
+    target: int
+    diagonal: float
+    ends: float
+
+
+def lattice(grid: Grid, start: tuple[float, float], target: tuple[float, float], corners: Corners) -> Lattice:
+    """The lattice of a grid with the cells of start and target, both (x, y) in units.
+
+    Raises ValueError if one of them lies outside the grid, or in a cell that is occupied.
+    """
+    rows, columns = grid.occupied.shape
+    cells, ends = [], 0.0
+    for name, point in (("start", start), ("target", target)):
+        cell = grid.cell_of(*point)
+        if cell is None or grid.occupied[cell]:
+            where = "outside the grid" if cell is None else f"in the occupied cell of row {cell[0]}, column {cell[1]}"
+            raise ValueError(f"{name}: {point}: {where}; expected a point of a free cell")
+        cells.append(cell[0] * columns + cell[1])
+        ends += math.dist(point, grid.centre(cells[-1])) / grid.cell
+    row, column = np.divmod(np.arange(rows * columns), columns)
+    return Lattice(
+        neighbours(grid.occupied, corners), _around(grid.occupied), grid.occupied.ravel(), row, column, *cells, math.sqrt(2), ends
+    )
+
+
+def neighbours(occupied: np.ndarray, corners: Corners) -> np.ndarray:
+    """The cells that each of `STEPS` reaches: (cells, 8) numbers, -1 where a step is not allowed and from occupied cells.
+
+    occupied: bool (rows, columns). Raises ValueError for an unknown rule.
+    """
+    if corners not in get_args(Corners):
+        raise ValueError(f"unknown corner rule {corners!r}; known: {', '.join(get_args(Corners))}")
+    walled = np.pad(occupied, 1, constant_values=True)
+    row, column = np.argwhere(~occupied).T + 1
+    # The two cells beside a step; of a step along an axis these are the cells that it leaves and enters.
+    beside = [walled[row + up, column].astype(int) + walled[row, column + right] for up, right in STEPS]
+    most = {"free": 2, "one": 1, "none": 0}[corners]
+    reached = np.full((occupied.size, len(STEPS)), -1)
+    free = np.flatnonzero(~occupied)
+    reached[free] = np.where(np.column_stack(beside) <= most, _around(occupied)[free], -1)
+    return reached
+
+
+def _around(occupied: np.ndarray) -> np.ndarray:
+    """The free cells around each cell, free or occupied: (cells, 8) numbers, -1 where there is none."""
+    number = np.pad(np.where(occupied, -1, np.arange(occupied.size).reshape(occupied.shape)), 1, constant_values=-1)
+    row, column = np.indices(occupied.shape).reshape(2, -1) + 1
+    return np.column_stack([number[row + up, column + right] for up, right in STEPS])
+
+
+def points(grid: Grid, start: tuple[float, float], target: tuple[float, float], cells: np.ndarray) -> np.ndarray:
+    """Start, the centres of cells (n,), and target, in units: (n + 2, 2), or fewer where start and target are centres themselves."""
+    centres = [grid.centre(cell) for cell in cells.tolist()]
+    return np.array([start, *centres[centres[0] == start : len(centres) - (centres[-1] == target)], target])
