@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from bezierplan import metrics
-from bezierplan.analysis import claims, statistics
+from bezierplan.analysis import claim_tests, claims, statistics
 from bezierplan.analysis.claim_tests import Finding
 from bezierplan.analysis.results import Results
 from bezierplan.checked import Fault
@@ -193,6 +193,18 @@ def test_paired_differences_against_scipy():
     assert apart["high95"] - apart["low95"] > 10
     # What an experiment pairs is the default.
     assert judged(LOWER, runs, paired={"tried": True})["verdict"] == "supported"
+
+
+@pytest.mark.parametrize("units", [6, 11, 17])
+def test_signed_ranks_are_exact_with_ties_and_zeros(units):
+    from scipy import stats
+
+    difference = np.round(2 * sample("ties", 0.4, units))
+    difference[0] = 0.0
+    ranks = stats.rankdata(np.abs(difference)) * (difference != 0)
+    sums = np.array(list(itertools.product([0, 1], repeat=units))) @ ranks
+    least = min(np.mean(sums <= ranks[difference > 0].sum()), np.mean(sums >= ranks[difference > 0].sum()))
+    assert claim_tests.signed_rank_test(difference) == pytest.approx(min(1.0, 2 * least), rel=1e-12)
 
 
 def test_pairs_need_both_runs():

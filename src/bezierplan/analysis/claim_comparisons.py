@@ -10,7 +10,7 @@ import pandas as pd
 
 from bezierplan import metrics
 from bezierplan.analysis import claim_tests
-from bezierplan.analysis.claim_published import listed, printed
+from bezierplan.analysis.claim_published import listed, printed, rows_of_cell
 from bezierplan.analysis.claim_tests import Comparison
 from bezierplan.analysis.results import Results, pick, select
 from bezierplan.checked import Fault
@@ -109,12 +109,18 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
     found = []
     for place, rows in _split(runs, every):
         unit_tables = {name: _unit_table(part, unit, column) for name, part in _split(rows, pool)}
-        for name, cells in _cells(check, rows):
-            strata = {key: claim_tests.event(check, table.reindex(columns=cells).to_numpy()) for key, table in unit_tables.items()}
-            cell_places = [
-                [part if column is None else part[part[column] == cell] for cell in cells] for _, part in _split(places[place], pool)
+        conditions = [part for _, part in _split(places[place], pool)]
+        compared = list(_cells(check, rows))
+        printed_rows = {
+            cell: [
+                rows_of_cell(part if column is None else part[part[column] == cell], check["metric"], tables, material.variant_of)
+                for part in conditions
             ]
-            numbers, number_of_runs = printed(check, cell_places, tables, material.variant_of)
+            for cell in dict.fromkeys(cell for _, cells in compared for cell in cells)
+        }
+        for name, cells in compared:
+            strata = {key: claim_tests.event(check, table.reindex(columns=cells).to_numpy()) for key, table in unit_tables.items()}
+            numbers, number_of_runs = printed(check, list(zip(*(printed_rows[cell] for cell in cells))))
             found.append(
                 Comparison(
                     place=place,

@@ -1,7 +1,9 @@
 """Published numbers that claims are judged on: of the same cells as our comparisons, and among themselves."""
 
+import itertools
 import math
-from typing import Any
+from collections.abc import Sequence
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -15,45 +17,48 @@ _ANY_STATISTIC = ("mean", "median", "unstated", "share", "count", "min", "max")
 _NOT_KEYS = ("value", "n", "unit")
 
 
+class Printed(NamedTuple):
+    """Printed numbers of one cell: the number of their table, and statistic -> (row in it, value, how many runs it is of)."""
+
+    table: int
+    statistics: dict[str, tuple[int, float, float]]
+
+
 def listed(value: Any) -> list:
     """A value, or a list of values, as a list."""
     return value if isinstance(value, list) else [value]
 
 
-def printed(
-    check: dict, places: list[list[pd.DataFrame]], tables: list[tuple[str, pd.DataFrame]], variant_of: dict[str, str]
-) -> tuple[np.ndarray, int | None]:
+def printed(check: dict, found: Sequence[Sequence[Printed | None]]) -> tuple[np.ndarray, int | None]:
     """Printed numbers of cells (k,), averaged over conditions, and how many runs they are of, None if that is not printed.
 
-    places: of each condition, of each cell, the columns that tell runs apart, once for all its runs. tables: experiment and published
-    numbers; the first that has a cell serves. variant_of: method -> the method whose published numbers count.
+    found: of each condition, of each cell, its rows as from `rows_of_cell`.
 
     All of one statistic: the check's own or an unstated one; where it names none, the first of `_ANY_STATISTIC` that is printed of every
     cell. Not a number where a cell is not printed, or where two cells would have the same row (the paper does not tell them apart).
     """
-    cells = len(places[0])
+    cells = len(found[0])
     nothing = np.full(cells, np.nan), None
-    found = [_rows_of_cell(cell, check["metric"], tables, variant_of) for condition in places for cell in condition]
+    found = list(itertools.chain.from_iterable(found))
     if None in found:
         return nothing
-    rows = [(table, row) for table, statistics in found for row, _, _ in statistics.values()]
+    rows = [(each.table, row) for each in found for row, _, _ in each.statistics.values()]
     if len(set(rows)) < len(rows):
         return nothing
     named = check.get("statistic", "rank")
     for statistic in _ANY_STATISTIC if named == "rank" else (named, "unstated"):
-        if all(statistic in statistics for _, statistics in found):
-            values, runs = np.array([statistics[statistic][1:] for _, statistics in found]).T
+        if all(statistic in each.statistics for each in found):
+            values, runs = np.array([each.statistics[statistic][1:] for each in found]).T
             numbers = (values / runs if statistic == "count" else values).reshape(-1, cells).mean(axis=0)
             return claim_tests.event(check, numbers), None if np.isnan(runs).all() else int(np.nanmin(runs))
     return nothing
 
 
-def _rows_of_cell(
-    cell: pd.DataFrame, metric: str, tables: list[tuple[str, pd.DataFrame]], variant_of: dict[str, str]
-) -> tuple[int, dict[str, tuple[int, float, float]]] | None:
-    """The number of the first table that has the metric of a cell, and statistic -> (row, value, runs) in it.
+def rows_of_cell(cell: pd.DataFrame, metric: str, tables: list[tuple[str, pd.DataFrame]], variant_of: dict[str, str]) -> Printed | None:
+    """The printed numbers of a cell's metric; None if no table has it, or if the cell is several rows of it.
 
-    None if no table has it, or if the cell is several rows of it.
+    cell: the columns that tell its runs apart. tables: experiment and published numbers; the first that has the cell serves.
+    variant_of: method -> the method whose published numbers count.
     """
     for number, (experiment, table) in enumerate(tables):
         keys = table.columns[: table.columns.get_loc("metric")].to_list()
@@ -67,7 +72,7 @@ def _rows_of_cell(
             rows = rows[rows[key] == (variant_of.get(value, value) if key == "method" else value)]
         if not rows.empty:
             values, runs = (rows[column].astype(float) for column in ("value", "n"))
-            return number, dict(zip(rows["statistic"], zip(rows.index, values, runs)))
+            return Printed(number, dict(zip(rows["statistic"], zip(rows.index, values, runs))))
     return None
 
 
