@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezierplan.analysis import statistics
-from bezierplan.analysis.statistics import LEAST_RUNS, STATISTICS, generator, interval, resampled, statistic, yardstick
+from bezierplan.analysis.statistics import LEAST_RUNS, STATISTICS, generator, interval, predicted, resampled, statistic, yardstick
 
 samples = st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=30).map(np.array)
 
@@ -149,9 +149,43 @@ def test_nothing_to_judge(values, published):
     assert reproduced is None
 
 
-def test_yardstick_accepts_its_own_distribution():
-    # With many more runs of ours than of the paper's, about 5 % of the true numbers are refused.
+def _drawn(name: str, size: int, rng: np.random.Generator) -> np.ndarray:
+    """Truths for counts and shares, else skewed numbers."""
+    return (rng.random(size) < 0.85).astype(float) if name in ("count", "share") else rng.gamma(5, size=size)
+
+
+@pytest.mark.parametrize("name", ["mean", "median", "min", "max", "count", "share"])
+@pytest.mark.parametrize(("ours", "theirs"), [(10, 10), (30, 30), (10, 40), (200, 10)])
+def test_yardstick_refuses_few_true_numbers(name, ours, theirs):
     rng = np.random.default_rng(4)
-    ours = rng.gamma(3, size=2000)
-    refused = sum(not yardstick("mean", ours, rng.gamma(3, size=10).mean(), 10, 4, generator(f"own {r}"))[1] for r in range(100))
-    assert refused <= 12
+    refused = 0
+    for repeat in range(300):
+        values, published = _drawn(name, ours, rng), statistic(name, _drawn(name, theirs, rng))
+        refused += not yardstick(name, values, published, theirs, None, generator(f"true {repeat}"))[1]
+    assert refused / 300 <= 0.08
+
+
+@pytest.mark.parametrize("runs", [10, 30])
+def test_resampling_alone_would_refuse_many(runs):
+    # Why the yardstick draws in two stages: ours are a sample too.
+    rng = np.random.default_rng(5)
+    refused = 0
+    for repeat in range(300):
+        draws, published = resampled("mean", rng.normal(size=runs), runs, generator(f"alone {repeat}")), rng.normal(size=runs).mean()
+        low, high = np.quantile(draws, [statistics.TAIL, 1 - statistics.TAIL])
+        refused += not low <= published <= high
+    assert 0.14 <= refused / 300 <= 0.28
+
+
+@pytest.mark.parametrize(("name", "away"), [("mean", 1.0), ("median", 1.3), ("min", 3.0), ("share", 0.7)])
+def test_yardstick_refuses_what_is_far_off(name, away):
+    rng = np.random.default_rng(6)
+    values = np.ones(30) if name == "share" else rng.normal(size=30)
+    assert not yardstick(name, values, statistic(name, values) + (away if name != "share" else -away), 30, None, generator("far"))[1]
+
+
+def test_predicted_mean_has_the_error_of_both_samples():
+    values = np.random.default_rng(1).normal(size=50)
+    drawn = predicted("mean", values, 20, generator("both"))
+    assert drawn.shape == (statistics.DRAWS,)
+    assert drawn.std() == pytest.approx(values.std() * math.sqrt(1 / 20 + 1 / 50), rel=0.08)

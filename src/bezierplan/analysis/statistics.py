@@ -142,10 +142,30 @@ def interval(name: str, values: np.ndarray, rng: np.random.Generator) -> tuple[f
     return float(low), float(high)
 
 
+def predicted(name: str, values: np.ndarray, size: int, rng: np.random.Generator) -> np.ndarray:
+    """A named statistic of experiments with `size` values, of which all that is known are our values (n,), n at least 1: (DRAWS,).
+
+    Drawn in two stages, because ours are a sample too: what they were drawn from, and from that an experiment. Numbers are drawn with
+    replacement twice; of truths the share is drawn (from Jeffreys' posterior), then how many are true.
+    """
+    if name in ("count", "share"):
+        true = values.sum()
+        counts = rng.binomial(size, rng.beta(true + 0.5, len(values) - true + 0.5, DRAWS))
+        return counts / (size if name == "share" else 1)
+    rows = max(1, BLOCK // max(size, len(values)))
+    drawn = np.empty(DRAWS)
+    for first in range(0, DRAWS, rows):
+        block = drawn[first : first + rows]
+        world = rng.integers(len(values), size=(len(block), len(values)), dtype=np.int32)
+        experiment = rng.integers(len(values), size=(len(block), size), dtype=np.int32)
+        block[:] = STATISTICS[name](values[np.take_along_axis(world, experiment, axis=1)])
+    return drawn
+
+
 def yardstick(
     name: str, values: np.ndarray, published: float, size: int | None, decimals: int | None, rng: np.random.Generator
 ) -> tuple[float, bool | None]:
-    """Where a published number lies among what experiments of the paper's size would have printed, drawn from our values (n,).
+    """Where a published number lies among what experiments of the paper's size would have printed, as far as our values (n,) tell.
 
     size: how many values the published statistic is of; None if the paper does not say, then the number is placed among our single values.
     decimals: those of the printed number, to which ours are rounded before they are compared; None to compare as they are.
@@ -155,9 +175,45 @@ def yardstick(
     """
     if not len(values) or math.isnan(published):
         return math.nan, None
-    ours = values if size is None else resampled(name, values, size, rng)
+    tail = TAIL
+    if size is None:
+        least = most = values
+    elif name in ("min", "max"):
+        least, most = _extremes(name, values, size)
+    else:
+        least = most = predicted(name, values, size, rng)
+        if name not in ("count", "share"):
+            tail = _expanded_tail(len(values))
     if decimals is not None:
-        ours, published = np.round(ours, decimals), round(published, decimals)
-    below, above = np.mean(ours < published), np.mean(ours > published)
-    reproduced = bool(below <= 1 - TAIL and above <= 1 - TAIL) if len(values) >= LEAST_RUNS else None
+        least, most, published = np.round(least, decimals), np.round(most, decimals), round(published, decimals)
+    below, above = np.mean(most < published), np.mean(least > published)
+    reproduced = bool(below <= 1 - tail and above <= 1 - tail) if len(values) >= LEAST_RUNS else None
     return float((below + 1 - above) / 2), reproduced
+
+
+def _expanded_tail(n: int) -> float:
+    """What to leave at either end of bootstrap draws from n values for a central 95 % (the expanded percentile interval, Hesterberg 2015).
+
+    Few values vary less than what they are drawn from, and their spread is uncertain: normal quantiles give way to those of Student's t.
+    """
+    if n < 2:
+        return TAIL
+    from scipy.special import ndtr, stdtrit
+
+    return float(ndtr(math.sqrt(n / (n - 1)) * stdtrit(n - 1, TAIL)))
+
+
+def _extremes(name: str, values: np.ndarray, size: int) -> tuple[np.ndarray, np.ndarray]:
+    """Ends (DRAWS,) of the gaps between our values (n,) in which the least (largest) of `size` others may lie, evenly spaced by chance.
+
+    Resampling never goes beyond our own extremes, where half of all experiments of our size do. All orders of our values and the others
+    are equally likely, which gives the chance of each gap; the outermost are infinite.
+    """
+    if name == "max":
+        least, most = _extremes("min", -values, size)
+        return -most, -least
+    ends = np.concatenate([[-np.inf], np.sort(values), [np.inf]])
+    # Chance that more than 0, 1, ... of ours lie below the least of the others.
+    beyond = np.cumprod(np.arange(len(values), 0, -1) / np.arange(len(values) + size, size, -1))
+    gaps = np.searchsorted(-beyond, -(np.arange(DRAWS) + 0.5) / DRAWS)
+    return ends[gaps], ends[gaps + 1]
