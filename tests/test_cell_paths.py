@@ -1,0 +1,262 @@
+"""Operators on paths over a lattice: against plain lists and formulas, and what no operator may do."""
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import stats
+
+from bezierplan import curves
+from bezierplan.problem import Path
+from bezierplan.search import cell_paths
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.lattice import STEPS, lattice, points
+
+ROWS, COLUMNS = 7, 9
+seeds = st.integers(0, 10_000)
+
+
+def random_grid(seed):
+    occupied = np.random.default_rng(seed).random((ROWS, COLUMNS)) < 0.25
+    occupied[0, 0] = occupied[-1, -1] = False
+    return Grid(occupied, 1.0, "unit")
+
+
+def places_of(grid, corners="one"):
+    rows, columns = grid.occupied.shape
+    return lattice(grid, grid.centre(0), grid.centre(rows * columns - 1), corners)
+
+
+def marks_of(places):
+    return np.zeros(len(places.row), dtype=np.int64)
+
+
+OPEN = places_of(Grid(np.zeros((ROWS, COLUMNS), dtype=bool), 1.0, "unit"))
+
+
+def is_path(path, places):
+    return all(other in places.neighbours[one] for one, other in itertools.pairwise(path))
+
+
+def random_walk(rng, places, steps):
+    """A path from the start that may cross itself."""
+    path = [places.start]
+    for _ in range(steps):
+        reached = places.neighbours[path[-1]]
+        if (reached < 0).all():
+            break
+        path.append(int(rng.choice(reached[reached >= 0])))
+    return np.array(path)
+
+
+def joined_list(places, cells, longest):
+    """What `join` should give, with a list that grows in its middle; None if the cells cannot be joined."""
+    occupied = places.occupied.reshape(ROWS, COLUMNS)
+    cells = list(cells)
+    k = 0
+    while k < len(cells) - 1:
+        one, other = cells[k], cells[k + 1]
+        if one == other:
+            del cells[k + 1]
+        elif other in places.neighbours[one]:
+            k += 1
+        else:
+            (row, column), (other_row, other_column) = divmod(one, COLUMNS), divmod(other, COLUMNS)
+            row, column = (row + other_row) // 2, (column + other_column) // 2
+            middle = row * COLUMNS + column
+            if occupied[row, column] or middle in (one, other):
+                around = [(row + up, column + right) for up, right in STEPS]
+                inside = [r * COLUMNS + c for r, c in around if 0 <= r < ROWS and 0 <= c < COLUMNS and not occupied[r, c]]
+                middle = next((cell for cell in inside if cell not in cells), None)
+            if middle is None or len(cells) == longest:
+                return None
+            cells.insert(k + 1, middle)
+    return cells
+
+
+@given(seeds, st.sampled_from(["one", "none"]), st.integers(10, 60))
+@settings(max_examples=200)
+def test_cells_are_joined_as_a_list_that_grows_in_its_middle(seed, corners, longest):
+    grid, rng = random_grid(seed), np.random.default_rng(seed)
+    places, marks = places_of(grid, corners), marks_of(places_of(grid))
+    cells = np.array([places.start, *rng.choice(np.flatnonzero(~places.occupied), size=4), places.target])
+    path = np.empty(longest, dtype=np.int64)
+    size = cell_paths.join(places, cells, path, marks)
+    expected = joined_list(places, cells.tolist(), longest)
+    assert path[:size].tolist() == (expected or [])
+    assert expected is None or is_path(expected, places)
+    assert not marks.any()
+
+
+@given(seeds)
+@settings(max_examples=50)
+def test_loops_are_cut_and_nothing_else(seed):
+    places = places_of(random_grid(seed))
+    path, marks = random_walk(np.random.default_rng(seed), places, 40), marks_of(places)
+    expected = []
+    for cell in path.tolist():
+        expected = expected[: expected.index(cell)] if cell in expected else expected
+        expected.append(cell)
+    size = cell_paths.cut_loops(path, marks)
+    assert path[:size].tolist() == expected
+    assert is_path(expected, places)
+    assert not marks.any()
+
+
+@given(seeds)
+@settings(max_examples=50)
+def test_length_is_that_of_the_polyline_with_its_ends(seed):
+    grid = random_grid(seed)
+    start, target = (0.1, 0.2), (8.9, 6.3)
+    places = lattice(grid, start, target, "one")
+    path = random_walk(np.random.default_rng(seed), places, 20)
+    polyline = Path("polyline", points(grid, start, grid.centre(int(path[-1])), path))
+    last_way = places.ends - np.hypot(0.4, 0.3)
+    assert cell_paths.length(path, places) == pytest.approx(curves.length(polyline) + last_way)
+
+
+def test_a_common_cell_is_any_place_of_the_first_path_and_the_last_of_the_other():
+    one, other, marks = np.array([0, 1, 2, 3, 2, 4, 8]), np.array([0, 2, 5, 2, 3, 6, 8]), marks_of(OPEN)
+    found = [cell_paths.common_cell(np.random.default_rng(i), one, other, marks) for i in range(900)]
+    places, counts = np.unique(found, axis=0, return_counts=True)
+    assert places.tolist() == [[2, 3], [3, 4], [4, 3]]
+    assert stats.chisquare(counts).pvalue > 1e-3
+    assert not marks.any()
+
+
+def test_the_ends_are_no_common_cells():
+    apart = cell_paths.common_cell(np.random.default_rng(0), np.array([0, 1, 2]), np.array([0, 9, 2]), marks_of(OPEN))
+    assert apart == (0, 0)
+
+
+def test_a_changed_cell_stays_beside_the_same_two():
+    path, child = np.array([0, 1, 2, 3]), np.empty(4, dtype=np.int64)
+    found = set()
+    for i in range(200):
+        assert cell_paths.change_cell(np.random.default_rng(i), OPEN, path, child) == 4
+        assert is_path(child, OPEN)
+        found.add(tuple(child.tolist()))
+    assert found == {(0, 10, 2, 3), (0, 1, 11, 3)}
+
+
+def test_a_cell_that_nothing_can_replace_is_dropped_if_its_neighbours_meet():
+    corridor = places_of(Grid(np.zeros((1, 6), dtype=bool), 1.0, "unit"))
+    child = np.empty(9, dtype=np.int64)
+    assert cell_paths.change_cell(np.random.default_rng(0), corridor, np.arange(6), child) == 0
+    corner = places_of(Grid(np.array([[False, False], [True, False]]), 1.0, "unit"))
+    found = set()
+    for i in range(50):
+        size = cell_paths.change_cell(np.random.default_rng(i), corner, np.array([0, 1, 3, 1]), child)
+        found.add(tuple(child[:size].tolist()))
+    assert found == {(0, 3, 1), (0, 1, 0, 1)}
+
+
+def test_paths_of_three_cells_are_left_alone():
+    assert cell_paths.change_cell(np.random.default_rng(0), OPEN, np.array([0, 1, 2]), np.empty(3, dtype=np.int64)) == 0
+
+
+@given(seeds)
+@settings(max_examples=50)
+def test_a_reconnected_part_is_a_path_by_way_of_the_bounding_box(seed):
+    places, rng = places_of(random_grid(seed)), np.random.default_rng(seed)
+    first, last = rng.choice(np.flatnonzero(~places.occupied), size=2, replace=False)
+    part = np.empty(60, dtype=np.int64)
+    size = cell_paths.reconnect(rng, places, first, last, part, marks_of(places))
+    if size:
+        assert (part[0], part[size - 1]) == (first, last)
+        assert is_path(part[:size], places)
+
+
+@given(seeds, st.integers(0, 8))
+@settings(max_examples=50)
+def test_a_walk_meets_its_end_without_a_cell_twice(seed, tries):
+    places, rng = places_of(random_grid(seed)), np.random.default_rng(seed)
+    first, last = rng.choice(np.flatnonzero(~places.occupied), size=2, replace=False)
+    part, marks = np.empty(30, dtype=np.int64), marks_of(places)
+    size = cell_paths.walk(rng, places, first, last, tries, part, marks)
+    assert not marks.any()
+    if size:
+        assert (part[0], part[size - 1]) == (first, last)
+        assert is_path(part[:size], places)
+        assert len(set(part[:size].tolist())) == size
+
+
+def test_a_fish_forages_by_its_tries():
+    """From a corner two of the three neighbours are nearer to a target further along the row; then every neighbour is as likely."""
+    visited, rng = marks_of(OPEN), np.random.default_rng(0)
+    counts = {tries: np.zeros(len(visited)) for tries in (0, 1)}
+    for tries, count in counts.items():
+        for _ in range(3000):
+            count[cell_paths.forage(rng, OPEN, 0, COLUMNS - 1, tries, visited)] += 1
+    third, nearer = 1 / 3, 1 / 3 + 1 / 9
+    reached = [1, COLUMNS, COLUMNS + 1]
+    assert stats.chisquare(counts[0][reached], 3000 * np.array([third, third, third])).pvalue > 1e-3
+    assert stats.chisquare(counts[1][reached], 3000 * np.array([nearer, third**2, nearer])).pvalue > 1e-3
+
+
+def test_a_fish_among_visited_cells_has_nowhere_to_go():
+    visited = marks_of(OPEN)
+    visited[[1, COLUMNS, COLUMNS + 1]] = 1
+    assert cell_paths.forage(np.random.default_rng(0), OPEN, 0, COLUMNS - 1, 8, visited) == -1
+
+
+def first_paths(places, seed, population=8, longest=60):
+    """Paths from start to target through random cells."""
+    rng, marks = np.random.default_rng(seed), marks_of(places)
+    free = np.flatnonzero(~places.occupied)
+    paths, sizes = np.zeros((population, longest), dtype=np.int64), np.zeros(population, dtype=np.int64)
+    for i in range(population):
+        while not sizes[i]:
+            cells = np.array([places.start, *rng.choice(free, size=3), places.target])
+            sizes[i] = cell_paths.join(places, cells, paths[i], marks)
+    return paths, sizes
+
+
+RULES = {
+    "swapped tails, reconnected": cell_paths.Rules(0.9, False, 0.5, cell_paths.RECONNECT, 60, 0, False, 1),
+    "shorter parts, one cell": cell_paths.Rules(0.9, True, 0.5, cell_paths.ONE_CELL, 60, 0, True, 1),
+    "shorter parts, walks": cell_paths.Rules(0.9, True, 0.5, cell_paths.WALK, 30, 8, True, 1),
+    "no elite": cell_paths.Rules(1.0, True, 1.0, cell_paths.RECONNECT, 60, 0, True, 0),
+}
+
+
+@pytest.mark.parametrize("rules", RULES.values(), ids=RULES)
+@pytest.mark.parametrize("seed", range(4))
+def test_evolution_ends_with_a_path_of_the_length_that_it_says(rules, seed):
+    places = places_of(Grid(np.random.default_rng(seed).random((ROWS, COLUMNS)) < [0, 0.05, 0.1, 0.0][seed], 1.0, "unit"))
+    paths, sizes = first_paths(places, seed)
+    shortest = min(cell_paths.length(path[:size], places) for path, size in zip(paths, sizes, strict=True))
+    best, history = cell_paths.evolve(np.random.default_rng(seed), places, paths, sizes, 30, rules)
+    assert (best[0], best[-1]) == (places.start, places.target)
+    assert is_path(best, places)
+    assert history[0] == shortest
+    assert history[-1] == cell_paths.length(best, places)
+    assert (np.diff(history) <= 0).all()
+    assert history[-1] < shortest
+
+
+def test_children_that_do_not_fit_stay_as_their_parents_were():
+    """Loops are kept here, so that paths would grow without end."""
+    rules = cell_paths.Rules(1.0, False, 1.0, cell_paths.RECONNECT, 60, 0, False, 0)
+    paths, sizes = first_paths(OPEN, 1)
+    longest = sizes.max()
+    tight = np.ascontiguousarray(paths[:, :longest])
+    best, history = cell_paths.evolve(np.random.default_rng(0), OPEN, tight, sizes, 200, rules)
+    assert is_path(best, OPEN)
+    assert history[-1] == cell_paths.length(best, OPEN)
+
+
+def test_without_crossover_and_mutation_the_best_of_the_first_stays():
+    rules = cell_paths.Rules(0.0, True, 0.0, cell_paths.ONE_CELL, 1, 0, True, 0)
+    _, history = cell_paths.evolve(np.random.default_rng(0), OPEN, *first_paths(OPEN, 0), 20, rules)
+    assert (history == history[0]).all()
+
+
+def test_the_compiled_evolution_agrees_with_its_plain_python():
+    rules = RULES["shorter parts, walks"]
+    results = [
+        evolve(np.random.default_rng(5), OPEN, *first_paths(OPEN, 3), 5, rules) for evolve in (cell_paths.evolve, cell_paths.evolve.py_func)
+    ]
+    assert all(np.array_equal(*pair) for pair in zip(*results, strict=True))
