@@ -87,6 +87,6 @@ def test_an_unknown_rule_for_corners_is_named():
 def test_points_hold_the_centres_of_start_and_target_once():
     assert points(OPEN, (1.0, 1.0), (3.0, 1.0), np.array([0, 1])).tolist() == [[1, 1], [3, 1]]
     assert points(OPEN, (0.0, 0.0), (3.0, 1.0), np.array([0, 1])).tolist() == [[0, 0], [1, 1], [3, 1]]
-    assert points(OPEN, (1.0, 1.0), (1.0, 1.0), np.array([0])).tolist() == [[1, 1], [1, 1]]
+    assert points(OPEN, (0.5, 1.0), (0.5, 1.0), np.array([0])).tolist() == [[0.5, 1], [0.5, 1]]
     # A path that comes by its start again keeps that.
     assert points(OPEN, (1.0, 1.0), (3.0, 1.0), np.array([0, 5, 0, 1])).tolist() == [[1, 1], [1, 3], [1, 1], [3, 1]]

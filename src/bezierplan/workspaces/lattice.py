@@ -22,7 +22,8 @@ class Lattice(NamedTuple):
 
     neighbours: (cells, 8) the number of the cell that each of `STEPS` reaches, -1 where it is not allowed. around: (cells, 8) the same
     without any rule for corners, -1 only outside the grid and for occupied cells. occupied: bool (cells,). row, column: (cells,). start,
-    target: cells. diagonal: length of a diagonal step, others count 1. ends: length from start and target to the centres of their cells.
+    target: cells. diagonal: length of a diagonal step, others count 1. ends: length from start and target to the centres of their cells, 0
+    if start is target.
     """
 
     neighbours: np.ndarray
@@ -49,7 +50,8 @@ def lattice(grid: Grid, start: tuple[float, float], target: tuple[float, float],
             where = "outside the grid" if cell is None else f"in the occupied cell of row {cell[0]}, column {cell[1]}"
             raise ValueError(f"{name}: {point}: {where}; expected a point of a free cell")
         cells.append(cell[0] * columns + cell[1])
-        ends += math.dist(point, grid.centre(cells[-1])) / grid.cell
+        if start != target:
+            ends += math.dist(point, grid.centre(cells[-1])) / grid.cell
     row, column = np.divmod(np.arange(rows * columns), columns)
     return Lattice(
         neighbours(grid.occupied, corners), _around(grid.occupied), grid.occupied.ravel(), row, column, *cells, math.sqrt(2), ends
@@ -82,6 +84,11 @@ def _around(occupied: np.ndarray) -> np.ndarray:
 
 
 def points(grid: Grid, start: tuple[float, float], target: tuple[float, float], cells: np.ndarray) -> np.ndarray:
-    """Start, the centres of cells (n,), and target, in units: (n + 2, 2), or fewer where start and target are centres themselves."""
+    """Start, the centres of cells (n,), and target, in units: (n + 2, 2).
+
+    Fewer where start and target are centres themselves, and without a cell if start is target.
+    """
+    if start == target:
+        return np.array([start, target])
     centres = [grid.centre(cell) for cell in cells.tolist()]
     return np.array([start, *centres[centres[0] == start : len(centres) - (centres[-1] == target)], target])

@@ -1,0 +1,150 @@
+"""Ant colony optimisation: an ant's choice against its formula, and what becomes of the trails."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from scipy import stats
+from test_lattice_planners import COLONY, environment, plan
+
+from bezierplan.planners import ant_colony
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.lattice import lattice
+
+GRID = Grid(np.zeros((6, 6), dtype=bool), 1.0, "unit")
+PLACES = lattice(GRID, (0.0, 0.0), (6.0, 6.0), "one")
+
+
+def search(seed=0, places=PLACES, **changes):
+    return ant_colony.search(places, np.random.default_rng(seed), COLONY | changes)
+
+
+def test_the_first_step_is_drawn_by_nearness_of_the_target():
+    colony = search(ants=4000, iterations=1, heuristic_weight=3.0)
+    cells, counts = np.unique(colony.paths[:, 1], return_counts=True)
+    assert cells.tolist() == [1, 6, 7]
+    nearness = np.array([1 / math.hypot(5, 4), 1 / math.hypot(5, 4), 1 / math.hypot(4, 4)]) ** 3
+    assert stats.chisquare(counts, 4000 * nearness / nearness.sum()).pvalue > 1e-3
+
+
+def test_the_target_has_a_nearness_of_its_own():
+    grid = Grid(np.zeros((2, 2), dtype=bool), 1.0, "unit")
+    colony = search(places=lattice(grid, (0.0, 0.0), (2.0, 2.0), "one"), ants=4000, iterations=1, target_heuristic=2.0)
+    assert stats.binomtest((colony.sizes == 2).sum(), 4000, 4 / 6).pvalue > 1e-3
+
+
+def test_no_ant_visits_a_cell_twice_and_some_die():
+    occupied = np.zeros((6, 6), dtype=bool)
+    occupied[2, 1:4] = True
+    occupied[:2, 4] = True
+    places = lattice(Grid(occupied, 1.0, "unit"), (0.0, 0.0), (6.0, 6.0), "one")
+    colony = search(places=places, ants=500, iterations=1)
+    assert 0 < (colony.sizes == 0).sum() < 500
+    for path, size in zip(colony.paths, colony.sizes, strict=True):
+        assert len(set(path[:size].tolist())) == size
+        assert size == 0 or path[size - 1] == places.target
+
+
+def test_where_all_other_trails_are_gone_ants_follow_the_first_one():
+    """One ant lays the only trail; so its path depends on its own deposit, and on nothing else's being left."""
+    for seed in range(5):
+        first, last = (search(seed, ants=1, iterations=iterations, evaporation=1.0) for iterations in (1, 30))
+        assert last.sizes[0] == first.sizes[0]
+        assert last.paths[0, : last.sizes[0]].tolist() == first.paths[0, : first.sizes[0]].tolist()
+
+
+def test_trails_lead_both_ways():
+    trail = np.ones((36, 8))
+    ant_colony._lay(PLACES, trail, 0, 7, 0.5, 0.2)
+    expected = np.ones((36, 8))
+    expected[0, 5 + 2] = expected[7, 4] = 0.7
+    assert np.allclose(trail, expected)
+
+
+def laid(monkeypatch, **changes):
+    """Every change of a trail in a search: (cell, cell, kept share, what is added), in plain Python."""
+    changed = []
+    plain = ant_colony._lay.py_func
+
+    def record(lattice, trail, one, other, kept, added):
+        changed.append((int(one), int(other), kept, added))
+        plain(lattice, trail, one, other, kept, added)
+
+    with monkeypatch.context() as patched:
+        patched.setattr(ant_colony, "_lay", record)
+        for name in ("_colony", "_walk"):
+            patched.setattr(ant_colony, name, getattr(ant_colony, name).py_func)
+        search(**changes)
+    return changed
+
+
+def steps(path, size):
+    return list(itertools.pairwise(path[:size].tolist()))
+
+
+def length(path, size):
+    return np.hypot(*np.diff(np.divmod(path[:size], 6), axis=1)).sum() + math.sqrt(2)
+
+
+def test_an_ant_system_adds_one_over_the_length_to_the_steps_of_each_path(monkeypatch):
+    first = search(ants=3, iterations=1)
+    expected = [
+        (*step, 1.0, pytest.approx(5.0 / length(path, size)))
+        for path, size in zip(first.paths, first.sizes, strict=True)
+        for step in steps(path, size)
+    ]
+    assert laid(monkeypatch, ants=3, iterations=2, deposit=5.0) == expected
+
+
+def test_an_ant_colony_system_wears_off_each_step_and_adds_to_the_best_path_alone(monkeypatch):
+    system = {"trail_update": "ant_colony_system", "local_evaporation": 0.2, "initial_trail": 0.5, "evaporation": 0.3, "deposit": 2.0}
+    first = search(ants=3, iterations=1, **system)
+    worn = [step for path, size in zip(first.paths, first.sizes, strict=True) for step in steps(path, size)]
+    changed = laid(monkeypatch, ants=3, iterations=2, **system)
+    best = steps(first.best, len(first.best))
+    assert changed[: len(worn)] == [(*step, 0.8, 0.1) for step in worn]
+    added = changed[len(worn) : len(worn) + len(best)]
+    assert added == [(*step, 0.7, pytest.approx(0.3 * 2.0 / length(first.best, len(first.best)))) for step in best]
+    assert {change[2:] for change in changed[len(worn) + len(best) :]} == {(0.8, 0.1)}
+
+
+def test_the_compiled_colony_agrees_with_its_plain_python(monkeypatch):
+    changes = {"ants": 4, "iterations": 4, "exploitation": 0.5, "local_evaporation": 0.1, "trail_update": "ant_colony_system"}
+    compiled = search(**changes)
+    monkeypatch.setattr(ant_colony, "_colony", ant_colony._colony.py_func)
+    plain = search(**changes)
+    assert np.array_equal(compiled.history, plain.history)
+    assert np.array_equal(compiled.best, plain.best)
+
+
+def test_exploitation_takes_the_most_attractive_step():
+    colony = search(ants=10, iterations=3, exploitation=1.0)
+    assert (colony.paths[:, :6] == [0, 7, 14, 21, 28, 35]).all()
+    assert (colony.history == 6 * math.sqrt(2)).all()
+
+
+def test_choices_of_no_attraction_are_uniform():
+    rng = np.random.default_rng(0)
+    counts = np.bincount([ant_colony._choose(rng, np.zeros(4), 0.0) for _ in range(2000)], minlength=4)
+    assert stats.chisquare(counts).pvalue > 1e-3
+
+
+@pytest.mark.parametrize("weights", [[1.0, 2.0, 3.0], [5.0, 0.0, 1.0]])
+def test_choices_are_in_proportion_to_attraction(weights):
+    rng, weights = np.random.default_rng(0), np.array(weights)
+    counts = np.bincount([ant_colony._choose(rng, weights, 0.0) for _ in range(3000)], minlength=3)
+    some = weights > 0
+    assert stats.chisquare(counts[some], 3000 * weights[some] / weights.sum()).pvalue > 1e-3
+    assert not counts[~some].any()
+
+
+def test_stronger_settings_find_shorter_paths():
+    weak, strong = (np.mean([plan(name, environment(1), seed).objective for seed in range(10)]) for name in ("aco", "aco_strong"))
+    assert strong < weak - 5
+
+
+def test_evaluations_are_the_ants_of_all_iterations():
+    found = plan("aco", iterations=7)
+    assert found.evaluations == 140
+    assert len(found.history) == 7

@@ -1,0 +1,88 @@
+"""The genetic algorithm over the lattice: both codings, and their first populations."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+from test_lattice_planners import environment, plan
+
+from bezierplan.planners import lattice_genetic
+from bezierplan.problem import Problem
+from bezierplan.search import cell_paths
+from bezierplan.workspaces.grid import Grid, from_lines
+from bezierplan.workspaces.lattice import lattice
+
+OPEN = Problem("test", Grid(np.zeros((8, 8), dtype=bool), 1.0, "unit"), (0.0, 0.0), (8.0, 8.0))
+
+
+def test_without_a_gene_start_and_target_are_joined():
+    found = plan("ga", OPEN, genes=0, generations=3)
+    assert found.objective == pytest.approx(8 * math.sqrt(2))
+    assert (found.history == found.history[0]).all()
+
+
+def test_one_gene_is_searched_without_crossover():
+    assert plan("ga", environment(1), genes=1).claimed_feasible
+
+
+def test_genes_sorted_along_the_way_give_shorter_first_paths():
+    first = {name: np.mean([plan(name, seed=seed, generations=0).objective for seed in range(10)]) for name in ("ga", "ga_sorted")}
+    assert first["ga_sorted"] < first["ga"] - 5
+
+
+def test_without_the_best_kept_it_may_be_lost_but_not_forgotten():
+    kept, lost = plan("ga", seed=3), plan("ga", seed=3, elitism=0)
+    assert (np.diff(lost.history) <= 0).all()
+    assert kept.history[0] == lost.history[0]
+    assert not np.array_equal(kept.history, lost.history)
+
+
+def test_what_a_chromosome_without_a_path_counts_matters_to_the_roulette():
+    tight = {"longest_join": 65, "generations": 20}
+    one, other = (plan("ga", seed=1, undecodable_length=length, **tight) for length in (36.0, 2000.0))
+    assert one.history[0] == other.history[0]
+    assert not np.array_equal(one.history, other.history)
+
+
+def test_a_join_that_no_path_fits_in_finds_none():
+    assert plan("ga", longest_join=20).path is None
+    assert plan("ga_rows", longest_join=20).path is None
+
+
+def test_first_paths_by_rows_are_paths_from_start_to_target():
+    problem = environment(2)
+    places = lattice(problem.workspace, problem.start, problem.target, "one")
+    rows = lattice_genetic._rows_between(places)
+    assert len(rows) == 18
+    assert [set(places.row[row].tolist()) for row in rows] == [{row} for row in range(1, 19)]
+    paths, sizes = lattice_genetic._first_paths(np.random.default_rng(0), places, rows, 20, 600)
+    for path, size in zip(paths, sizes, strict=True):
+        assert (path[0], path[size - 1]) == (places.start, places.target)
+        assert all(cell_paths.step_between(places, *pair) >= 0 for pair in itertools.pairwise(path[:size]))
+        assert set(places.row[path[:size]].tolist()) == set(range(20))
+
+
+def test_rows_are_passed_from_the_start_down_too():
+    grid = OPEN.workspace
+    places = lattice(grid, (8.0, 8.0), (0.0, 0.0), "one")
+    assert [int(places.row[row[0]]) for row in lattice_genetic._rows_between(places)] == [6, 5, 4, 3, 2, 1]
+
+
+def test_a_row_without_a_free_cell_has_no_path():
+    grid = from_lines(["....", "####", "...."], 1.0, "unit")
+    found = plan("ga_rows", Problem("test", grid, (0.0, 0.0), (4.0, 3.0)))
+    assert found.path is None
+    assert found.history.tolist() == [math.inf]
+
+
+def test_the_compiled_search_agrees_with_its_plain_python(monkeypatch):
+    compiled = plan("ga", seed=2, population=6, generations=4)
+    monkeypatch.setattr(lattice_genetic, "_search", lattice_genetic._search.py_func)
+    plain = plan("ga", seed=2, population=6, generations=4)
+    assert np.array_equal(compiled.history, plain.history)
+    assert np.array_equal(compiled.path.points, plain.path.points)
+
+
+def test_evaluations_are_the_chromosomes_of_all_generations():
+    assert plan("ga", generations=7).evaluations == plan("ga_rows", generations=7).evaluations == 800
