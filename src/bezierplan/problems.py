@@ -15,7 +15,7 @@ import pyarrow.parquet as parquet
 from bezierplan import cell_length
 from bezierplan.exact.region import blocks, region
 from bezierplan.problem import Problem, Workspace
-from bezierplan.workspaces import files, random_circles, random_field
+from bezierplan.workspaces import files, lattice, random_blocks, random_circles, random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 
@@ -64,6 +64,8 @@ def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, st
             workspace = fixed[home]
         elif job["workspaces"][home]["kind"] == "random_field":
             workspace = random_field.field(job["workspaces"][home], description, f"{job['study']}/{home}")
+        elif job["workspaces"][home]["kind"] == "random_blocks":
+            workspace = _block_map(job["workspaces"][home], description, f"{job['study']}/{home}")
         else:
             key = home, description["layout"]
             if key not in layouts:
@@ -72,6 +74,28 @@ def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, st
             workspace = random_circles.first(layouts[key], description["obstacles"])
         problems[name] = build(name, description, workspace)
     return problems, {name: description["workspace"] for name, description in job["problems"].items()}
+
+
+# How near to the wanted length that of the shortest lattice path must be, in cells.
+_SAME_LENGTH = 1e-4
+
+
+def _block_map(description: dict, problem: dict, name: str) -> Grid:
+    """The first map of blocks whose shortest path over the 8-connected lattice has the wanted length, in cells, if one is wanted.
+
+    Raises ValueError if there is none.
+    """
+    from bezierplan.exact import bounds
+
+    wanted = description.get("lattice_length")
+    for grid in random_blocks.maps(description, problem, name):
+        ends = lattice.lattice(grid, tuple(problem["start"]), tuple(problem["target"]), description["corners"])
+        cells = (divmod(cell, problem["side"]) for cell in (ends.start, ends.target))
+        length = bounds.lattice_path(grid.occupied, *cells, ends.diagonal, description["corners"]).length + ends.ends
+        if math.isfinite(length) and (wanted is None or abs(length - wanted) < _SAME_LENGTH):
+            return grid
+    asked = "a path from start to target" if wanted is None else f"a shortest lattice path of lattice_length {wanted:g}"
+    raise ValueError(f"obstacles: {problem['obstacles']}: of {random_blocks.MOST_MAPS} maps none has so many occupied cells and {asked}")
 
 
 def write(problems: dict[str, Problem], workspaces: dict[str, str], file: str) -> None:

@@ -16,7 +16,7 @@ from bezierplan.problem import planner_module, planner_settings
 
 SCALES = ("smoke", "full", "extended")
 
-DRAWN = {"random_circles": "circles", "random_field": "grid"}
+DRAWN = {"random_circles": "circles", "random_field": "grid", "random_blocks": "grid"}
 """Kinds of workspace that are drawn at random -> the kind that planners meet."""
 
 

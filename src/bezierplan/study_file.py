@@ -235,8 +235,8 @@ def _check_problem(study: Study, name: str, problem: dict, place: str) -> None:
         raise Fault(f"{place}: workspace: {problem['workspace']}: {needed}")
     if drawn and "start" not in problem:
         raise Fault(f"{place}: start_cell: {problem['start_cell']}: cells of drawn workspaces have no numbers; expected start: [x, y]")
-    if (home["kind"] == "random_field") != ("side" in problem):
-        needed = "side is needed" if "side" not in problem else "side needs a workspace of kind random_field"
+    if (drawn and DRAWN[home["kind"]] == "grid") != ("side" in problem):
+        needed = "side is needed" if "side" not in problem else "side needs a workspace of kind random_field or random_blocks"
         raise Fault(f"{place}: workspace: {problem['workspace']}: {needed}")
     if home["kind"] == "random_circles" and max(problem["obstacles"]) > home["circles"]:
         raise Fault(f"{place}: obstacles: {max(problem['obstacles'])}; expected at most {home['circles']}, the circles of the workspace")

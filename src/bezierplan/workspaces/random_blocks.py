@@ -1,0 +1,58 @@
+"""Square maps with blocks of occupied cells at random places, none of which touches another."""
+
+import hashlib
+from collections.abc import Iterator
+
+import numpy as np
+
+from bezierplan.workspaces.grid import Grid
+
+# Maps after which nothing is hoped for, and blocks that are tried for one map.
+MOST_MAPS = 500
+MOST_BLOCKS = 4000
+
+
+def maps(description: dict, problem: dict, name: str) -> Iterator[Grid]:
+    """Maps for a problem, one after the other, drawn from names and numbers alone.
+
+    description: largest_block, the most cells of a block's side, clear_ends, how many cells stay free from those of start and target on in
+    every direction, themselves counted, and unit. problem: side, how many cells a map is wide and high, start, target, layout, its number,
+    and obstacles, how many cells are occupied. name: of study and workspace.
+
+    Width, height and place of a block are uniform. One that touches another, if only by a corner, reaches too near to an end, or would
+    occupy too many cells is left out. Of `MOST_MAPS` draws those that have the wanted number of occupied cells are maps.
+
+    Raises ValueError, naming the key, if start or target is not on the map.
+    """
+    side = problem["side"]
+    empty = Grid(np.zeros((side, side), dtype=bool), 1.0, description["unit"])
+    ends = np.zeros((side, side), dtype=bool)
+    for key in ("start", "target"):
+        cell = empty.cell_of(*problem[key])
+        if cell is None:
+            raise ValueError(f"{key}: {problem[key]}: outside the map; expected x and y from 0 to {side}")
+        ends |= np.abs(np.indices(ends.shape) - np.reshape(cell, (2, 1, 1))).max(axis=0) < description["clear_ends"]
+    parts = [name, side, *problem["start"], *problem["target"], problem["obstacles"], problem["layout"]]
+    rng = np.random.default_rng(int.from_bytes(hashlib.sha256("/".join(map(str, parts)).encode()).digest()))
+    for _ in range(MOST_MAPS):
+        occupied = _blocks(rng, ends, problem["obstacles"], min(description["largest_block"], side))
+        if occupied.sum() == problem["obstacles"]:
+            yield Grid(occupied, 1.0, description["unit"])
+
+
+def _blocks(rng: np.random.Generator, ends: np.ndarray, wanted: int, largest: int) -> np.ndarray:
+    """Occupied cells (side, side), as many as wanted, or fewer if the blocks run out. ends: bool (side, side), cells to leave free."""
+    side = len(ends)
+    occupied = np.zeros_like(ends)
+    count = 0
+    sizes = rng.integers(1, largest + 1, size=(MOST_BLOCKS, 2))
+    corners = rng.integers(0, side - sizes + 1)
+    for (height, width), (row, column) in zip(sizes.tolist(), corners.tolist()):
+        if count == wanted:
+            break
+        block = np.s_[row : row + height, column : column + width]
+        around = np.s_[max(row - 1, 0) : row + height + 1, max(column - 1, 0) : column + width + 1]
+        if count + height * width <= wanted and not ends[block].any() and not occupied[around].any():
+            occupied[block] = True
+            count += height * width
+    return occupied
