@@ -1,0 +1,230 @@
+"""ma2020: its maps, printed numbers, drawings, audit, and the claim about curvature; that its settings are the paper's."""
+
+import math
+from pathlib import Path as File
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from bezierplan import checked, problems
+from bezierplan.analysis import audit
+from bezierplan.analysis.results import Results
+from bezierplan.exact import bounds
+from bezierplan.planners import bca
+from bezierplan.problem import planner_module, planner_settings
+from bezierplan.studies import ma2020
+from bezierplan.workspaces import files
+
+FOLDER = File(__file__).parents[1] / "config" / "studies" / "ma2020"
+STUDY = checked.read(FOLDER / "experiments.yaml", "experiments")
+PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
+
+
+def problem(name):
+    described = STUDY["problems"][name]
+    return problems.build(name, described, files.load(STUDY["workspaces"][described["workspace"]], FOLDER))
+
+
+MAPS = {
+    # occupied cells; shortest path of 8 neighbours, half diagonals at the ends included, by both rules for corners; exact shortest path
+    "environment1": (60, 10 + 15 * math.sqrt(2), 33.5563492, 29.2080963),
+    "environment2": (83, 14 + 13 * math.sqrt(2), 32.9705627, 30.0618849),
+}
+
+
+@pytest.mark.parametrize("name", MAPS)
+def test_maps(name):
+    occupied, one_side, strict, shortest = MAPS[name]
+    grid = problem(name).workspace
+    assert grid.occupied.shape == (20, 20)
+    assert grid.occupied.sum() == occupied
+    parameters = PUBLISHED["parameters"].set_index(["workspace", "parameter"])["value"]
+    assert occupied == parameters[name, "occupied_cells"] == pytest.approx(4 * parameters[name, "obstacle_coverage"])
+    for rule, length in (("one", one_side), ("none", strict)):
+        found = bounds.lattice_path(grid.occupied, (0, 0), (19, 19), math.sqrt(2), rule)
+        assert found.length + math.sqrt(2) == pytest.approx(length, abs=1e-7)
+    assert bounds.shortest_path(problem(name)).length == pytest.approx(shortest, abs=1e-7)
+    # No two blocks touch, not even at a corner: then any two diagonal neighbours share a block's row or column.
+    diagonal = grid.occupied[1:, 1:] & grid.occupied[:-1, :-1] & ~grid.occupied[1:, :-1] & ~grid.occupied[:-1, 1:]
+    other = grid.occupied[1:, :-1] & grid.occupied[:-1, 1:] & ~grid.occupied[1:, 1:] & ~grid.occupied[:-1, :-1]
+    assert not diagonal.any()
+    assert not other.any()
+
+
+@pytest.mark.parametrize(("workspace", "name"), [("environment1", "environment1"), ("environment2", "environment2")])
+def test_settings_are_those_of_section_4(workspace, name):
+    parameters = PUBLISHED["parameters"].set_index(["workspace", "parameter"])["value"][workspace]
+    settings = STUDY["settings"] | STUDY["problems"][name].get("settings", {})
+    printed = {
+        "population": "population_size",
+        "generations": "maximum_generation",
+        "crossover_probability": "crossover_probability",
+        "mutation_probability": "mutation_probability",
+        "length_weight": "weight_length",
+        "safety_weight": "weight_safety",
+        "safety_distance": "safety_distance",
+    }
+    assert {setting: settings[setting] for setting in printed} == {setting: parameters[key] for setting, key in printed.items()}
+    assert STUDY["experiments"]["environments"]["repeats"]["full"] == parameters["runs"]
+    assert settings["iterations"] == settings["generations"]
+
+
+def test_long_runs_have_twenty_times_the_generations():
+    for name in MAPS:
+        short, long = (STUDY["settings"] | STUDY["problems"][f"{name}{end}"].get("settings", {}) for end in ("", "_long"))
+        assert long["generations"] == 20 * short["generations"]
+        assert long["length_weight"] == short["length_weight"]
+
+
+def test_bca_and_bca_q_differ_in_the_fitness_alone():
+    settings = [STUDY["methods"][name]["settings"] for name in ("bca", "bca_q")]
+    assert settings == [{"fitness": "length"}, {"fitness": "repaired"}]
+
+
+def test_variants_differ_from_the_method_that_they_vary():
+    for name, method in STUDY["methods"].items():
+        if "variant_of" in method:
+            other = STUDY["methods"][method["variant_of"]]
+            assert method["planner"] == other["planner"], name
+            assert (STUDY["settings"] | method.get("settings", {})) != (STUDY["settings"] | other.get("settings", {})), name
+            assert set(method["settings"]) <= planner_settings(planner_module(method["planner"])).keys(), name
+
+
+@pytest.mark.parametrize(("table", "rows"), [("table1", 34), ("table2", 34)])
+def test_printed_numbers(table, rows):
+    """The longest and mean time of ASFA-GA are dashes in both tables."""
+    printed = PUBLISHED[table]
+    assert len(printed) == rows == 6 * 6 - 2
+    assert printed[(printed["method"] == "asfa_ga") & (printed["metric"] == "cpu_s")]["statistic"].to_list() == ["min"]
+    assert set(printed["method"]) <= STUDY["methods"].keys()
+    for _, group in printed.groupby(["method", "metric"]):
+        values = group.set_index("statistic")["value"]
+        if len(values) == 3:
+            assert values["min"] < values["mean"] < values["max"]
+
+
+@pytest.mark.parametrize(
+    ("length", "moves"),
+    [(34.6248, (12, 16)), (32.8663, (6, 19)), (31.7964, (12, 14)), (31.2144, (10, 15)), (35.4526, (10, 18)), (33.7963, (14, 14))],
+)
+def test_printed_minima_are_lattice_lengths(length, moves):
+    assert ma2020.nearest_lattice_length(length) == moves
+    assert abs(moves[0] + moves[1] * math.sqrt(2) - length) < ma2020.LATTICE_TOLERANCE
+
+
+def test_nearest_lattice_length_is_one_of_a_path_from_corner_to_corner():
+    for length in np.linspace(ma2020.STRAIGHT, 60, 200):
+        straight, diagonal = ma2020.nearest_lattice_length(length)
+        assert straight % 2 == 0
+        assert straight + 2 * diagonal >= 40
+        assert diagonal >= 1
+    assert ma2020.nearest_lattice_length(35.4147) != (34, 1)  # near, but no path from corner to corner
+
+
+def test_lattice_lengths():
+    table = ma2020.lattice_lengths(PUBLISHED)
+    assert len(table) == 24
+    rivals = table["method"].isin(ma2020.LATTICE_METHODS)
+    met = table["met"] == "yes"
+    assert met[rivals & (table["statistic"] == "min")].all()
+    assert not met[rivals & (table["statistic"] == "max")].any()
+    assert not met[~rivals & (table["statistic"] == "min")].any()
+
+
+def test_chance_of_lattice_lengths():
+    """Against lengths drawn at random; the eight printed minima are no chance."""
+    chance = ma2020.chance_of_lattice(31, 36, ma2020.LATTICE_TOLERANCE)
+    drawn = np.random.default_rng(0).uniform(31, 36, 4000)
+    near = [straight + diagonal * math.sqrt(2) for straight, diagonal in map(ma2020.nearest_lattice_length, drawn)]
+    assert np.mean(np.abs(near - drawn) <= ma2020.LATTICE_TOLERANCE) == pytest.approx(chance, abs=0.012)
+    assert chance == pytest.approx(0.068, abs=0.002)
+    assert chance**8 < 1e-9
+    assert ma2020.chance_of_lattice(31, 36, 1.0) == pytest.approx(1)
+
+
+def test_audit():
+    rows = audit.table("ma2020", ma2020.audit(PUBLISHED))
+    wrong = rows[~rows["consistent"].astype(bool)]
+    lattice = rows[rows["rule"].str.startswith("a path of 8")]
+    assert len(lattice) == 16
+    assert lattice.groupby(lattice["place"].str[-3:])["consistent"].sum().to_dict() == {"max": 0, "min": 8}
+    means = wrong[wrong["rule"].str.contains("mean length")]
+    assert means["printed"].to_list() == [32.9973, 33.7628]  # of BCA-Q, above those of ASFA-GA
+    slow = wrong[wrong["rule"].str.contains("slightly")]
+    assert len(slow) == 6
+    assert len(wrong) == 8 + 2 + 6
+
+
+@pytest.mark.parametrize(
+    ("row", "value"),
+    [({"method": "aco", "metric": "length", "statistic": "min"}, 34.7), ({"method": "bca", "metric": "length", "statistic": "min"}, 28.0)],
+)
+def test_audit_sees_a_changed_number(row, value):
+    table = PUBLISHED["table1"].copy()
+    table.loc[(table[list(row)] == pd.Series(row)).all(axis=1), "value"] = value
+    before, after = (sum(not each["consistent"] for each in ma2020.audit(given)) for given in (PUBLISHED, PUBLISHED | {"table1": table}))
+    assert after == before + 1
+
+
+def test_figure_1():
+    marks = ma2020.corners_and_curve(PUBLISHED)
+    lengths = {}
+    for panel, own in marks.groupby("panel"):
+        for label, line in own[own["mark"] == "line"].groupby("label"):
+            steps = np.hypot(*np.diff(line[["x", "y"]].to_numpy(), axis=0).T)
+            lengths[panel, label] = steps.sum()
+    assert set(lengths) == {
+        ("corners", "path with corners"),
+        ("curve", "Bezier curve"),
+        ("both", "path with corners"),
+        ("both", "Bezier curve"),
+    }
+    assert lengths["both", "Bezier curve"] < lengths["both", "path with corners"]
+
+
+def test_figure_2_swaps_the_genes_behind_the_cut():
+    marks = ma2020.crossover(PUBLISHED)
+    texts = marks[marks["mark"] == "text"]
+    rows = {key: [int(text) for text in own.sort_values("x")["text"]] for key, own in texts.groupby(["panel", "y"], sort=False)}
+    before, after = ([rows[panel, height] for height in (1.3, 0.0)] for panel in ("before", "after"))
+    assert np.array_equal(before, ma2020.PARENTS)
+    for own, other, child in zip(before, before[::-1], after):
+        assert child == own[:7] + other[7:]
+    codes = np.array(before)
+    assert codes.min() >= 0
+    assert codes.max() < 400
+    assert len(bca.code_centres(20, 20)) == 400
+
+
+def results(points, feasible=True):
+    runs = [{"method": "bca", "feasible": feasible, "path_curve": "bezier", "path_points": np.ravel(way).astype(float)} for way in points]
+    return {"environments": Results(pd.DataFrame(runs), {}, pd.DataFrame())}
+
+
+SMOOTH = [(0, 0), (3, 9), (12, 8), (20, 20)]
+# The first leg has no length: the curve begins standing still.
+STILL = [(0, 0), (0, 0), (12, 8), (20, 20)]
+# A cusp in the middle.
+CUSP = [(0, 0), (1, 1), (0, 1), (1, 0)]
+
+
+@pytest.mark.parametrize(
+    ("points", "feasible", "mark", "count"),
+    [([SMOOTH], True, "+", 1), ([SMOOTH, STILL], True, "-", 2), ([CUSP], True, "-", 1), ([SMOOTH], False, "?", 0)],
+)
+def test_continuous_curvature(points, feasible, mark, count):
+    found = ma2020.continuous_curvature({"experiment": "environments"}, results(points, feasible), {})
+    assert (found[0], found[2], found[3]) == (mark, None, count)
+    assert count == 0 or found[1] == 0
+
+
+def test_assumptions_are_the_values_in_force():
+    assumptions = checked.read(FOLDER / "assumptions.yaml", "assumptions")["assumptions"]
+    governed = [assumption for assumption in assumptions if "setting" in assumption]
+    assert len(governed) >= 14
+    for assumption in governed:
+        setting, default = assumption["setting"], assumption["default"]
+        for method, value in default.items() if isinstance(default, dict) else [("bca", default), ("bca_q", default)]:
+            assert (STUDY["settings"] | STUDY["methods"][method].get("settings", {}))[setting] == value, assumption["id"]
+        assert assumption["claims"], assumption["id"]
