@@ -226,5 +226,5 @@ def test_settings():
     bad |= {"move_share": 1.2, "removal_share": -0.1, "spread": -1.0, "opponents": 0, "blocked_penalty": math.nan, "step_weight": -1.0}
     assert all(setting_fault(kinds[name], value) for name, value in bad.items())
     abc_ep.check(SETTINGS)
-    with pytest.raises(ValueError, match="move_share: with removal_share 1[.]1; expected at most 1"):
+    with pytest.raises(ValueError, match=r"move_share: with removal_share 1\.1; expected at most 1"):
         abc_ep.check(SETTINGS | {"move_share": 0.9})

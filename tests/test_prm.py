@@ -181,7 +181,7 @@ def test_a_sealed_target_on_a_grid():
 
 
 def test_a_grid_has_no_distance_to_keep():
-    with pytest.raises(ValueError, match="d_min: 0[.]5; on a grid expected 0"):
+    with pytest.raises(ValueError, match=r"d_min: 0\.5; on a grid expected 0"):
         plan(field(0), d_min=0.5)
 
 

@@ -1,8 +1,8 @@
 """Genetic algorithm over paths of cells: a chromosome is a path from free cell to free neighbour (the rival GA of elhoseny2017).
 
 The baseline of elhoseny2017 that is called GA in its Tables 2, 3 and 6 (Alajlan et al., 2013), which gives no parameters or operators;
-these are usual ones. First paths are greedy walks by way of random cells. A crossover joins the head of one path and the tail of another at a
-cell that both have; a mutation walks anew between two cells of a path. Loops are cut out of every path.
+these are usual ones. First paths are greedy walks by way of random cells. A crossover joins the head of one path and the tail of another
+at a cell that both have; a mutation walks anew between two cells of a path. Loops are cut out of every path.
 
 A cell has eight neighbours; a diagonal step may pass between two occupied cells. In the kernels a cell is its index in the grid with a
 frame of occupied cells around it, so that no step leaves the grid. Costs in the kernels are in cells.
@@ -45,8 +45,8 @@ def plan(
 
     A walk goes to the free neighbour nearest to its goal. Where none is nearer, it makes a detour of random steps: at least least_detour,
     at most detour_share of the columns beyond that, less one; each goes straight_on with this probability, if that cell is free. A walk of
-    more than longest_walk times rows and columns together is given up. attempts: first walks for each chromosome; those still missing then are
-    copies of those found.
+    more than longest_walk times rows and columns together is given up. attempts: first walks for each chromosome; those still missing then
+    are copies of those found.
 
     Extra column: first_walks, how many first paths were found.
     """
