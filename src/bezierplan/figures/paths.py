@@ -1,4 +1,7 @@
-"""A path with its control points: of one picked run, in its workspace beside the shortest path possible, or one that is given."""
+"""A path with its control points: of one picked run, in its workspace beside the shortest path possible, or one that is given.
+
+Or several paths in one workspace, a picked run for each value of a column.
+"""
 
 from collections.abc import Sequence
 from typing import Any, Literal
@@ -12,6 +15,7 @@ from bezierplan import curves, style
 from bezierplan.analysis.results import Results, path_of
 from bezierplan.analysis.results import pick as pick_run
 from bezierplan.figures import workspace as workspaces
+from bezierplan.figures.lines import in_order, printed
 from bezierplan.problem import Path
 
 # About as many straight steps are drawn for a curve; the ends of its pieces are always among them.
@@ -73,6 +77,7 @@ def data(
     *,
     pick: dict[str, Any] | None = None,
     explicit: dict[str, Any] | None = None,
+    hue: str | None = None,
     control: Literal["all", "points", "none"] = "all",
     view: Sequence[float] | None = None,
 ) -> pd.DataFrame:
@@ -82,10 +87,11 @@ def data(
     that has one), x, y (in the workspace's unit). Without a run to show, start and target only. Only curves that lie within it have a hull,
     and control points are left out where some are tangents.
 
-    pick: the run, as in `analysis.results.pick`. explicit: {curve, points}, a path without a run. control: whether control points are drawn
+    pick: the run, as in `analysis.results.pick`. explicit: {curve, points}, a path without a run. hue: a column; a run is picked for each of
+    its values, and the rows name it; their control points are not drawn. control: whether control points are drawn
     with their polygon and hull, alone, or not at all. view: what is seen of the workspace, as its bounds; all rows are here nevertheless.
-    Raises ValueError unless either pick or explicit is given and all runs are of one problem and one method, and if a curve cannot have
-    such points.
+    Raises ValueError unless either pick or explicit is given and all runs, of one value of hue, are of one problem and one method, and if a
+    curve cannot have such points.
     """
     if (pick is None) == (explicit is None):
         raise ValueError("a panel of kind paths needs either pick or explicit")
@@ -93,6 +99,10 @@ def data(
         path = Path(explicit["curve"], np.array(explicit["points"], dtype=float))
         start, target = path.points[list(curves.ends(path.curve))]
         return _table({"start": [start], "target": [target]} | _drawn(path, control))
+    if hue is not None:
+        own = results.runs.groupby(hue)
+        frames = [data(results._replace(runs=runs), pick=pick, control="none").assign(**{hue: value}) for value, runs in own]
+        return pd.concat(frames, ignore_index=True)
     run, names = picked(results, pick)
     problem = results.problems[names["problem"]]
     drawn = {"start": [problem.start], "target": [problem.target]}
@@ -139,12 +149,33 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
         workspace = scene.problems[panel["experiment"]][frame["problem"].iloc[0]].workspace
         workspaces.shade(axes, workspaces.parts(workspace))
         workspaces.scale(axes, workspace.unit)
-    _draw_parts(axes, frame, narrow=scene.narrow, clip="view" in panel)
+    if "hue" in panel:
+        note = _draw_side_by_side(axes, frame, scene, panel)
+    else:
+        note = "" if "explicit" in panel else _note(frame, workspace.unit, scene.narrow)
+        _draw_parts(axes, frame, narrow=scene.narrow, clip="view" in panel)
     if "view" in panel:
         axes.axis(panel["view"])
     if scene.narrow:
         axes.locator_params(nbins=4, integer=True)
-    return "" if "explicit" in panel else _note(frame, workspace.unit, scene.narrow)
+    return note
+
+
+def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the paths of all values of hue, each in a look of its own, and what belongs to their problem once; returns their lengths."""
+    hue = panel["hue"]
+    values = in_order(frame[hue], panel)
+    lengths = []
+    for value, look in zip(values, style.lines(values)):
+        own = frame[frame[hue] == value]
+        _draw_parts(axes, own[own["part"] == "collision"], narrow=scene.narrow, clip="view" in panel)
+        path = own[own["part"] == "path"]
+        name = printed(value, hue, scene.labels)
+        axes.plot(path["x"], path["y"], zorder=3, **look | {"marker": "", "label": name})
+        lengths.append(f"{name} {own['length'].iloc[0]:.1f}" if len(path) else f"{name} no path")
+    once = frame[frame["part"].isin(["start", "target", "bound"])].drop_duplicates(["part", "x", "y"])
+    _draw_parts(axes, once, narrow=scene.narrow, clip="view" in panel)
+    return f"lengths ({scene.unit}): {', '.join(lengths)}"
 
 
 def _draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> None:

@@ -29,6 +29,9 @@ _OUTLINE = {"facecolor": "none", "edgecolor": style.BLACK, "linewidth": 0.8, "li
 START = {"color": style.BLACK, "linestyle": "", "marker": "s", "markersize": 7, "label": "start", "zorder": 4.5}
 TARGET = {"color": style.BLACK, "linestyle": "", "marker": "*", "markersize": 12, "label": "target", "zorder": 4.5}
 
+# A grid that was drawn from circles shows its cells only up to this number of them; of more the circles tell enough.
+_MOST_CELLS = 2500
+
 _COLUMNS = ["part", "x", "y", "size", "obstacle", "ring", "number"]
 
 
@@ -42,7 +45,8 @@ def data(workspace: Workspace, *, numbers: Literal["all", "free", "none"] = "non
     Raises ValueError if numbers or embedding are asked of a workspace without cells.
     """
     if isinstance(workspace, Grid):
-        return _cells(workspace, numbers, embed)
+        whole = replace(workspace, occupied=embed_cells(workspace.occupied)) if embed else workspace
+        return _table(whole.bounds, _cells(whole, workspace, numbers))
     if numbers != "none" or embed:
         raise ValueError("numbers and embed are options of workspaces of kind grid")
     return parts(workspace)
@@ -51,12 +55,17 @@ def data(workspace: Workspace, *, numbers: Literal["all", "free", "none"] = "non
 def parts(workspace: Workspace) -> pd.DataFrame:
     """What is drawn of a workspace as it is, without numbers: rows as in `data`."""
     if isinstance(workspace, Grid):
-        return _cells(workspace, "none", False)
+        circles = [] if workspace.drawn is None else [_discs(workspace.drawn)]
+        cells = [] if circles and workspace.occupied.size > _MOST_CELLS else [_cells(workspace, workspace, "none")]
+        return _table(workspace.bounds, *cells, *circles)
     if isinstance(workspace, Circles):
-        x, y = workspace.centres.T
-        circles = pd.DataFrame({"part": "circle", "x": x, "y": y, "size": workspace.radii, "obstacle": range(len(x))})
-        return _table(workspace.bounds, circles)
+        return _table(workspace.bounds, _discs(workspace))
     return _rings(workspace)
+
+
+def _discs(circles: Circles) -> pd.DataFrame:
+    x, y = circles.centres.T
+    return pd.DataFrame({"part": "circle", "x": x, "y": y, "size": circles.radii, "obstacle": range(len(x))})
 
 
 def _table(bounds: tuple[float, float, float, float], *drawn: pd.DataFrame) -> pd.DataFrame:
@@ -65,17 +74,17 @@ def _table(bounds: tuple[float, float, float, float], *drawn: pd.DataFrame) -> p
     return pd.concat([corners, *drawn], ignore_index=True).reindex(columns=_COLUMNS)
 
 
-def _cells(grid: Grid, numbers: str, embed: bool) -> pd.DataFrame:
-    own_rows, own_columns = grid.occupied.shape
-    whole = replace(grid, occupied=embed_cells(grid.occupied)) if embed else grid
+def _cells(whole: Grid, own: Grid, numbers: str) -> pd.DataFrame:
+    """Cells of a grid, those beyond its own part surplus."""
+    own_rows, own_columns = own.occupied.shape
     row, column = (index.ravel() for index in np.indices(whole.occupied.shape))
     surplus = (row >= own_rows) | (column >= own_columns)
     part = np.where(surplus, "surplus", np.where(whole.occupied.ravel(), "occupied", "free"))
     shown = {"all": part != "", "free": part == "free", "none": part == ""}[numbers]
-    x, y = grid.in_units(np.column_stack([column, row]) + 0.5).T
-    cells = pd.DataFrame({"part": part, "x": x, "y": y, "size": grid.cell})
+    x, y = whole.in_units(np.column_stack([column, row]) + 0.5).T
+    cells = pd.DataFrame({"part": part, "x": x, "y": y, "size": whole.cell})
     cells["number"] = pd.Series(np.arange(len(cells)), dtype="Int64").where(shown)
-    return _table(whole.bounds, cells)
+    return cells
 
 
 def _rings(workspace: Polygons) -> pd.DataFrame:
@@ -114,7 +123,7 @@ def scale(axes: Axes, unit: str) -> None:
 
 def shade(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
     """Draw the rows of `data` or `parts` without numbers or labels of the axes, to scale; of circles and polygons the outlines alone, if
-    something else fills the panel.
+    something else fills the panel, as the cells of a grid that was drawn from them.
     """
     corners = frame[frame["part"] == "corner"]
     axes.set_xlim(corners["x"].min(), corners["x"].max())
@@ -122,7 +131,7 @@ def shade(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
     axes.set_aspect("equal")
     for part, look in _CELLS.items():
         _draw_cells(axes, frame[frame["part"] == part], look)
-    look = _OUTLINE if outlines else _OBSTACLE
+    look = _OUTLINE if outlines or frame["part"].isin(_CELLS).any() else _OBSTACLE
     _draw_obstacles(axes, _circles(frame[frame["part"] == "circle"]), look)
     _draw_obstacles(axes, _polygons(frame[frame["part"] == "ring"]), look)
 
