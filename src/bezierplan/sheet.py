@@ -32,7 +32,7 @@ from bezierplan.analysis.results import Results, select
 from bezierplan.problem import Problem, Workspace
 
 # Keys that a panel of any kind may have beside the options of its kind.
-PANEL_KEYS = ("kind", "title", "experiment", "where", "workspace", "data")
+PANEL_KEYS = ("kind", "title", "experiment", "where", "workspace", "data", "published")
 
 
 class Scene(NamedTuple):
@@ -59,17 +59,22 @@ def data(
     results: dict[str, Results],
     workspaces: dict[str, Workspace],
     functions: Mapping[str, Callable[..., pd.DataFrame]] = MappingProxyType({}),
+    published: Mapping[str, pd.DataFrame] = MappingProxyType({}),
 ) -> pd.DataFrame:
     """Everything that is drawn: the rows of all panels, the number of the panel (0, 1, ...) in the first column.
 
     panels: kind, title, experiment or data with where (as in `analysis.results.select`) or workspace, and options of the kind. results: by
     experiment. workspaces: by name. functions: what `data` may name; each is called once, for the table that its panels draw, with the
-    workspace of a panel that names one as well; for a panel with an experiment it is called with the panel's results. Raises ValueError for
-    options or runs that a kind cannot draw.
+    workspace of a panel that names one as well, and with the published tables if a panel asks for them; for a panel with an experiment it is
+    called with the panel's results. published: all published tables by file name. Raises ValueError for options or runs that a kind cannot
+    draw.
     """
     alone = [panel for panel in panels if "data" in panel and "experiment" not in panel]
-    wanted = dict.fromkeys((panel["data"], panel.get("workspace")) for panel in alone)
-    tables = {(name, home): functions[name](*([workspaces[home]] if home else [])) for name, home in wanted}
+    wanted = {(panel["data"], panel.get("workspace")): panel.get("published", False) for panel in alone}
+    tables = {
+        (name, home): functions[name](*([workspaces[home]] if home else []), *([published] if asked else []))
+        for (name, home), asked in wanted.items()
+    }
     frames = []
     for number, panel in enumerate(panels):
         options = {name: value for name, value in panel.items() if name not in PANEL_KEYS}

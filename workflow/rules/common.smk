@@ -139,8 +139,8 @@ def figure_code(wildcards):
 
 
 def figure_published(wildcards):
-    """Published numbers, for the kinds that draw them."""
-    drawn = any(panel["kind"] == "boxes" for panel in figure_job(wildcards)["spec"]["panels"])
+    """Published numbers, for the kinds that draw them and the functions that ask for them."""
+    drawn = any(panel["kind"] == "boxes" or panel.get("published") for panel in figure_job(wildcards)["spec"]["panels"])
     return published_files(wildcards) if drawn else []
 
 

@@ -6,6 +6,8 @@ with log.job(snakemake.log[0]):
     import importlib
     from pathlib import Path
 
+    import pandas as pd
+
     from bezierplan import sheet
     from bezierplan.analysis import results
     from bezierplan.workspaces import files
@@ -17,7 +19,8 @@ with log.job(snakemake.log[0]):
     functions = vars(importlib.import_module(job["module"])) if job["module"] else {}
     bare = {name: files.load(description, Path(snakemake.params.folder)) for name, description in job["workspaces"].items()}
     panels = job["spec"]["panels"]
-    sheet.write_data(sheet.data(panels, found, bare, functions), output.data)
+    tables = {Path(file).stem: pd.read_csv(file) for file in inputs.published}
+    sheet.write_data(sheet.data(panels, found, bare, functions, tables), output.data)
     scene = sheet.Scene({name: each.problems for name, each in found.items()}, bare, job["labels"], job["unit"])
     figure = sheet.draw(panels, sheet.read_data(output.data), scene, job["spec"]["columns"])
     sheet.save(figure, output.svg, output.png)
