@@ -309,11 +309,62 @@ def test_unfit_coordinates_are_refused(value):
         check(np.array([[[0.0, 0.0], [value, 1.0]]]), UNIT_DISC)
 
 
+def test_large_degrees_have_a_smaller_range():
+    far = np.zeros((1, 61, 2))
+    far[0, :, 0] = 5e4
+    assert check(far, circles((0.0, 0.0, 1.0), bounds=(-1e5, 1e5, -1e5, 1e5))).feasible
+    far[0, 30, 0] = 5.4e4
+    with pytest.raises(ValueError, match="not finite or beyond 53333.3"):
+        check(far, UNIT_DISC)
+
+
+def elevated(piece, degree):
+    """The same curve (n, 2) with a higher degree."""
+    while len(piece) <= degree:
+        share = np.arange(1, len(piece))[:, None] / len(piece)
+        piece = np.vstack([piece[:1], share * piece[:-1] + (1 - share) * piece[1:], piece[-1:]])
+    return piece
+
+
+@pytest.mark.parametrize(
+    "blocked",
+    [
+        region(Grid(np.arange(900).reshape(30, 30) % 41 == 7, 1.0, "m")),
+        circles((10.0, 12.0, 4.0), (20.0, 19.0, 3.0), bounds=(0.0, 30.0, 0.0, 30.0)),
+    ],
+    ids=["grid", "circles"],
+)
+def test_curves_of_degree_60_get_the_verdict_of_the_same_curve_of_a_low_degree(blocked):
+    rng = np.random.default_rng(60)
+    verdicts = []
+    for _ in range(60):
+        piece = rng.uniform(0.5, 29.5, (rng.integers(3, 6), 2))
+        low, high = check(piece[None], blocked), check(elevated(piece, 60)[None], blocked)
+        verdicts.append(low.feasible)
+        assert low.feasible == high.feasible
+        if low.feasible:
+            assert high.clearance == pytest.approx(low.clearance, abs=1e-8)
+        else:
+            assert high.collision_at == pytest.approx(low.collision_at, abs=1e-5)
+            assert high.depth == pytest.approx(low.depth, rel=1e-5, abs=1e-8)
+    assert 10 < sum(verdicts) < 50
+
+
+def test_halving_a_curve_of_degree_60_stays_far_below_the_tolerance():
+    # A path that touches the border to the last bit of its exact value: down to parts of 2**-40 nothing may be called a collision.
+    rng = np.random.default_rng(5)
+    height = np.abs(rng.uniform(0, 2000, 61))
+    height[[0, 1, 59, 60]] = 0.0
+    piece = np.column_stack([np.linspace(0, 2000, 61), height])
+    assert check(piece[None], circles(bounds=(0.0, 2000.0, 0.0, 2000.0))).feasible
+    assert not check(piece[None] - [0.0, 1e-8], circles(bounds=(0.0, 2000.0, 0.0, 2000.0))).feasible
+
+
 def test_unfit_shapes_and_rules_are_refused():
     with pytest.raises(ValueError, match="shape"):
         check(np.zeros((3, 2)), UNIT_DISC)
     with pytest.raises(ValueError, match="degree"):
-        check(np.zeros((1, 40, 2)), UNIT_DISC)
+        check(np.zeros((1, 62, 2)), UNIT_DISC)
     with pytest.raises(ValueError, match="squeeze"):
         check(np.zeros((1, 2, 2)), PINCH, squeeze="shut")
 

@@ -92,7 +92,8 @@ def _with_variants(spec: dict, variant_of: dict[str, str], controls: list[str]) 
         return spec
     methods = where["method"] if isinstance(where["method"], list) else [where["method"]]
     variants = [variant for variant, method in variant_of.items() if method in methods and variant not in methods]
-    return spec | {"where": where | {"method": methods + variants + controls}, "beside": variants + controls}
+    beside = variants + [control for control in controls if control not in methods]
+    return spec | {"where": where | {"method": methods + beside}, "beside": beside}
 
 
 def _described(row: pd.Series, keys: list[str], name: str) -> dict[str, Any]:

@@ -51,7 +51,9 @@ _APART = 4 * TOLERANCE
 # Radius of the disc around a pinch in which the rule `closed` looks where a path comes from and goes to, in cells.
 _PINCH_RADIUS = 1e-6
 
-_LARGEST_DEGREE = 32
+_LARGEST_DEGREE = 60
+# Halving adds up as many roundings as the degree. Above this degree coordinates have to be smaller, so that their sum grows no further.
+_FULL_RANGE_DEGREE = 32
 _BINOMIAL = np.array([[math.comb(n, k) for k in range(2 * _LARGEST_DEGREE + 1)] for n in range(2 * _LARGEST_DEGREE + 1)], dtype=float)
 
 
@@ -82,7 +84,8 @@ def check(pieces: np.ndarray, region: Region, squeeze: Literal["open", "closed"]
     A path deeper than 4e-9 is never called free, one no deeper than 1e-9 never colliding; between them either answer may come. In the tip
     of a notch between polygons that is sharper than 60 degrees, 2e-9 over the sine of half its angle stands for 4e-9.
 
-    Raises ValueError for coordinates that are not finite or beyond 1e5, for a degree above 32, and for an unknown squeeze rule.
+    Raises ValueError for coordinates that are not finite or beyond 1e5, or 1e5 x 32 / degree for a degree above 32; for a degree above 60;
+    and for an unknown squeeze rule.
     """
     pieces = np.ascontiguousarray(pieces, dtype=float)
     _refuse_unfit(pieces, squeeze)
@@ -108,8 +111,9 @@ def _refuse_unfit(pieces: np.ndarray, squeeze: str) -> None:
     if pieces.ndim != 3 or pieces.shape[2] != 2 or not 2 <= pieces.shape[1] <= _LARGEST_DEGREE + 1:
         raise ValueError(f"pieces have the shape {pieces.shape}; expected (pieces, degree + 1, 2) with a degree of 1 to {_LARGEST_DEGREE}")
     # Written so that a coordinate that is not a number fails as well.
-    if not np.abs(pieces).max(initial=0.0) <= LARGEST_COORDINATE:
-        raise ValueError(f"a path has a coordinate that is not finite or beyond {LARGEST_COORDINATE:g}")
+    largest = LARGEST_COORDINATE * min(1.0, _FULL_RANGE_DEGREE / (pieces.shape[1] - 1))
+    if not np.abs(pieces).max(initial=0.0) <= largest:
+        raise ValueError(f"a path has a coordinate that is not finite or beyond {largest:g}")
 
 
 # ---------------------------------------------------------------------------------------------------------------------

@@ -430,6 +430,8 @@ def validate(ones: np.ndarray, field: Field, rules: Rules) -> tuple[float, bool]
     if not rules.composite and not rules.punished and _collides_at_first_sight(points, field.occupied):
         return np.inf, False
     x, y = _curve(points, rules.composite)
+    if rules.fitness_length == _LENGTH and _is_free_at_first_sight(x, y, field.occupied):
+        return polyline_length(x, y), True
     columns, rows = touched_cells(x, y)
     bad = occupied_cells(columns, rows, field.occupied)  # `Valid Path`
     if bad > 0 and not rules.punished:
@@ -473,6 +475,22 @@ def _collides_at_first_sight(points, occupied):
         if inside and occupied[row, column]:
             return True
     return False
+
+
+@njit(cache=True)
+def _is_free_at_first_sight(x, y, occupied):
+    """Whether the cells of all samples are free, and so are those that a step between two of them may cut the corner of; so that the walk over
+    the cells can only find the same. Not told of curves with a sample on a grid line.
+    """
+    touched = on_line = False
+    column, row = int(x[0]), int(y[0])
+    for s in range(len(x)):
+        before_column, before_row = column, row
+        column, row = int(x[s]), int(y[s])
+        touched |= occupied[row, column] | occupied[before_row, column] | occupied[row, before_column]
+        right, above = x[s] - column, y[s] - row
+        on_line |= (right <= _ON_LINE) | (right >= 1.0 - _ON_LINE) | (above <= _ON_LINE) | (above >= 1.0 - _ON_LINE)
+    return not (touched or on_line)
 
 
 @njit(cache=True)
