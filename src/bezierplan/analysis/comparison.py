@@ -15,7 +15,7 @@ One row for each group of runs, metric and statistic; an empty cell means that t
 | best, mean, median, quartile1, quartile3 | of the same runs; best is the lowest |
 | low95_ours, high95_ours | 95 % bootstrap interval of value_ours; empty below two runs, and for min, max and range |
 | quantile_published | quantile of the published number in experiments of n_published runs (`yardstick`); in our runs if that is empty |
-| reproduced | is that within the central 95 %? Ours are rounded like the printed one, ties count for it; empty for times, and below six runs |
+| reproduced | is that within the central 95 %? Ours are rounded like the printed one, ties count; empty for times, and below six runs |
 | share_claimed | share of all runs whose path passed the planner's own test |
 | share_feasible | share of all runs whose path the certified checker accepts |
 | bound | exact shortest length of the problem; of several problems, the median over the runs |
