@@ -44,6 +44,24 @@ SETTINGS = {
     "friction": 1.0,
 }
 OPERATORS = ("random", "random_repair", "ref12", "ref21", "proposed")
+# As far as operators and first paths read them; words are places in the lists of the planner.
+RULES = node_genetic.Rules(
+    mutation=0,
+    generations=0,
+    stall=1,
+    initial=0,
+    most_nodes=1,
+    selection=0,
+    crossover_probability=1.0,
+    one_cut=True,
+    mutation_probability=1.0,
+    any_node=True,
+    keep_better=False,
+    same_signs=False,
+    penalty=15.0,
+    elitism=0,
+    best_so_far=False,
+)
 BLOCK = from_lines(["......", "..##..", "..##..", "......"], 1.0, "cell")
 
 
@@ -245,7 +263,7 @@ def test_without_a_penalty_infeasible_results_are_told():
 def first_paths(grid, initial="feasible", count=300, most_nodes=12, seed=0):
     """Random first paths, as lists of cells."""
     ground = node_genetic.ground_of(grid, 1.0)
-    rules = node_genetic._Rules(4, 1, 1, ("feasible", "rejection", "unrestricted").index(initial), *[0] * 11)
+    rules = RULES._replace(initial=("feasible", "rejection", "unrestricted").index(initial))
     free = np.setdiff1d(np.flatnonzero(~grid.occupied), [0, grid.occupied.size - 1])
     rng, paths = np.random.default_rng(seed), []
     for _ in range(count):
@@ -304,11 +322,10 @@ def test_random_first_paths(initial):
 
 def mutated(path, grid, mutation, seed=0, **changes):
     """A path after one mutation, and how many paths were evaluated."""
-    words = {"any_node": True, "keep_better": False, "same_signs": False, "penalty": 15.0} | changes
-    rules = node_genetic._Rules(OPERATORS.index(mutation), 1, 1, 0, 12, 0, 1.0, True, 1.0, **words, elitism=0, best_so_far=False)
+    rules = RULES._replace(mutation=OPERATORS.index(mutation), **changes)
     path = np.array(path)
     drawn = np.setdiff1d(np.flatnonzero(~grid.occupied), [path[0], path[-1]])
-    tried = node_genetic._mutate(np.random.default_rng(seed), path, drawn, node_genetic.ground_of(grid, 1.0), rules)
+    tried = node_genetic.mutate(np.random.default_rng(seed), path, drawn, node_genetic.ground_of(grid, 1.0), rules)
     return path.tolist(), tried
 
 
@@ -433,9 +450,9 @@ def test_random_mutation_draws_occupied_cells_if_it_may():
 def test_children_of_a_path_of_two_nodes_change_places():
     one, other = np.array([0, 23, 0, 0]), np.array([0, 5, 7, 23])
     child = np.zeros(4, dtype=np.int64)
-    assert node_genetic._join(one, 1, other, 1, 4, child) == 4
+    assert node_genetic.join(one, 1, other, 1, 4, child) == 4
     assert child.tolist() == [0, 5, 7, 23]
-    assert node_genetic._join(other, 1, one, 1, 2, child) == 2
+    assert node_genetic.join(other, 1, one, 1, 2, child) == 2
     assert child[:2].tolist() == [0, 23]
 
 
@@ -495,8 +512,10 @@ def test_a_target_out_of_reach_of_so_few_nodes():
 
 
 def test_starts_between_centres_are_refused():
-    with pytest.raises(ValueError, match=r"start: \(0.7, 0.5\).*centre of a cell.*\(0.5, 0.5\)"):
-        plan(Problem("test", BLOCK, (0.7, 0.5), (5.5, 3.5)))
+    where = Problem("test", BLOCK, (0.7, 0.5), (5.5, 3.5))
+    for refuse in (node_genetic.serves, plan):
+        with pytest.raises(ValueError, match=r"start: \(0.7, 0.5\).*centre of a cell.*\(0.5, 0.5\)"):
+            refuse(where)
 
 
 @pytest.mark.parametrize(("setting", "value", "wanted"), [("population", 61, "even number"), ("friction", 0.0, "above 0")])

@@ -380,6 +380,7 @@ METRICS: dict[str, Metric] = {
     ),
     "improvement_30": Metric("-", "share of the improvement of the objective made by generation 30", False, partial(_improvement_by, 30)),
     "objective_best": Metric("u", "lowest objective of any generation", False, _lowest_objective),
+    "optimum": Metric("u", "least objective of all feasible paths of the planner's kind", False),
     "optimal": Metric("-", "whether the final path is feasible and optimal, by the planner's own test", False),
     "near_optimal": Metric("-", "whether the final path is feasible but not optimal, by the planner's own test", False),
     "infeasible": Metric("-", "whether the final path is infeasible, by the planner's own test", False),

@@ -7,9 +7,10 @@ A planner is a module with a function
 whose keyword-only arguments are its settings, all without default values: annotated with `bool`, `int`, `float`, `Literal[...]`, or
 `Annotated[int, Range(...)]`. It may also have `workspaces`, the kinds of workspace that it serves; `exact = True`, if its own test of
 feasibility is meant to agree with the certified one; `keeps_best = False`, if its result can be worse than the best path that it met;
-`deterministic = True`, if it draws no random number; `check(settings)`, which raises ValueError for settings that do not fit together; and
-`track(problem, rng, **settings)`, the control points (iterations + 1, n, 2) of the best path after each iteration of the run that `plan`
-makes of the same arguments, for figures that show how a run came to its path.
+`deterministic = True`, if it draws no random number; `check(settings)`, which raises ValueError for settings that do not fit together;
+`serves(problem)`, which raises it for a problem that it cannot plan; `track(problem, rng, **settings)`, the control points
+(iterations + 1, n, 2) of the best path after each iteration of the run that `plan` makes of the same arguments, for figures that show how
+a run came to its path.
 """
 
 import importlib

@@ -95,7 +95,8 @@ class Study:
 
     def maps(self, workspaces: Iterable[str]) -> list[str]:
         """Map files of workspaces as seen from here, each once."""
-        return sorted({relative(self.folder / self.workspaces[name]["file"]) for name in workspaces if "file" in self.workspaces[name]})
+        described = [self.workspaces[name] for name in workspaces]
+        return sorted({relative(self.folder / each[key]) for each in described for key in ("file", "heights") if key in each})
 
     def compared(self) -> dict[str, dict]:
         """The tables of runs, which are compared with published numbers; the others stand for themselves (`listing_job`)."""

@@ -13,7 +13,7 @@ from bezierplan import checked, metrics, problems
 from bezierplan.analysis import statistics
 from bezierplan.checked import Fault, closest
 from bezierplan.digest import PACKAGE
-from bezierplan.problem import known_planners, planner_module, planner_settings, setting_fault
+from bezierplan.problem import Problem, known_planners, planner_module, planner_settings, setting_fault
 from bezierplan.running import RUN_COLUMNS, conditions, settings_in
 from bezierplan.study import DRAWN, PLACE, Study, alternatives, job, methods_changed, relative, with_alternative
 from bezierplan.workspaces import files
@@ -240,11 +240,19 @@ def _check_problem(study: Study, name: str, problem: dict, place: str) -> None:
         raise Fault(f"{place}: workspace: {problem['workspace']}: {needed}")
     if home["kind"] == "random_circles" and max(problem["obstacles"]) > home["circles"]:
         raise Fault(f"{place}: obstacles: {max(problem['obstacles'])}; expected at most {home['circles']}, the circles of the workspace")
-    described = problem | ({"layout": 0, "obstacles": max(problem["obstacles"])} if drawn else {})
     try:
-        problems.build_all({"study": study.key, "problems": {name: described}, "workspaces": {problem["workspace"]: home}}, study.folder)
+        _built(study, name)
     except ValueError as error:
         raise Fault(f"{place}: {error}") from None
+
+
+def _built(study: Study, name: str) -> Problem:
+    """A problem as planners meet it, in the first layout where the workspace is drawn. Raises ValueError."""
+    problem = study.problems[name]
+    home = study.workspaces[problem["workspace"]]
+    drawn = {"layout": 0, "obstacles": max(problem["obstacles"])} if home["kind"] in DRAWN else {}
+    described = {"study": study.key, "problems": {name: problem | drawn}, "workspaces": {problem["workspace"]: home}}
+    return problems.build_all(described, study.folder)[0][name]
 
 
 def _check_experiment(study: Study, name: str, place: str) -> None:
@@ -265,6 +273,11 @@ def _check_experiment(study: Study, name: str, place: str) -> None:
             if kind not in getattr(module, "workspaces", (kind,)):
                 served = ", ".join(module.workspaces)
                 raise Fault(f"{place}: methods: {method}: its planner serves workspaces of kind {served}, not {kind} ({problem})")
+            if hasattr(module, "serves"):
+                try:
+                    module.serves(_built(study, problem))
+                except ValueError as error:
+                    raise Fault(f"{place}: methods: {method}: problem {problem}: {error}") from None
         described = job(study, name, method, "full", 0)
         # One problem for each set of settings that go with problems.
         apart = {str(place.get("settings")): problem for problem, place in reversed(described["problems"].items())}

@@ -78,6 +78,11 @@ HIGH_PANEL_HEIGHT = 0.9
 GAP = 0.1
 
 
+def ground(share: float) -> str:
+    """The colour of ground at a share of the way from the lowest to the highest: pale, so that lines stand out from it."""
+    return mpl.colors.to_hex(mpl.colormaps["Purples"](0.6 * share))
+
+
 def lines(values: list[Any]) -> list[dict[str, Any]]:
     """Looks of lines for values side by side, one each: for numbers a scale of colours, for names unlike colours; with dashes and marks."""
     if len(values) > 1 and not isinstance(values[0], str):

@@ -39,7 +39,8 @@ def data(workspace: Workspace, *, numbers: Literal["all", "free", "none"] = "non
     """What is drawn of a workspace, in its unit: one row a corner of its bounds, a cell, a circle, or a point of a ring.
 
     Columns: part (corner, free, occupied, surplus, circle, ring), x, y (a cell's or circle's centre), size (a cell's side, a circle's
-    radius), obstacle and ring (polygons only), number (of the cells that show it; see `workspaces.grid`).
+    radius), obstacle and ring (polygons only), number (of the cells that show it; see `workspaces.grid`), height (of the cells of a grid
+    that has heights, in its unit).
 
     numbers: which cells show their number. embed: put a grid into one of a power of two of rows and columns, its surplus cells marked.
     Raises ValueError if numbers or embedding are asked of a workspace without cells.
@@ -69,9 +70,10 @@ def _discs(circles: Circles) -> pd.DataFrame:
 
 
 def _table(bounds: tuple[float, float, float, float], *drawn: pd.DataFrame) -> pd.DataFrame:
-    """The corners of the bounds and all that is drawn within them, with all columns."""
+    """The corners of the bounds and all that is drawn within them, with all columns; heights only where there are some."""
     corners = pd.DataFrame({"part": "corner", "x": bounds[:2], "y": bounds[2:]})
-    return pd.concat([corners, *drawn], ignore_index=True).reindex(columns=_COLUMNS)
+    table = pd.concat([corners, *drawn], ignore_index=True)
+    return table.reindex(columns=[*_COLUMNS, *table.columns.intersection(["height"])])
 
 
 def _cells(whole: Grid, own: Grid, numbers: str) -> pd.DataFrame:
@@ -84,6 +86,8 @@ def _cells(whole: Grid, own: Grid, numbers: str) -> pd.DataFrame:
     x, y = whole.in_units(np.column_stack([column, row]) + 0.5).T
     cells = pd.DataFrame({"part": part, "x": x, "y": y, "size": whole.cell})
     cells["number"] = pd.Series(np.arange(len(cells)), dtype="Int64").where(shown)
+    if whole.heights is not None and whole is own:
+        cells["height"] = whole.heights.ravel()
     return cells
 
 
@@ -131,6 +135,8 @@ def shade(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
     axes.set_aspect("equal")
     for part, look in _CELLS.items():
         _draw_cells(axes, frame[frame["part"] == part], look)
+    if "height" in frame:
+        _draw_heights(axes, frame[frame["part"] == "free"])
     look = _OUTLINE if outlines or frame["part"].isin(_CELLS).any() else _OBSTACLE
     _draw_obstacles(axes, _circles(frame[frame["part"] == "circle"]), look)
     _draw_obstacles(axes, _polygons(frame[frame["part"] == "ring"]), look)
@@ -142,6 +148,14 @@ def _draw_cells(axes: Axes, cells: pd.DataFrame, look: dict) -> None:
     square = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
     corners = cells[["x", "y"]].to_numpy()[:, None] + cells["size"].to_numpy()[:, None, None] * square
     axes.add_collection(PolyCollection(corners, edgecolor=style.CELL_LINE, linewidth=0.4, zorder=0.5, **look), autolim=False)
+
+
+def _draw_heights(axes: Axes, cells: pd.DataFrame) -> None:
+    """Shade free cells by their height; the legend names the lowest and the highest."""
+    low, high = cells["height"].min(), cells["height"].max()
+    for height, own in cells.groupby("height"):
+        look = {"facecolor": style.ground((height - low) / (high - low) if high > low else 0.0)}
+        _draw_cells(axes, own, look | ({"label": f"height {height:g}"} if height in (low, high) else {}))
 
 
 def _circles(circles: pd.DataFrame) -> list[Circle]:

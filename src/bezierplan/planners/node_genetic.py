@@ -54,7 +54,7 @@ class Ground(NamedTuple):
     energy: np.ndarray
 
 
-class _Rules(NamedTuple):
+class Rules(NamedTuple):
     """The settings of `plan` as the kernels read them, words as their places in `Mutation`, `Initial` and `Selection`."""
 
     mutation: int
@@ -164,7 +164,7 @@ def plan(
             np.setdiff1d(np.flatnonzero(~grid.occupied), ends),
             np.setdiff1d(drawn, ends),
             population,
-            _Rules(
+            Rules(
                 mutation=get_args(Mutation).index(mutation),
                 generations=generations,
                 stall=stall,
@@ -207,6 +207,12 @@ def plan(
 _NOTHING = _Found(np.empty(0, dtype=np.int64), math.inf, 0, np.array([math.inf]), 1, False, 0.0, math.nan, 0.0)
 
 
+def serves(problem: Problem) -> None:
+    """Raises ValueError, naming the end and what would be right, unless start and target are centres of cells."""
+    for end in ("start", "target"):
+        _cell_at(problem.workspace, end, getattr(problem, end))
+
+
 def _cell_at(grid: Grid, end: str, point: tuple[float, float]) -> int:
     row, column = grid.cell_of(*point)
     number = int(row * grid.occupied.shape[1] + column)
@@ -226,14 +232,15 @@ def centres(grid: Grid, cells: np.ndarray) -> np.ndarray:
 
 def ground_of(grid: Grid, friction: float) -> Ground:
     """The ground of a grid, with all its edges measured if it has no more than `TABLE_CELLS` cells. Not to be changed."""
-    return _ground(grid.occupied.shape, grid.occupied.tobytes(), float(friction), TABLE_CELLS)
+    heights = b"" if grid.heights is None else (grid.heights / grid.cell).tobytes()
+    return _ground(grid.occupied.shape, grid.occupied.tobytes(), heights, float(friction), TABLE_CELLS)
 
 
 @lru_cache(maxsize=8)
-def _ground(shape: tuple[int, int], occupied: bytes, friction: float, table_cells: int) -> Ground:
-    nothing = np.empty((0, 0))
+def _ground(shape: tuple[int, int], occupied: bytes, heights: bytes, friction: float, table_cells: int) -> Ground:
     cells = np.frombuffer(occupied, dtype=bool).reshape(shape).copy()
-    bare = Ground(cells, nothing, friction, np.empty((0, 0), dtype=np.uint16), nothing)
+    above = np.frombuffer(heights).reshape(shape if heights else (0, 0)).copy()
+    bare = Ground(cells, above, friction, np.empty((0, 0), dtype=np.uint16), np.empty((0, 0)))
     return bare._replace(**dict(zip(("met", "energy"), _tables(bare)))) if cells.size <= table_cells else bare
 
 
@@ -404,8 +411,8 @@ def _search(starts, moves, ground, start, target, free, drawn, population, rules
                     cut, other_cut = 1 + _below(moves, lengths[mother] - 1), 1 + _below(moves, lengths[father] - 1)
             else:
                 cut, other_cut = lengths[mother], lengths[father]
-            child_lengths[i] = _join(paths[mother], cut, paths[father], other_cut, lengths[father], children[i])
-            child_lengths[i + 1] = _join(paths[father], other_cut, paths[mother], cut, lengths[mother], children[i + 1])
+            child_lengths[i] = join(paths[mother], cut, paths[father], other_cut, lengths[father], children[i])
+            child_lengths[i + 1] = join(paths[father], other_cut, paths[mother], cut, lengths[mother], children[i + 1])
         if children.shape[1] > paths.shape[1]:
             paths = np.empty_like(children)
         paths, children = children, paths
@@ -414,7 +421,7 @@ def _search(starts, moves, ground, start, target, free, drawn, population, rules
             if moves.random() < rules.mutation_probability and lengths[i] > 2:
                 path = paths[i, : lengths[i]]
                 was_feasible = _path_met(path, ground) == 0
-                evaluations += _mutate(moves, path, drawn, ground, rules)
+                evaluations += mutate(moves, path, drawn, ground, rules)
                 feasible += was_feasible
                 spoiled += was_feasible and _path_met(path, ground) > 0
         if rules.elitism and len(best) <= paths.shape[1]:
@@ -449,10 +456,10 @@ def _copy(source, target, length):
 
 
 @njit(cache=True)
-def _join(head, cut, tail, tail_cut, tail_length, child):
-    """The first `cut` nodes of one path and those behind the first `tail_cut` of another, written to a child; returns its length.
+def join(head: np.ndarray, cut: int, tail: np.ndarray, tail_cut: int, tail_length: int, child: np.ndarray) -> int:
+    """The first `cut` nodes of one path and those behind the first `tail_cut` of another (meledje, Section 2.6), written to a child.
 
-    Cuts behind the last node leave the head as it is.
+    Returns its length. Cuts behind the last node leave the head as it is.
     """
     for k in range(cut):
         child[k] = head[k]
@@ -580,8 +587,11 @@ def _select(rng, order, ranks, selection):
 
 
 @njit(cache=True)
-def _mutate(rng, path, drawn, ground, rules):
-    """Apply the operator once; returns how many paths it evaluated."""
+def mutate(rng: np.random.Generator, path: np.ndarray, drawn: np.ndarray, ground: Ground, rules: Rules) -> int:
+    """Apply the operator once to a path of cells (n,), n at least 3; returns how many paths it evaluated.
+
+    drawn: the cells that random mutation draws from.
+    """
     if rules.mutation == _RANDOM:
         path[1 + _below(rng, len(path) - 2)] = drawn[_below(rng, len(drawn))]
         return 0

@@ -2,7 +2,7 @@
 
 A description is a mapping with `kind` and `unit` and, by kind,
 
-    grid      file (lines of . and #, top row first), cell (side of a cell)
+    grid      file (lines of . and #, top row first), cell (side of a cell), perhaps heights (a file of numbers, top row first)
     circles   bounds [x low, x high, y low, y high], circles [[x, y, radius], ...]
     polygons  file (GeoJSON: features with properties.role `border`, one rectangle, and `obstacle`)
 
@@ -10,6 +10,9 @@ Coordinates are numbers of the unit, at most 1e5 in size.
 """
 
 import json
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -34,17 +37,33 @@ def load(description: dict, folder: Path) -> Workspace:
     kind, unit = description["kind"], description["unit"]
     if kind == "circles":
         return _circles(description["bounds"], description["circles"], unit)
-    file = folder / description["file"]
+    text = _text(description, "file", folder)
+    with _naming(description["file"]):
+        if kind == "polygons":
+            return polygons_from_geojson(text, unit)
+        workspace = grid.from_lines(text.splitlines(), float(description["cell"]), unit)
+    if "heights" not in description:
+        return workspace
+    text = _text(description, "heights", folder)
+    with _naming(description["heights"]):
+        return replace(workspace, heights=grid.heights_from_lines(text.splitlines(), workspace.occupied.shape))
+
+
+def _text(description: dict, key: str, folder: Path) -> str:
+    """The text of the file that a key of a description names."""
     try:
-        text = file.read_text(encoding="utf-8")
+        return (folder / description[key]).read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise ValueError(f"file: {description['file']}: cannot be read ({type(error).__name__})") from None
+        raise ValueError(f"{key}: {description[key]}: cannot be read ({type(error).__name__})") from None
+
+
+@contextmanager
+def _naming(file: str) -> Iterator[None]:
+    """Put the name of a file before what a ValueError says."""
     try:
-        if kind == "grid":
-            return grid.from_lines(text.splitlines(), float(description["cell"]), unit)
-        return polygons_from_geojson(text, unit)
+        yield
     except ValueError as error:
-        raise ValueError(f"{description['file']}: {error}") from None
+        raise ValueError(f"{file}: {error}") from None
 
 
 def _check_numbers(values: np.ndarray, where: str) -> None:
@@ -130,6 +149,8 @@ def to_json(workspace: Workspace) -> str:
         content = _circles_content(workspace.drawn) | {"kind": "random_field"}
     elif isinstance(workspace, Grid):
         content = {"kind": "grid", "cell": workspace.cell, "rows": grid.to_lines(workspace)}
+        if workspace.heights is not None:
+            content["heights"] = workspace.heights.tolist()
     elif isinstance(workspace, Circles):
         content = _circles_content(workspace)
     else:
@@ -148,7 +169,8 @@ def from_json(text: str) -> Workspace:
     content = json.loads(text)
     unit = content["unit"]
     if content["kind"] == "grid":
-        return grid.from_lines(content["rows"], content["cell"], unit)
+        flat = grid.from_lines(content["rows"], content["cell"], unit)
+        return replace(flat, heights=np.array(content["heights"])) if "heights" in content else flat
     bounds = tuple(content["bounds"])
     if content["kind"] == "polygons":
         obstacles = tuple(tuple(np.array(ring) for ring in rings) for rings in content["obstacles"])

@@ -19,8 +19,9 @@ ON_LINE = 1e-9
 class Grid:
     """Cells of a rectangle.
 
-    occupied: bool (rows, columns), row 0 at the bottom. cell: side of a cell, in units. unit: name of the unit of length. origin: x and y of
+    occupied: bool (rows, columns), row 0 at the bottom. cell: side of a cell, in units. unit: name of the unit of length. origin: x, y of
     the lower left corner, in units. drawn: the circles that the cells were drawn from, if they were; only pictures show them.
+    heights: of the ground of each cell, in units (rows, columns), where it is not flat; only some planners look at them.
     """
 
     occupied: np.ndarray
@@ -28,6 +29,7 @@ class Grid:
     unit: str
     origin: tuple[float, float] = (0.0, 0.0)
     drawn: Circles | None = None
+    heights: np.ndarray | None = None
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:
@@ -88,6 +90,29 @@ def from_lines(lines: list[str], cell: float, unit: str) -> Grid:
             raise ValueError(f"line {number} has {len(line)} cells, the first line has {len(lines[0])}; all lines need the same number")
     occupied = np.array([[character == "#" for character in line] for line in reversed(lines)])
     return Grid(occupied, cell, unit)
+
+
+def heights_from_lines(lines: list[str], shape: tuple[int, int]) -> np.ndarray:
+    """Heights (rows, columns) of a grid of that shape from text: a number for each cell, with spaces between, the top row first.
+
+    Raises ValueError, naming the line, for another number of rows or cells and for what is no finite number.
+    """
+    rows, columns = shape
+    if len(lines) != rows:
+        raise ValueError(f"{len(lines)} lines of heights; expected {rows}, as many as the map has")
+    heights = np.empty(shape)
+    for number, line in enumerate(lines, start=1):
+        words = line.split()
+        if len(words) != columns:
+            raise ValueError(f"line {number} has {len(words)} heights; expected {columns}, as many as the map has cells")
+        for column, word in enumerate(words):
+            try:
+                heights[rows - number, column] = float(word)
+            except ValueError:
+                raise ValueError(f"line {number}: {word!r} is not a height; expected a number") from None
+            if not np.isfinite(heights[rows - number, column]):
+                raise ValueError(f"line {number}: {word!r} is not a height; expected a finite number")
+    return heights
 
 
 def to_lines(grid: Grid) -> list[str]:

@@ -1,0 +1,305 @@
+"""The study meledje: its drawings, audit, maps and settings; ground that is not flat; a reader's own map by configuration alone."""
+
+import itertools
+import math
+from pathlib import Path as File
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from bezierplan import checked, problems, running, study_file
+from bezierplan.checked import Fault
+from bezierplan.exact import bounds
+from bezierplan.figures import drawing
+from bezierplan.planners import node_genetic
+from bezierplan.problem import planner_settings, setting_fault
+from bezierplan.studies import meledje
+from bezierplan.study import job, problems_job
+from bezierplan.workspaces import files, grid
+
+FOLDER = File(__file__).parents[1] / "config" / "studies" / "meledje"
+STUDY = study_file.load([FOLDER])["meledje"]
+PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
+
+
+def workspace(name):
+    return files.load(STUDY.workspaces[name], FOLDER)
+
+
+def problem(name):
+    return problems.build(name, STUDY.problems[name], workspace(STUDY.problems[name]["workspace"]))
+
+
+# The study's files
+
+
+def test_counts_of_the_published_tables_add_to_the_trials():
+    for name in ("table2", "table3", "table4", "table5"):
+        counts = PUBLISHED[name].query("statistic == 'count'").groupby("method")["value"]
+        assert (counts.size() == 3).all()
+        assert (counts.sum() == meledje.TRIALS).all()
+
+
+def test_repeats_are_the_trials_of_the_paper():
+    assert STUDY.experiments["operators"]["repeats"]["full"] == meledje.TRIALS
+    assert STUDY.experiments["operators"]["seeds"] == "shared"
+
+
+def test_every_title_of_a_number_or_picture_on_the_maps_says_that_they_are_reconstructed():
+    for artefact in (STUDY.tables | STUDY.figures).values():
+        shown = {artefact.get("experiment"), *(panel.get("experiment") for panel in artefact.get("panels", []))}
+        if "operators" in shown:
+            assert "reconstructed" in artefact["title"]
+
+
+def test_assumptions_are_those_in_force_and_alternatives_are_legal():
+    governed = [assumption for assumption in STUDY.assumptions if "setting" in assumption]
+    assert len(governed) == 13
+    annotations = planner_settings(node_genetic)
+    for assumption in governed:
+        setting, default = assumption["setting"], assumption["default"]
+        methods = default if isinstance(default, dict) else dict.fromkeys(meledje.OTHERS, default)
+        for method, value in methods.items():
+            assert STUDY.resolved(method)[setting] == value, assumption["id"]
+            for alternative in assumption["alternatives"]:
+                assert setting_fault(annotations[setting], alternative) is None, assumption["id"]
+                node_genetic.check(STUDY.resolved(method) | {setting: alternative})
+
+
+@pytest.mark.parametrize("name", ["env1_initial", "env1_modified", "env2_initial", "env2_modified"])
+def test_optimum_is_the_shortest_path_over_centres_of_the_exact_geometry(name):
+    where = problem(name)
+    energy, path = node_genetic.cheapest(node_genetic.ground_of(where.workspace, 1.0), 0, 255)
+    exact = bounds.centre_path(where)
+    assert energy == pytest.approx(exact.length, rel=1e-12)
+    points = node_genetic.centres(where.workspace, path)
+    assert np.hypot(*np.diff(points, axis=0).T).sum() == pytest.approx(exact.length, rel=1e-12)
+
+
+def test_maps_change_as_the_paper_says():
+    """Both environments change somewhere, and the optimum of the initial map is blocked in the modified one."""
+    for environment in ("env1", "env2"):
+        before, after = (workspace(f"{environment}_{state}") for state in ("initial", "modified"))
+        assert before.occupied.shape == after.occupied.shape == (16, 16)
+        _, path = node_genetic.cheapest(node_genetic.ground_of(before, 1.0), 0, 255)
+        ground = node_genetic.ground_of(after, 1.0)
+        assert sum(node_genetic.obstacles_met(ground, *edge) for edge in itertools.pairwise(path.tolist())) == 2
+
+
+# Drawings
+
+
+def test_chromosome_shows_the_numbers_of_the_paper():
+    marks = drawing.data(meledje.chromosome())
+    genes = marks[(marks["part"] == "genes") & (marks["mark"] == "text") & marks["text"].str.isdigit()]
+    assert genes["text"].astype(int).to_list() == [1, 41, 65, 35, 38, 60, 100]
+    line = marks[marks["mark"] == "line"]
+    numbers = 10 * (line["y"] - 1) + line["x"]
+    assert numbers.to_list() == [1, 41, 65, 35, 38, 60, 100]
+
+
+def test_children_of_the_drawn_crossover_exchange_their_tails():
+    marks = drawing.data(meledje.crossover())
+    texts = marks[marks["mark"] == "text"]
+    rows = {part: [own["text"].astype(int).to_list() for _, own in of.groupby("y", sort=False)] for part, of in texts.groupby("part")}
+    one, other = rows["parents"]
+    assert rows["children"] == [one[:3] + other[3:], other[:3] + one[3:]]
+
+
+def test_drawn_mutations_show_what_is_said_of_them():
+    home = workspace("operators")
+    ground = node_genetic.ground_of(home, 1.0)
+    marks = drawing.data(meledje.mutations(home))
+    met = {}
+    for (operator, label), line in marks[marks["mark"] == "line"].groupby(["operator", "group"]):
+        cells = (np.floor(line["y"]) * 10 + np.floor(line["x"])).astype(int).tolist()
+        met[operator, label] = sum(node_genetic.obstacles_met(ground, *edge) for edge in itertools.pairwise(cells))
+    assert met["random", "before"] == 0 < met["random", "after"]
+    assert met["ref12", "before"] > 0
+    assert met["ref12", "after"] > 0
+    assert met["proposed", "before"] > 0 == met["proposed", "after"]
+
+
+# The audit
+
+
+def test_audit_of_the_published_tables():
+    rows = pd.DataFrame(meledje.audit(PUBLISHED))
+    wrong = rows[~rows["consistent"]]
+    assert len(rows) == 16 + 28 + 24 + 3
+    assert wrong["rule"].str.contains("near-optimal solutions \\(").sum() == 4
+    assert wrong.loc[wrong["rule"].str.contains("fitness"), "item"].to_list() == ["table5"]
+    fisher = rows[rows["rule"].str.contains("Fisher")].set_index(["item", "place"])["printed"]
+    assert fisher["table2", "metric=optimal, proposed and ref12"] == pytest.approx(3 * 0.1524, rel=1e-3)
+    ranked = wrong[wrong["rule"].str.startswith("pairs")]
+    assert ranked["item"].to_list() == ["table3"]
+
+
+@pytest.mark.parametrize(
+    ("table", "metric", "value"), [("table2", "optimal", 40), ("table4", "objective", 30.0), ("table5", "infeasible", 99)]
+)
+def test_audit_sees_a_changed_number(table, metric, value):
+    changed = PUBLISHED[table].copy()
+    changed.loc[(changed["metric"] == metric) & (changed["method"] == "ref12"), "value"] = value
+    faults = [
+        {(row["item"], row["place"], row["rule"]) for row in meledje.audit(tables) if not row["consistent"]}
+        for tables in (PUBLISHED, PUBLISHED | {table: changed})
+    ]
+    assert faults[1] - faults[0]
+
+
+# Ground that is not flat
+
+
+def climbed(path, heights):
+    """Climbs along the cells of a path, by 10,001 points of each edge that are no corners of cells."""
+    total = 0.0
+    for one, other in itertools.pairwise(path):
+        points = np.array(one) + (np.arange(10_001) / 10_000)[:, None] * (np.array(other) - one)
+        steps = np.diff(heights[points[:, 1].astype(int), points[:, 0].astype(int)])
+        total += steps[steps > 0].sum()
+    return total
+
+
+def test_the_cheapest_path_is_not_the_shortest():
+    flat, hill = problem("plain"), problem("hill")
+    start, target = 52, 64
+    _, shortest = node_genetic.cheapest(node_genetic.ground_of(flat.workspace, 1.0), start, target)
+    energy, cheapest = node_genetic.cheapest(node_genetic.ground_of(hill.workspace, 1.0), start, target)
+    lengths = [np.hypot(*np.diff(node_genetic.centres(hill.workspace, path), axis=0).T).sum() for path in (shortest, cheapest)]
+    climbs = [climbed(node_genetic.centres(hill.workspace, path).tolist(), hill.workspace.heights) for path in (shortest, cheapest)]
+    assert lengths[0] < lengths[1]
+    assert energy == pytest.approx(lengths[1] + climbs[1])
+    assert energy < lengths[0] + climbs[0]
+
+
+def test_the_search_finds_the_cheapest_path_over_the_hill():
+    settings = STUDY.resolved("proposed")
+    found = [node_genetic.plan(problem("hill"), np.random.default_rng(seed), **settings) for seed in range(10)]
+    assert any(each.extra["optimal"] for each in found)
+    assert all(each.objective >= each.extra["optimum"] - 1e-9 for each in found if each.claimed_feasible)
+
+
+@pytest.mark.parametrize("cell", [1.0, 10.0])
+def test_energy_is_length_and_climb_over_friction(cell):
+    heights = np.array([[0.0, 1.0, 0.5], [0.0, 3.0, 2.0]]) * cell
+    home = grid.Grid(np.zeros((2, 3), dtype=bool), cell, "m", heights=heights)
+    for friction in (1.0, 0.5):
+        ground = node_genetic.ground_of(home, friction)
+        assert node_genetic.edge_energy(ground, 0, 2) == 2 + 1 / friction
+        assert node_genetic.edge_energy(ground, 2, 0) == 2 + 0.5 / friction
+        assert node_genetic.edge_energy(ground, 0, 4) == pytest.approx(math.sqrt(2) + 3 / friction)
+        assert node_genetic.edge_energy(ground, 0, 5) == pytest.approx(math.sqrt(5) + 3 / friction)
+
+
+def test_heights_come_back_from_text_bit_by_bit():
+    home = workspace("hill")
+    again = files.from_json(files.to_json(home))
+    assert again.heights.tobytes() == home.heights.tobytes()
+    assert home.heights[8, 0] == 0
+    assert home.heights[5, 5] == 3
+    assert files.from_json(files.to_json(workspace("plain"))).heights is None
+
+
+HEIGHT_FAULTS = {
+    "a line too few": ("0 0 0", "1 lines of heights; expected 2"),
+    "a height too few": ("0 0 0\n0 0", "line 2 has 2 heights; expected 3"),
+    "a word": ("0 0 0\n0 x 0", "line 2: 'x' is not a height"),
+    "not finite": ("0 0 inf\n0 0 0", "line 1: 'inf' is not a height; expected a finite number"),
+}
+
+
+@pytest.mark.parametrize("fault", HEIGHT_FAULTS)
+def test_faults_of_heights_are_told(fault, tmp_path):
+    text, told = HEIGHT_FAULTS[fault]
+    (tmp_path / "map.txt").write_text("...\n...")
+    (tmp_path / "heights.txt").write_text(text)
+    description = {"kind": "grid", "file": "map.txt", "heights": "heights.txt", "cell": 1, "unit": "m"}
+    with pytest.raises(ValueError, match=f"heights.txt: {told}"):
+        files.load(description, tmp_path)
+    with pytest.raises(ValueError, match=r"heights: none.txt: cannot be read"):
+        files.load(description | {"heights": "none.txt"}, tmp_path)
+
+
+# A reader's own map
+
+OWN = """
+title: A map of any size
+methods:
+  proposed: {planner: node_genetic, settings: {mutation: proposed}}
+  repaired: {planner: node_genetic, settings: {mutation: random_repair}}
+settings: {population: 20, generations: 15, stall: 15, initial: feasible, most_nodes: 12, selection: linear_rank,
+  crossover_probability: 1.0, cut: same, mutation_probability: 0.3, without_obstacle: any_node, keep_better: false, direction: forward,
+  random_node: free, penalty: 15.0, elitism: 0, result: last_generation, optimal_within: 1e-6, friction: 1.0}
+workspaces:
+  yard: {kind: grid, file: yard.txt, cell: 0.5, unit: m}
+problems:
+  across: {workspace: yard, start_cell: 0, target_cell: 246}
+experiments:
+  tries:
+    problems: [across]
+    methods: [proposed, repaired]
+    repeats: {smoke: 2, full: 3, extended: 3}
+    chunk: {smoke: 2, full: 3, extended: 3}
+"""
+YARD = "\n".join(["." * 19] * 5 + ["." * 4 + "#" * 13 + ".."] * 3 + ["." * 19] * 5)
+
+
+def own_study(folder, experiments=OWN, yard=YARD):
+    (folder / "experiments.yaml").write_text(experiments)
+    (folder / "yard.txt").write_text(yard)
+    return study_file.load([folder])[folder.name]
+
+
+def test_an_own_map_of_any_size_needs_configuration_alone(tmp_path):
+    study = own_study(tmp_path)
+    made, _ = problems.build_all(problems_job(study, "tries", "full"), study.folder)
+    for method in ("proposed", "repaired"):
+        runs, times = running.run_chunk(made, job(study, "tries", method, "full", 0))
+        table = runs.to_pandas()
+        assert len(table) == len(times) == 3
+        assert table["optimal"].dtype == bool
+        assert (table["claimed_feasible"] == table["feasible"]).all()
+        assert (table["objective"] >= table["optimum"] - 1e-9).all()
+        free = table[table["feasible"]]
+        assert free["length"].to_numpy() == pytest.approx(free["objective"].to_numpy())
+
+
+FAULTS = {
+    "start occupied": (("start_cell: 0", "start_cell: 100"), "start_cell: 100: in an obstacle"),
+    "target outside": (("target_cell: 246", "target_cell: 247"), "target_cell: cell 247 is not on the grid"),
+    "between centres": (
+        ("start_cell: 0, target_cell: 246", "start: [0.3, 0.25], target: [9.25, 6.25]"),
+        "problem across: start: .*centre of",
+    ),
+    "odd population": (("population: 20", "population: 21"), "population: 21; parents are crossed in pairs"),
+    "probability above 1": (
+        ("mutation_probability: 0.3", "mutation_probability: 1.3"),
+        "mutation_probability: 1.3; expected a number from 0 to 1",
+    ),
+    "negative penalty": (("penalty: 15.0", "penalty: -1.0"), "penalty: -1.0; expected a number at least 0"),
+    "no friction": (("friction: 1.0", "friction: 0"), "friction: 0; climbing"),
+    "unknown operator": (("mutation: proposed", "mutation: proposal"), "mutation: 'proposal'; expected one of random"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_bad_input_is_told_before_any_run(fault, tmp_path):
+    (before, after), told = FAULTS[fault]
+    assert OWN.count(before) >= 1
+    with pytest.raises(Fault, match=told) as caught:
+        own_study(tmp_path, OWN.replace(before, after))
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("yard", "told"), [(YARD[:-1], "line 13 has 18 cells"), (YARD.replace("#", "x", 1), "unknown character 'x'"), ("", "empty")]
+)
+def test_bad_maps_are_told_before_any_run(yard, told, tmp_path):
+    with pytest.raises(Fault, match=f"yard.txt: .*{told}"):
+        own_study(tmp_path, yard=yard)
+
+
+def test_schemas_know_heights():
+    assert checked.read(FOLDER / "experiments.yaml", "experiments")["workspaces"]["hill"]["heights"] == "workspaces/hill_heights.txt"
