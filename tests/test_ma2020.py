@@ -130,6 +130,9 @@ def test_lattice_lengths():
     assert met[rivals & (table["statistic"] == "min")].all()
     assert not met[rivals & (table["statistic"] == "max")].any()
     assert not met[~rivals & (table["statistic"] == "min")].any()
+    chances = table["chance"].astype(float)
+    assert chances[rivals & (table["statistic"] == "min")].prod() < 1e-9
+    assert chances[rivals & (table["statistic"] == "max")].between(0.1, 1).all()
 
 
 def test_chance_of_lattice_lengths():
@@ -168,9 +171,9 @@ def test_audit_sees_a_changed_number(row, value):
 
 
 def test_figure_1():
-    marks = ma2020.corners_and_curve(PUBLISHED)
+    marks = ma2020.corners_and_curve()
     lengths = {}
-    for panel, own in marks.groupby("panel"):
+    for panel, own in marks.groupby("drawn"):
         for label, line in own[own["mark"] == "line"].groupby("label"):
             steps = np.hypot(*np.diff(line[["x", "y"]].to_numpy(), axis=0).T)
             lengths[panel, label] = steps.sum()
@@ -184,9 +187,9 @@ def test_figure_1():
 
 
 def test_figure_2_swaps_the_genes_behind_the_cut():
-    marks = ma2020.crossover(PUBLISHED)
+    marks = ma2020.crossover()
     texts = marks[marks["mark"] == "text"]
-    rows = {key: [int(text) for text in own.sort_values("x")["text"]] for key, own in texts.groupby(["panel", "y"], sort=False)}
+    rows = {key: [int(text) for text in own.sort_values("x")["text"]] for key, own in texts.groupby(["drawn", "y"], sort=False)}
     before, after = ([rows[panel, height] for height in (1.3, 0.0)] for panel in ("before", "after"))
     assert np.array_equal(before, ma2020.PARENTS)
     for own, other, child in zip(before, before[::-1], after):

@@ -32,33 +32,33 @@ SPEED_SAMPLES = 20_001
 STILL = 1e-6
 
 
-def corners_and_curve(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """Marks of Figure 1, column `panel`: a path with corners, the Bezier curve with these as its control points, and both."""
+def corners_and_curve() -> pd.DataFrame:
+    """Marks of Figure 1, column `drawn`: a path with corners, the Bezier curve with these as its control points, and both."""
     steps = curves.sample_matrix("bezier", len(ZIGZAG), 201) @ ZIGZAG
     corners = _line(ZIGZAG, "second", "path with corners")
     curve = _line(steps, "first", "Bezier curve")
     points = _dots(ZIGZAG[1:-1], "third", "corners P1 to P5")
     ends = pd.concat([_dots(ZIGZAG[:1], "start", "start S"), _dots(ZIGZAG[-1:], "target", "target T")])
-    drawn = {"corners": [corners, points, ends], "curve": [curve, points, ends], "both": [corners, curve, points, ends]}
-    return pd.concat([pd.concat(marks).assign(panel=panel) for panel, marks in drawn.items()], ignore_index=True)
+    parts = {"corners": [corners, points, ends], "curve": [curve, points, ends], "both": [corners, curve, points, ends]}
+    return pd.concat([pd.concat(marks).assign(drawn=name) for name, marks in parts.items()], ignore_index=True)
 
 
-def crossover(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """Marks of Figure 2, column `panel`: two chromosomes as rows of cell numbers before and after the crossover's tails are swapped."""
+def crossover() -> pd.DataFrame:
+    """Marks of Figure 2, column `drawn`: two chromosomes as rows of cell numbers before and after the crossover's tails are swapped."""
     children = PARENTS.copy()
     swap_tails(*children, BITS * CUT, BITS)
     frames = []
-    for panel, rows in (("before", PARENTS), ("after", children)):
+    for drawn, rows in (("before", PARENTS), ("after", children)):
         for height, row in zip((1.3, 0.0), rows):
             # A gene keeps the colour of the chromosome that it began in.
             for place, gene in enumerate(row):
                 role = "accent" if gene == PARENTS[0, place] else "muted"
                 box = {"mark": "cell", "role": role, "x": place, "y": height, "width": 0.96, "height": 0.8}
                 frames.append(
-                    pd.DataFrame([box, {"mark": "text", "role": "note", "x": place, "y": height, "text": str(gene)}]).assign(panel=panel)
+                    pd.DataFrame([box, {"mark": "text", "role": "note", "x": place, "y": height, "text": str(gene)}]).assign(drawn=drawn)
                 )
         cut = _line(np.array([(CUT - 0.5, -0.7), (CUT - 0.5, 2.0)]), "second", "cut between genes 7 and 8")
-        frames.append(cut.assign(panel=panel))
+        frames.append(cut.assign(drawn=drawn))
     return pd.concat(frames, ignore_index=True)
 
 
@@ -90,12 +90,16 @@ def nearest_lattice_length(length: float) -> tuple[int, int]:
 def lattice_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """Printed shortest and longest lengths beside the nearest length of a path of 8 neighbours.
 
-    Columns: workspace, method, statistic, printed, straight moves, diagonal moves, lattice length, distance (cells), met.
+    Columns: workspace, method, statistic, printed, straight moves, diagonal moves, lattice length, distance (cells), chance (that a length
+    drawn at random is as near, in the range, in whole cells, of the printed lengths of this statistic of the lattice methods), met.
     """
+    lengths = pd.concat([published["table1"], published["table2"]])
+    lengths = lengths[(lengths["metric"] == "length") & (lengths["statistic"] != "mean")]
     rows = []
-    for table in ("table1", "table2"):
-        printed = published[table]
-        for row in printed[(printed["metric"] == "length") & (printed["statistic"] != "mean")].itertuples():
+    for statistic, own in lengths.groupby("statistic", sort=False):
+        rivals = own.loc[own["method"].isin(LATTICE_METHODS), "value"]
+        low, high = math.floor(rivals.min()), math.ceil(rivals.max())
+        for row in own.itertuples():
             straight, diagonal = nearest_lattice_length(row.value)
             length = straight + diagonal * math.sqrt(2)
             distance = abs(row.value - length)
@@ -103,16 +107,17 @@ def lattice_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
                 {
                     "workspace": row.workspace,
                     "method": row.method,
-                    "statistic": row.statistic,
+                    "statistic": statistic,
                     "printed": f"{row.value:.4f}",
                     "straight moves": straight,
                     "diagonal moves": diagonal,
                     "lattice length": f"{length:.4f}",
                     "distance": f"{distance:.4f}",
+                    "chance": f"{chance_of_lattice(low, high, distance):.3f}",
                     "met": "yes" if distance <= LATTICE_TOLERANCE else "no",
                 }
             )
-    return pd.DataFrame(rows).sort_values(["statistic", "workspace"], ascending=[False, True], kind="stable")
+    return pd.DataFrame(rows)
 
 
 def chance_of_lattice(low: float, high: float, tolerance: float) -> float:
