@@ -34,6 +34,26 @@ def test_the_target_has_a_nearness_of_its_own():
     assert stats.binomtest((colony.sizes == 2).sum(), 4000, 4 / 6).pvalue > 1e-3
 
 
+@pytest.mark.parametrize(("weight", "direct"), [(0.0, 1 / 3), (1.0, 2 / 4), (2.0, 4 / 6)])
+def test_a_trail_draws_by_its_power(weight, direct):
+    """Second ants, after first ones that went straight to the target and doubled the trail of that step."""
+    grid = Grid(np.zeros((2, 2), dtype=bool), 1.0, "unit")
+    places = lattice(grid, (0.0, 0.0), (2.0, 2.0), "one")
+    settings = {
+        "places": places,
+        "ants": 1,
+        "target_heuristic": 1.0,
+        "evaporation": 0.0,
+        "deposit": 2 * math.sqrt(2),
+        "trail_weight": weight,
+    }
+    seconds = [
+        search(seed, iterations=2, **settings).sizes[0] for seed in range(3000) if search(seed, iterations=1, **settings).sizes[0] == 2
+    ]
+    assert len(seconds) > 800
+    assert stats.binomtest(seconds.count(2), len(seconds), direct).pvalue > 1e-3
+
+
 def test_no_ant_visits_a_cell_twice_and_some_die():
     occupied = np.zeros((6, 6), dtype=bool)
     occupied[2, 1:4] = True

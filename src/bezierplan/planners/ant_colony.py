@@ -155,7 +155,11 @@ def _walk(rng, lattice, trail, heuristic, rules, path, visits, ant):
             other = lattice.neighbours[cell, step]
             if other >= 0 and visits[other] != ant:
                 steps[open_steps] = step
-                attraction[open_steps] = trail[cell, step] ** rules.trail_weight * heuristic[other]
+                weighted = trail[cell, step]
+                # A power takes as long as all the rest of a step.
+                if rules.trail_weight != 1.0:
+                    weighted **= rules.trail_weight
+                attraction[open_steps] = weighted * heuristic[other]
                 open_steps += 1
         if open_steps == 0:
             return 0
