@@ -113,7 +113,9 @@ def test_a_path_of_cells_is_measured_on_its_own_cells():
     corner = polyline((0, 0), (3, 0), (3, 2), (5, 4))
     assert cell_length.length4(corner, field(10)) == cell_length.length8(corner, field(10)) == 8.0
     # Between centres, but not from neighbour to neighbour: thinned.
-    assert cell_length.length8(polyline((0, 0), (2, 1), (4, 2)), field(10)) < cell_length.length4(polyline((0, 0), (2, 1), (4, 2)), field(10))
+    assert cell_length.length8(polyline((0, 0), (2, 1), (4, 2)), field(10)) < cell_length.length4(
+        polyline((0, 0), (2, 1), (4, 2)), field(10)
+    )
 
 
 @pytest.mark.parametrize("degree", [2, 3, 7, 20, 60])

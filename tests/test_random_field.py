@@ -57,7 +57,7 @@ def test_fields_that_cut_off_the_target_are_drawn_again():
     for number in range(5):
         grid = random_field.field(crowded, PROBLEM | {"layout": number}, "study/crowded")
         assert np.isfinite(bounds.lattice_path(grid.occupied, (0, 0), (100, 100), 1.5, "free").length)
-    with pytest.raises(ValueError, match="radius: 0.15: start and target are cut off from each other in 200 fields"):
+    with pytest.raises(ValueError, match=r"radius: 0[.]15: start and target are cut off from each other in 200 fields"):
         random_field.field(FIELD | {"radius": 0.15}, PROBLEM | {"obstacles": 60, "side": 40, "target": [40, 40]}, "study/walled")
     with pytest.raises(ValueError, match="radius: no circle keeps"):
         random_field.field(FIELD | {"radius": 1.5}, PROBLEM, "study/covered")

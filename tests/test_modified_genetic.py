@@ -1,0 +1,417 @@
+"""The modified genetic algorithm: its encoding, validation, operators and rules for diversity, by hand and by properties."""
+
+import numpy as np
+import pytest
+
+from bezierplan import cell_length
+from bezierplan.curves import bezier_pieces
+from bezierplan.exact import bounds
+from bezierplan.exact.checker import check as certified
+from bezierplan.exact.region import region
+from bezierplan.planners import modified_genetic as planner
+from bezierplan.problem import Problem
+from bezierplan.search import diversity
+from bezierplan.workspaces import random_field
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import Grid
+
+SETTINGS = {
+    "population": 60,
+    "iterations": 80,
+    "crossover_probability": 0.8,
+    "mutation": "gene",
+    "mutation_rate": 0.006,
+    "diversity": "more_offspring",
+    "eta": 0.8,
+    "eta_decay": 0.99,
+    "most_batches": 1,
+    "gene_lattice": "coarse",
+    "point_order": "projection",
+    "first_points": 5,
+    "first_draws": 400,
+    "replacements": 1,
+    "least_distance": 2.5,
+    "curve": "single",
+    "fitness_length": "length",
+    "invalid": "delete",
+    "penalty": 20.0,
+    "survival": "best_of_all",
+}
+FEW = {"population": 20, "iterations": 10}
+
+
+def problem(number=0, side=100, radius=0.06, obstacles=15, route=1):
+    start, target = ((0, 0), (side, side)) if route == 1 else ((side, 0), (0, side))
+    description = {"side": side, "start": start, "target": target, "obstacles": obstacles, "layout": number}
+    grid = random_field.field({"radius": radius, "clear_ends": 2.0, "unit": "cell"}, description, "test")
+    return Problem("field", grid, tuple(map(float, start)), tuple(map(float, target)))
+
+
+def field(side=100, *circles, ends=None, gene_lattice="coarse", point_order="projection"):
+    table = np.array(circles, dtype=float).reshape(-1, 3)
+    grid = random_field.from_circles(Circles((0.0, side, 0.0, side), table[:, :2], table[:, 2], "cell"))
+    ends = np.array(((0, 0), (side, side)) if ends is None else ends, dtype=float)
+    return planner.field_of(grid, grid.in_cells(ends), gene_lattice, point_order)
+
+
+def rules(**changed):
+    settings = SETTINGS | changed
+    return planner.Rules(
+        settings["population"],
+        settings["iterations"],
+        settings["crossover_probability"],
+        ("gene", "chromosome", "one_flip").index(settings["mutation"]),
+        settings["mutation_rate"],
+        ("none", "more_offspring", "relaxing", "unique").index(settings["diversity"]),
+        settings["eta"],
+        settings["eta_decay"],
+        settings["most_batches"],
+        settings["first_points"],
+        settings["first_draws"],
+        settings["replacements"],
+        settings["least_distance"],
+        settings["curve"] == "composite",
+        ("length", "cells4", "cells8").index(settings["fitness_length"]),
+        settings["invalid"] == "penalty",
+        settings["penalty"],
+        settings["survival"] == "generational",
+    )
+
+
+def run(task, seed=0, **changed):
+    return planner.plan(task, np.random.default_rng(seed), **(SETTINGS | changed))
+
+
+def gene(x, y):
+    """The gene of a point of the field of side 100 on the coarse lattice."""
+    return 21 * (x // 5) + y // 5
+
+
+# The lattice.
+
+
+def test_the_coarse_lattice_has_441_points_with_both_diagonals():
+    found = field(100)
+    assert len(found.points) == 441
+    places = {(x - 0.5, y - 0.5) for x, y in found.points}
+    assert {(5 * i, 5 * i) for i in range(21)} | {(100 - 5 * i, 5 * i) for i in range(21)} <= places
+    np.testing.assert_array_equal(found.points[gene(15, 80)] - 0.5, (15, 80))
+    # Start and target are never set.
+    assert len(found.choices) == 439
+    assert not found.settable[[0, 440]].any()
+
+
+@pytest.mark.parametrize("side", [4, 20, 50, 100, 200, 333])
+def test_the_lattice_of_any_side_ends_in_the_corners(side):
+    found = field(side)
+    assert found.points.min() == 0.5
+    assert found.points.max() == side + 0.5
+    steps = np.unique(found.points[:, 0] - 0.5)
+    assert set(np.floor(np.arange(21) * side / 20 + 0.5)) == set(steps)
+
+
+def test_every_cell_can_be_a_gene():
+    found = field(9, (4, 4, 1.2), gene_lattice="cell")
+    assert len(found.points) == 100
+    np.testing.assert_array_equal(found.points[37] - 0.5, (3, 7))
+    assert len(found.choices) == 100 - 2 - 5
+
+
+def test_genes_of_occupied_cells_are_never_set():
+    found = field(100, (50, 50, 6))
+    closed = {gene(50, 50), gene(45, 50), gene(55, 50), gene(50, 45), gene(50, 55)}
+    assert set(np.flatnonzero(~found.settable)) == closed | {0, 440}
+
+
+def test_a_field_without_a_free_gene_is_told():
+    grid = Grid(np.ones((21, 21), dtype=bool), 1.0, "cell", (-0.5, -0.5))
+    grid.occupied[[0, -1], [0, -1]] = False
+    with pytest.raises(ValueError, match="no free gene"):
+        planner.field_of(grid, np.array([[0.5, 0.5], [20.5, 20.5]]), "coarse", "projection")
+
+
+# Decoding.
+
+
+def test_points_are_joined_along_the_line_from_start_to_target_ties_from_the_left():
+    found = field(100)
+    ones = np.array(sorted([gene(60, 60), gene(20, 60), gene(60, 20), gene(10, 5), gene(95, 100)]))
+    expected = [(0, 0), (10, 5), (20, 60), (60, 20), (60, 60), (95, 100), (100, 100)]
+    np.testing.assert_array_equal(planner.polygon(ones, found) - 0.5, expected)
+    # Against the other direction left and right change places.
+    back = field(100, ends=((100, 100), (0, 0)))
+    expected = [(100, 100), (95, 100), (60, 60), (60, 20), (20, 60), (10, 5), (0, 0)]
+    np.testing.assert_array_equal(planner.polygon(ones, back) - 0.5, expected)
+
+
+def test_points_can_be_joined_in_the_order_of_the_genes():
+    found = field(100, point_order="index")
+    ones = np.array([gene(10, 90), gene(20, 5), gene(20, 50)])
+    ones.sort()
+    np.testing.assert_array_equal(planner.polygon(ones, found)[1:-1] - 0.5, [(10, 90), (20, 5), (20, 50)])
+
+
+# Validation.
+
+
+def test_constraints_in_their_order():
+    found = field(100, (50, 50, 3))
+    empty = np.empty(0, dtype=np.int64)
+    assert planner.validate(empty, found, rules()) == (np.inf, False)
+    straight = np.array([gene(25, 25)])
+    assert planner.validate(straight, found, rules()) == (np.inf, False)
+    around = np.array([gene(25, 75)])
+    cost, free = planner.validate(around, found, rules())
+    assert free
+    assert cost > 141.5
+    near = np.array([gene(25, 75), gene(25, 80)])
+    assert planner.validate(near, found, rules(least_distance=5.0))[1]
+    assert planner.validate(near, found, rules(least_distance=5.1)) == (np.inf, False)
+
+
+def test_more_than_59_points_are_too_many():
+    found = field(100)
+    ones = np.array([gene(5 * i, 5 * j) for i in range(4) for j in range(1, 16)])
+    assert len(ones) == 60
+    assert planner.validate(ones, found, rules()) == (np.inf, False)
+    assert planner.validate(ones[:59], found, rules())[1]
+
+
+def test_the_free_diagonal_costs_its_length():
+    found = field(100)
+    for name, length in (("length", 100 * np.sqrt(2)), ("cells4", 150.0), ("cells8", 150.0)):
+        assert planner.validate(np.array([gene(50, 50)]), found, rules(fitness_length=name))[0] == pytest.approx(length, rel=1e-12)
+
+
+def test_a_colliding_curve_may_be_punished_for_each_cell():
+    found = field(100, (50, 50, 3))
+    ones = np.array([gene(50, 45)])
+    cost, free = planner.validate(ones, found, rules(invalid="penalty"))
+    x, y = cell_length.sample(planner.polygon(ones, found), cell_length.parts(planner.polygon(ones, found)), 1)
+    bad = cell_length.occupied_cells(*cell_length.touched_cells(x, y), found.occupied)
+    assert bad > 0
+    assert not free
+    assert cost == cell_length.polyline_length(x, y) + 20.0 * bad
+
+
+def test_first_sights_never_change_a_verdict():
+    """Curves that the walk over all cells calls free or colliding are called the same by the shortcuts before it."""
+    rng = np.random.default_rng(3)
+    free = colliding = 0
+    for number in range(20):
+        task = problem(number)
+        found = planner.field_of(task.workspace, task.workspace.in_cells(np.array([task.start, task.target])), "coarse", "projection")
+        for _ in range(100):
+            ones = np.sort(rng.choice(found.choices, rng.integers(1, 6), replace=False))
+            points = planner.polygon(ones, found)
+            x, y = cell_length.sample(points, cell_length.parts(points), 1)
+            bad = cell_length.occupied_cells(*cell_length.touched_cells(x, y), found.occupied)
+            cost, verdict = planner.validate(ones, found, rules(least_distance=0.0))
+            assert verdict == (bad == 0)
+            if verdict:
+                assert cost == cell_length.polyline_length(x, y)
+            free += bad == 0
+            colliding += bad > 0
+    assert min(free, colliding) > 50
+
+
+# The search.
+
+
+@pytest.mark.parametrize("diversity_rule", ["none", "more_offspring", "relaxing", "unique"])
+@pytest.mark.parametrize(
+    "changed", [{}, {"curve": "composite"}, {"invalid": "penalty"}, {"survival": "generational"}, {"mutation": "one_flip"}]
+)
+def test_plans_are_free_valid_and_above_the_bounds(diversity_rule, changed):
+    for number in range(3):
+        task = problem(number, route=1 + number % 2)
+        found = run(task, number, diversity=diversity_rule, **FEW, **changed)
+        assert found.claimed_feasible
+        assert certified(bezier_pieces(found.path), region(task.workspace)).feasible
+        cells = cell_length.touched_cells(*cell_length.samples(found.path, task.workspace))
+        assert cell_length.occupied_cells(*cells, task.workspace.occupied) == 0
+        least = bounds.lattice_path(
+            task.workspace.occupied, *(task.workspace.cell_of(*end) for end in (task.start, task.target)), 1.5, "free"
+        )
+        assert cell_length.length4(found.path, task.workspace) >= cell_length.length8(found.path, task.workspace) >= least.length
+        assert found.objective == pytest.approx(cell_length.polyline_length(*cell_length.samples(found.path, task.workspace)), rel=1e-12)
+        assert len(found.history) == 11
+        assert np.all(np.diff(found.history[np.isfinite(found.history)]) <= 0)
+        assert found.history[-1] == found.objective
+
+
+def test_an_empty_field_is_crossed_straight():
+    for route in (1, 2):
+        for seed in range(3):
+            found = run(problem(obstacles=0, route=route), seed)
+            assert cell_length.length8(found.path, problem(obstacles=0).workspace) == 150.0
+
+
+def test_start_is_target():
+    task = problem()._replace(target=(0.0, 0.0))
+    found = run(task)
+    assert found.objective == 0.0
+    assert found.evaluations == 0
+    assert np.array_equal(found.path.points, [(0, 0), (0, 0)])
+
+
+def test_a_wall_leaves_nothing_to_show():
+    occupied = np.zeros((41, 41), dtype=bool)
+    occupied[20, :] = True
+    task = Problem("wall", Grid(occupied, 1.0, "cell", (-0.5, -0.5)), (0.0, 0.0), (40.0, 40.0))
+    found = run(task, **FEW)
+    assert found.path is None
+    assert not found.claimed_feasible
+    assert found.stop == "no valid chromosome"
+    assert np.isinf(found.objective)
+    assert found.evaluations > 20 * 400
+
+
+def test_the_same_seed_finds_the_same_and_another_one_something_else():
+    one, again, other = (run(problem(), seed, **FEW) for seed in (1, 1, 2))
+    assert np.array_equal(one.path.points, again.path.points)
+    assert np.array_equal(one.history, again.history)
+    assert not np.array_equal(one.history, other.history)
+
+
+def test_without_a_rule_it_is_the_plain_algorithm_bit_by_bit():
+    """A threshold that Q never exceeds, or no further batch, asks for nothing."""
+    plain = run(problem(), 4, diversity="none")
+    for changed in ({"eta": 1.0, "eta_decay": 1.0}, {"most_batches": 0}):
+        watched = run(problem(), 4, **changed)
+        assert np.array_equal(plain.path.points, watched.path.points)
+        assert np.array_equal(plain.history, watched.history)
+        assert plain.evaluations == watched.evaluations
+        assert watched.extra["extra_batches"] == 0
+    assert run(problem(), 4, eta=-1.0, eta_decay=1.0).extra["extra_batches"] == 80
+
+
+def test_more_batches_are_made_as_long_as_q_is_above_the_threshold():
+    two = run(problem(), 4, eta=-1.0, eta_decay=1.0, most_batches=2)
+    one = run(problem(), 4, eta=-1.0, eta_decay=1.0, most_batches=1)
+    assert two.extra["extra_batches"] == 2 * one.extra["extra_batches"] == 160
+    assert two.evaluations > one.evaluations
+
+
+def test_unique_lets_no_two_children_be_alike():
+    plain, unique = (run(problem(), 5, diversity=rule, first_draws=1) for rule in ("none", "unique"))
+    assert unique.extra["distinct_chromosomes"] > plain.extra["distinct_chromosomes"]
+    # Only random chromosomes of the first population can be equal by chance.
+    assert unique.extra["distinct_chromosomes"] > 59
+
+
+def test_relaxing_with_a_threshold_of_two_refuses_nothing():
+    plain, relaxed = run(problem(), 6, diversity="none"), run(problem(), 6, diversity="relaxing", eta=0.0, eta_decay=1.0)
+    assert np.array_equal(plain.history, relaxed.history)
+    strict = run(problem(), 6, diversity="relaxing", eta=1.0, eta_decay=1.0)
+    assert not np.array_equal(plain.history, strict.history)
+
+
+def test_no_crossover_and_no_mutation_never_change_the_best_of_the_first_population():
+    frozen = run(problem(), 7, crossover_probability=0.0, mutation_rate=0.0)
+    # All children are copies, which are valid: nothing is drawn in their place.
+    assert np.all(frozen.history == frozen.history[0])
+    assert frozen.extra["valid_share"] == 1.0
+
+
+@pytest.mark.parametrize("rate", [0.0, 0.006, 0.3, 1.0])
+def test_mutation_changes_each_gene_with_its_probability(rate):
+    found = field(100, (50, 50, 20))
+    rng = np.random.default_rng(8)
+    flips = []
+    counted = np.zeros(441, dtype=int)
+    for _ in range(2000):
+        child = np.empty(3 * 441, dtype=np.int64)
+        count = planner._mutate(rng, child, 0, found, rules(mutation_rate=rate))
+        assert found.settable[child[:count]].all()
+        assert np.all(np.diff(child[:count]) > 0)
+        counted[child[:count]] += 1
+        flips.append(count)
+    expected = rate * len(found.choices)
+    assert np.mean(flips) == pytest.approx(expected, abs=4 * np.sqrt(expected * (1 - rate) / 2000) + 1e-12)
+    share = counted[found.settable] / 2000
+    assert np.abs(share - rate).max() <= 5 * np.sqrt(rate * (1 - rate) / 2000) + 1e-12
+
+
+def test_other_readings_of_the_mutation_rate_change_one_gene():
+    found = field(100)
+    rng = np.random.default_rng(9)
+    for name, rate in (("one_flip", 0.006), ("chromosome", 1.0), ("chromosome", 0.0)):
+        counts = set()
+        for _ in range(200):
+            child = np.full(120, gene(50, 50), dtype=np.int64)
+            counts.add(planner._mutate(rng, child, 1, found, rules(mutation=name, mutation_rate=rate)))
+        assert counts <= ({1} if rate == 0.0 else {0, 1, 2})
+        assert (2 in counts) == (rate > 0.0)
+
+
+def test_crossover_cuts_between_genes():
+    pool = planner._empty_pool(2)
+    planner._put(np.array([3, 50, 300]), 3, 1.0, True, pool, 0)
+    planner._put(np.array([50, 60]), 2, 1.0, True, pool, 1)
+    child = np.empty(120, dtype=np.int64)
+    for cut, expected in ((50, [3, 50, 60]), (51, [3, 50, 60]), (61, [3, 50]), (3, [50, 60]), (4, [3, 50, 60]), (301, [3, 50, 300])):
+        assert list(child[: planner._cross(pool, 0, 1, cut, child)]) == expected
+    assert list(child[: planner._cross(pool, 1, 0, 60, child)]) == [50, 300]
+
+
+def test_parents_differ_and_are_drawn_in_proportion_to_fitness():
+    rng = np.random.default_rng(10)
+    wheel = np.cumsum([1.0, 2.0, 5.0])
+    pairs = np.array([planner._parents(rng, wheel) for _ in range(20_000)])
+    assert np.all(pairs[:, 0] != pairs[:, 1])
+    np.testing.assert_allclose(np.bincount(pairs[:, 0]) / 20_000, [1 / 8, 2 / 8, 5 / 8], atol=0.015)
+    second = pairs[pairs[:, 0] == 2, 1]
+    np.testing.assert_allclose(np.bincount(second, minlength=3)[:2] / len(second), [1 / 3, 2 / 3], atol=0.02)
+    # Nearly all fitness in one chromosome: the other parent is found at once all the same.
+    wheel = np.cumsum([1e-9, 1e-2, 1e-9])
+    assert {planner._parents(rng, wheel) for _ in range(100)} <= {(1, 0), (1, 2)}
+    # All unfit: every pair alike.
+    pairs = [planner._parents(rng, np.cumsum(np.full(4, 1e-9))) for _ in range(2000)]
+    assert len(set(pairs)) == 12
+
+
+def test_the_best_survive_and_of_equal_ones_the_first():
+    pool, spare = planner._empty_pool(6), planner._empty_pool(3)
+    for place, cost in enumerate([5.0, 3.0, 4.0, 3.0, 9.0, 4.0]):
+        planner._put(np.array([place]), 1, cost, True, pool, place)
+    planner._select(pool, 0, 6, spare)
+    assert pool.ones[:3, 0].tolist() == [1, 3, 2]
+    assert pool.cost[:3].tolist() == [3.0, 3.0, 4.0]
+
+
+def test_q_of_a_pool_is_the_mean_over_all_pairs():
+    rng = np.random.default_rng(11)
+    rows = rng.random((12, 441)) < 0.02
+    rows[:, 7] = True
+    rows[5] = rows[3]
+    pool = planner._empty_pool(12)
+    for place, row in enumerate(rows):
+        ones = np.flatnonzero(row)
+        planner._put(ones, len(ones), 1.0, True, pool, place)
+    every = [diversity.q_of_rows(rows[i], rows[j]) for j in range(12) for i in range(j)]
+    assert planner._sum_of_q(pool, 0, 12, 441) == pytest.approx(sum(every), rel=1e-12)
+    first = [diversity.q_of_rows(rows[i], rows[j]) for j in range(8) for i in range(j)]
+    parts = planner._sum_of_q(pool, 0, 8, 441) + planner._sum_of_q(pool, 8, 12, 441)
+    assert parts == pytest.approx(sum(every), rel=1e-12)
+    assert sum(first) != sum(every)
+    assert planner._distinct(pool, 12) == 11
+
+
+def test_q_statistic():
+    assert diversity.q_of_rows([1, 1, 0, 0], [1, 1, 0, 0]) == 1.0
+    assert diversity.q_of_rows([1, 1, 0, 0], [0, 0, 1, 1]) == -1.0
+    assert diversity.q_of_rows([1, 1, 1, 1], [1, 1, 1, 1]) == 1.0
+    assert diversity.q_of_rows([1, 1, 1, 1], [1, 1, 1, 0]) == 0.0
+    # The example of elhoseny2017, Section 3.3.1.
+    one, two, three = ([int(bit) for bit in text] for text in ("1100110010", "1010101011", "1111000000"))
+    assert diversity.q_of_rows(one, two) == diversity.q_of_rows(one, three) == 0.0
+    assert diversity.q_of_rows(two, three) == pytest.approx(-1 / 3, rel=1e-15)
+
+
+def test_settings_that_do_not_fit():
+    with pytest.raises(ValueError, match="population: 61; parents are crossed in pairs"):
+        planner.check(SETTINGS | {"population": 61})
+    with pytest.raises(ValueError, match="first_points: 60; a curve has at most 59"):
+        planner.check(SETTINGS | {"first_points": 60})
+    planner.check(SETTINGS)
