@@ -73,6 +73,10 @@ def unit(name: str, workspace_unit: str) -> str:
     return re.sub(r"\bu\b", workspace_unit, METRICS[name].unit)
 
 
+def _failed(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    return ~runs["feasible"].astype(bool)
+
+
 def _disagrees(claimed: bool, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     """Whether (n,) the planner's own test says this and the checker's the opposite."""
     return ((runs["claimed_feasible"] == claimed) & (runs["feasible"] != claimed)).to_numpy()
@@ -356,7 +360,7 @@ METRICS: dict[str, Metric] = {
     "length": Metric("u", "exact arc length", True),
     "claimed_feasible": Metric("-", "the planner's own test of the path", False),
     "feasible": Metric("-", "the certified checker's test of the path", False),
-    "failed": Metric("-", "without a path that the certified checker accepts", False, lambda runs, problems: ~runs["feasible"].astype(bool)),
+    "failed": Metric("-", "without a path that the certified checker accepts", False, _failed),
     "falsely_claimed": Metric("-", "free by the planner's own test, colliding by the checker's", False, partial(_disagrees, True)),
     "wrongly_rejected": Metric("-", "free by the checker's test, not by the planner's own", False, partial(_disagrees, False)),
     "obstacle_clearance": Metric("u", "least distance to the occupied cells of a grid, its border not counted", True, _obstacle_clearance),

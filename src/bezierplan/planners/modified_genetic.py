@@ -479,8 +479,8 @@ def _collides_at_first_sight(points, occupied):
 
 @njit(cache=True)
 def _is_free_at_first_sight(x, y, occupied):
-    """Whether the cells of all samples are free, and so are those that a step between two of them may cut the corner of; so that the walk over
-    the cells can only find the same. Not told of curves with a sample on a grid line.
+    """Whether the cells of all samples are free, and those whose corner a step between two of them may cut: then the walk over the cells
+    can only find the same. Not told of curves with a sample on a grid line.
     """
     touched = on_line = False
     column, row = int(x[0]), int(y[0])

@@ -1,5 +1,5 @@
-"""A control: the shortest path over free cells, 1 for a straight step and 1.5 for a diagonal one, which no length that counts cells falls below
-(`cell_length`).
+"""A control: the shortest path over free cells, 1 for a straight step and 1.5 for a diagonal one. No length that counts cells falls below
+its own (`cell_length`).
 """
 
 import math

@@ -101,7 +101,9 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
             lengths = column.set_index("method")["value"]
             place = f"route={route}, obstacles={obstacles}"
             others = lengths.drop("prm").max()
-            rows.append(_row(table, f"{place}, method=prm", "the text has PRM the longest", lengths["prm"], others, lengths["prm"] > others))
+            rows.append(
+                _row(table, f"{place}, method=prm", "the text has PRM the longest", lengths["prm"], others, lengths["prm"] > others)
+            )
             least = lengths.drop("mga").min()
             rule = "the text has the proposed method the shortest"
             rows.append(_row(table, f"{place}, method=mga", rule, lengths["mga"], least, lengths["mga"] < least))
@@ -109,7 +111,9 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
                 rivals = lengths.drop(["mga", "ga"]).min()
                 rule = "the text has GA second"
                 rows.append(_row(table, f"{place}, method=ga", rule, lengths["ga"], rivals, lengths["mga"] < lengths["ga"] < rivals))
-    means = {name: published[name].query("statistic == 'mean'").set_index(["method", "obstacles"])["value"] for name in ("table5", "table6")}
+    means = {
+        name: published[name].query("statistic == 'mean'").set_index(["method", "obstacles"])["value"] for name in ("table5", "table6")
+    }
     for table, times in means.items():
         for (method, obstacles), time in times.drop("mga").items():
             ours = times["mga", obstacles]
@@ -124,7 +128,9 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
         rows.append(_row("table5", f"method=GA, obstacles={obstacles}", rule, time, other, time == other))
     genes = solutions(published)
     for name, found in counts(genes["S1"], genes["S2"]).items():
-        rows.append(_row("table1", f"S1, S2: {name}", "the text counts as it defines", SAID_COUNTS[name], found, SAID_COUNTS[name] == found))
+        rows.append(
+            _row("table1", f"S1, S2: {name}", "the text counts as it defines", SAID_COUNTS[name], found, SAID_COUNTS[name] == found)
+        )
     said = q_statistic(SAID_COUNTS["N11"], SAID_COUNTS["N00"], SAID_COUNTS["N10"], SAID_COUNTS["N01"])
     rows.append(_row("table1", "S1, S2: Q", "Q of the counts in the text is the printed one", SAID_Q["S1", "S2"], said, said == 0))
     last = ETA * ETA_DECAY**ITERATIONS
