@@ -231,7 +231,9 @@ def experiments_of(study: Study, artefact: str) -> list[str]:
 
 
 def methods_of(study: Study, artefact: str, experiment: str) -> list[str]:
-    """Methods of an experiment whose runs an artefact needs: of a table all (the comparison shows them), of a figure those it selects."""
+    """Methods of an experiment whose runs an artefact needs: of a table all (the comparison shows them), of a figure those it selects, by
+    name controls too.
+    """
     if artefact in study.tables:
         return study.methods_of(experiment)
     methods = study.experiments[experiment]["methods"]
@@ -240,7 +242,7 @@ def methods_of(study: Study, artefact: str, experiment: str) -> list[str]:
         if panel.get("experiment") == experiment:
             wanted = panel.get("where", {}).get("method", methods)
             needed.update([wanted] if isinstance(wanted, str) else wanted)
-    return [method for method in methods if method in needed]
+    return [method for method in study.methods_of(experiment) if method in needed]
 
 
 def experiments_of_claims(study: Study, claims: list[dict]) -> list[str]:
@@ -358,7 +360,8 @@ def caption(study: Study, artefact: str, scale: str) -> str:
         content = study.experiments[experiment]
         methods = [method for method in methods_of(study, artefact, experiment) if method not in study.controls]
         settings = {method: study.resolved(method) for method in methods}
-        shared = {name: value for name, value in settings[methods[0]].items() if all(own.get(name) == value for own in settings.values())}
+        first = settings[methods[0]] if methods else {}
+        shared = {name: value for name, value in first.items() if all(own.get(name) == value for own in settings.values())}
         for method, own in settings.items():
             apart = {name: value for name, value in own.items() if name not in shared and name not in content.get("vary", {})}
             sentences.append(f"{study.labels.get(method, method)}: {study.planner(method)}{_listed(apart, ' with ')}")

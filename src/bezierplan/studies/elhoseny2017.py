@@ -222,11 +222,11 @@ def radius_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
 
 
 def radius_errors(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """How far the expected lengths are off, against the radius; columns: radius (a share of the side), field, relative_error."""
+    """How far the expected lengths are off, against the radius; columns: radius (a share of the side), side, relative_error."""
     printed = _printed_lengths(published)
     return pd.DataFrame(
         [
-            {"radius": thousandths / 1000, "field": f"{side} x {side}", "relative_error": _errors(printed, side, thousandths / 1000)[1]}
+            {"radius": thousandths / 1000, "side": side, "relative_error": _errors(printed, side, thousandths / 1000)[1]}
             for side in SIDES.values()
             for thousandths in range(5, 81)
         ]
@@ -257,11 +257,10 @@ def crossover_and_mutation() -> pd.DataFrame:
         for chromosome, (x, y) in at.items():
             role = "accent" if chromosome in parents else "muted" if chromosome in children else "none"
             label = {"accent": "parent", "muted": "possible child", "none": None}[role]
-            label = "parent, possible child too" if operator == "crossover" and role == "accent" else label
             box = {"mark": "cell", "group": chromosome, "role": role, "x": x, "y": y, "width": 0.92, "height": 0.92, "label": label}
             marks.append(box | {"operator": operator})
         words = {"mark": "text", "role": "note", "operator": operator}
-        marks += [words | {"x": x, "y": y, "text": chromosome} for chromosome, (x, y) in at.items()]
+        marks += [words | {"x": x, "y": y, "text": " ".join(chromosome)} for chromosome, (x, y) in at.items()]
     x, y = at[one]
     for child in sorted(mutated):
         towards = np.subtract(at[child], (x, y))
@@ -342,8 +341,9 @@ def chromosome() -> pd.DataFrame:
         place = side / 2 + gene_width * (gene - 12)
         marks.append(box | {"x": place, "y": 0.0, "width": gene_width, "height": gene_width})
         marks.append(words | {"x": place, "y": 0.0, "text": str(value)})
-        marks.append(words | {"x": place, "y": -0.42, "text": str(gene)})
-        marks.append(words | {"x": x + 0.3, "y": y + top - 0.32, "text": str(gene)})
+        marks.append(words | {"x": x + 0.22, "y": y + top - 0.3, "text": str(gene)})
+        if y == 0 or gene == (side + 1) ** 2 - 1:
+            marks.append(words | {"x": place, "y": -0.45, "text": str(gene)})
     x, y = grid.in_units(np.column_stack(samples(path, grid))).T
     marks += [{"mark": "line", "role": "second", "group": "curve", "label": "Bezier curve", "x": a, "y": b + top} for a, b in zip(x, y)]
     for role, (a, b) in (("start", start), ("target", target)):
@@ -366,7 +366,7 @@ def validation() -> pd.DataFrame:
     """
     start, target = VALIDATED["start"], VALIDATED["target"]
     for number in itertools.count():
-        grid = random_field.field(VALIDATION, VALIDATED, f"elhoseny2017/figure4/{number}")
+        grid = random_field.field(VALIDATION, VALIDATED | {"layout": number}, "elhoseny2017/figure4")
         points = np.random.default_rng(number).integers(0, VALIDATED["side"] + 1, (CANDIDATES, 2))
         found = verdicts(points, grid, LEAST_DISTANCE)
         path = curve_through([each.point for each in found if each.word == "accepted"], start, target)
@@ -389,7 +389,7 @@ def validation() -> pd.DataFrame:
         role, label = looks[word]
         dot = {"mark": "dots", "role": role, "group": word, "label": label, "candidate": candidate, "verdict": word}
         marks.append(dot | {"x": point[0], "y": point[1]})
-        marks.append({"mark": "text", "role": "note", "x": point[0] + 0.7, "y": point[1] + 0.7, "text": str(candidate)})
+        marks.append({"mark": "text", "role": "note", "x": point[0] - 0.8, "y": point[1] + 0.7, "text": str(candidate)})
     for role, (x, y) in (("start", start), ("target", target)):
         marks.append({"mark": "dots", "role": role, "group": role, "label": role, "x": x, "y": y})
     return pd.DataFrame(marks)
