@@ -2,182 +2,35 @@
 
 import random
 import re
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from bezierplan import contract
+from bezierplan import contract, running, study_file
 from bezierplan.checked import Fault
 from bezierplan.exact import bounds, checker
 from bezierplan.exact.region import region
 from bezierplan.problem import known_planners
+from bezierplan.study import job
 
-SETTINGS = {
-    "abc_ep": {
-        "sources": 20,
-        "cycles": 10,
-        "trial_limit": 5,
-        "reach": 0.1,
-        "step_weight": 0.5,
-        "visited_weight": 2.0,
-        "most_points": 200,
-        "population": 20,
-        "generations": 150,
-        "move_share": 0.6,
-        "removal_share": 0.2,
-        "spread": 0.025,
-        "insertion_spread": 0.3,
-        "opponents": 5,
-        "blocked_penalty": 1e6,
-    },
-    "ant_colony": {
-        "corners": "one",
-        "ants": 5,
-        "iterations": 10,
-        "trail_weight": 1.0,
-        "heuristic_weight": 2.0,
-        "target_heuristic": 100.0,
-        "initial_trail": 1.0,
-        "evaporation": 0.1,
-        "deposit": 1.0,
-        "trail_update": "ant_system",
-        "exploitation": 0.0,
-        "local_evaporation": 0.0,
-    },
-    "ant_colony_genetic": {
-        "corners": "one",
-        "ants": 5,
-        "iterations": 10,
-        "trail_weight": 1.0,
-        "heuristic_weight": 2.0,
-        "target_heuristic": 100.0,
-        "initial_trail": 1.0,
-        "evaporation": 0.1,
-        "deposit": 1.0,
-        "trail_update": "ant_system",
-        "exploitation": 0.0,
-        "local_evaporation": 0.0,
-        "population": 10,
-        "generations": 10,
-        "crossover_probability": 0.9,
-        "mutation_probability": 0.1,
-        "mutation": "one_cell",
-        "longest_join": 600,
-        "elitism": 1,
-    },
-    "binary_genetic": {
-        "curve": "piecewise_quadratic",
-        "genes": 6,
-        "samples": 601,
-        "spacing": "parameter",
-        "population": 20,
-        "generations": 10,
-        "crossover_probability": 0.5,
-        "cut": "bit",
-        "mutation_probability": 0.1,
-        "mutation": "one_bit",
-        "elitism": 1,
-        "penalty": 10.0,
-        "penalty_for": "each_sample",
-        "occupied_point_penalty": 0.0,
-    },
-    "chaotic_pso": {
-        "curve": "bezier",
-        "control_points": 3,
-        "samples": 100,
-        "penalty": "multiply",
-        "beta": 100.0,
-        "d_min": 0.0,
-        "particles": 20,
-        "iterations": 60,
-        "stall_limit": 10,
-        "straight_line_particle": False,
-        "c1": 1.5,
-        "c2": 1.5,
-        "inertia": 1.0,
-        "inertia_damping": 1.0,
-        "velocity_limit": 1.0,
-        "bound_rule": "mirror",
-        "random_numbers": "dimension",
-        "update": "asynchronous",
-        "chaotic_term": "social",
-        "chaotic_map": "singer",
-        "chaotic_start_rule": "random",
-        "chaotic_start": 0.7,
-        "zeta_for": "iteration",
-        "singer_mu": 1.07,
-        "singer_x4": 13.302875,
-        "sine_a": 4.0,
-        "piecewise_p": 0.4,
-        "sinusoidal_a": 2.3,
-        "count_collisions": True,
-    },
-    "grid_genetic": {
-        "population": 60,
-        "generations": 80,
-        "crossover_probability": 0.8,
-        "mutation_probability": 0.2,
-        "diagonal_cost": 1.5,
-        "attempts": 40,
-        "longest_walk": 6.0,
-        "least_detour": 3,
-        "detour_share": 0.125,
-        "straight_on": 0.8,
-    },
-    "node_genetic": {
-        "mutation": "proposed",
-        "population": 20,
-        "generations": 10,
-        "stall": 10,
-        "initial": "feasible",
-        "most_nodes": 12,
-        "selection": "linear_rank",
-        "crossover_probability": 1.0,
-        "cut": "same",
-        "mutation_probability": 0.3,
-        "without_obstacle": "any_node",
-        "keep_better": False,
-        "direction": "forward",
-        "random_node": "free",
-        "penalty": 15.0,
-        "elitism": 0,
-        "result": "last_generation",
-        "optimal_within": 1e-6,
-        "friction": 1.0,
-    },
-    "fish_swarm_genetic": {
-        "corners": "one",
-        "fish": 20,
-        "tries": 8,
-        "sight": 6.0,
-        "crowding": 0.618,
-        "follow_every": 5,
-        "releases": 20,
-        "longest_path": 200,
-        "longest_walk": 60,
-        "population": 10,
-        "generations": 10,
-        "crossover_probability": 0.9,
-        "mutation_probability": 0.1,
-        "elitism": 1,
-    },
-    "lattice_genetic": {
-        "corners": "one",
-        "coding": "via_cells",
-        "genes": 8,
-        "initial": "uniform",
-        "longest_join": 600,
-        "undecodable_length": 200.0,
-        "population": 10,
-        "generations": 10,
-        "crossover_probability": 0.9,
-        "mutation_probability": 0.1,
-        "elitism": 1,
-    },
-    "prm": {"nodes": 50, "links": "visible", "neighbours": 10, "d_min": 0.0},
-    "shortest_path": {},
-    "straight_line": {},
-}
+ROOT = Path(__file__).parents[1]
+STUDIES = ("song2016", "elhoseny2017", "tharwat2018", "ma2020", "meledje")
+
+
+def settings_in_force() -> dict[str, dict]:
+    """Planner -> its settings in the first experiment of a study that runs it."""
+    found = {}
+    for study in study_file.load([ROOT / "config" / "studies" / name for name in STUDIES]).values():
+        for experiment in study.experiments:
+            for method in study.methods_of(experiment):
+                described = job(study, experiment, method, "smoke", 0)
+                condition = next(running.conditions(list(described["problems"]), described["vary"]))
+                found.setdefault(study.planner(method), running.settings_in(described, condition))
+    return found
+
+
+SETTINGS = settings_in_force()
 
 WALK = """
 import math
@@ -266,6 +119,10 @@ def failed(planner, settings):
     findings = list(contract.check_planner(planner, settings))
     assert not any("\n" in str(finding) for finding in findings)
     return [finding for finding in findings if not finding.passed]
+
+
+def test_every_planner_of_the_package_is_run_by_a_study():
+    assert sorted(SETTINGS) == known_planners()
 
 
 @pytest.mark.parametrize("planner", known_planners())

@@ -164,7 +164,7 @@ def plan(
     ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
     if problem.start == problem.target:
         nothing = {"distinct_chromosomes": 0.0, "mean_q": math.nan, "extra_batches": 0, "valid_share": math.nan}
-        return Plan(Path("polyline", grid.in_units(ends)), 0.0, True, 0, np.zeros(1), "start is target", nothing)
+        return Plan(Path("polyline", grid.in_units(ends)), 0.0, True, 1, np.zeros(1), "start is target", nothing)
     field = field_of(grid, ends, gene_lattice, point_order)
     rules = Rules(
         population,
