@@ -6,7 +6,7 @@ import pytest
 
 from bezierplan import problems, running, study_file
 from bezierplan.exact.region import region
-from bezierplan.study import alternatives, job, methods_changed, problems_job, with_alternative
+from bezierplan.study import alternatives, job, methods_changed, methods_of_claims, problems_job, tried, with_alternative
 
 STUDIES = study_file.load(study_file.read_config({}))
 # What a run finds beside its extra columns, as opposed to the settings that it was given.
@@ -41,3 +41,28 @@ def test_alternative_changes_what_a_run_finds(key, name):
     changed = with_alternative(study, name)
     runs = ((home(study, method), method) for method in methods_changed(study, name))
     assert any(found(changed, *run) != found(study, *run) for run in runs)
+
+
+def claims(study, *wanted):
+    return [claim for claim in study.claims if claim["id"] in wanted]
+
+
+@pytest.mark.parametrize(
+    ("claim", "experiment", "methods"),
+    [
+        ("C21", "maps", ["pso", "cpso1_singer", "cpso1_sine", "cpso2_singer", "cpso2_sine"]),
+        ("C23", "maps", ["pso", "cpso1_singer", "cpso1_sine", "cpso2_singer", "cpso2_sine"]),  # `rest`: those of Table 5
+        ("C36", "maps", ["cpso2_singer"]),
+        ("C35", "rivals", ["cpso1_singer", "cpso2_singer", "ferguson", "prm"]),
+        ("C38", "maps", None),  # `rest` over three tables
+    ],
+)
+def test_alternatives_run_only_what_their_claims_compare(claim, experiment, methods):
+    study = STUDIES["tharwat2018"]
+    every = [name for name in study.experiments[experiment]["methods"] if "variant_of" not in study.methods[name]]
+    assert methods_of_claims(study, claims(study, claim), experiment) == (every if methods is None else methods)
+
+
+def test_every_setting_that_tharwat2018_leaves_open_is_tried():
+    study = STUDIES["tharwat2018"]
+    assert tried(study) == list(alternatives(study))

@@ -478,7 +478,7 @@ def ticks_beyond(axes):
     ("found", "own", "columns", "width"),
     [
         *((results(), panels(), columns, width) for columns, width in ((1, 85), (2, 174), (3, 174))),
-        (comparison(printed_means()), comparing_panels(), 2, 174),
+        *((comparison(printed_means()), comparing_panels(), columns, width) for columns, width in ((1, 85), (2, 174))),
         *((comparison(), gallery(10), columns, 174) for columns in (4, 5)),
     ],
 )

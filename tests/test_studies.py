@@ -15,6 +15,7 @@ from bezierplan.problem import planner_module, planner_settings, setting_fault
 from bezierplan.search import chaotic_maps
 from bezierplan.studies import song2016, tharwat2018
 from bezierplan.workspaces import files
+from bezierplan.workspaces.circles import Circles
 
 STUDIES = File(__file__).parents[1] / "config" / "studies"
 THARWAT = checked.read(STUDIES / "tharwat2018" / "experiments.yaml", "experiments")
@@ -106,6 +107,23 @@ def test_fitness_is_that_of_the_planner():
 def test_best_known_curves(world, best):
     path = np.array([[(0, 0), *tharwat2018.BEST_KNOWN[world], (4, 6)]], dtype=float)
     assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(best, abs=3e-4)  # their coordinates are rounded
+
+
+@pytest.mark.parametrize("world", ["equal", "public"])
+def test_references_are_what_a_search_finds(world):
+    """The reference length of a problem, and the control points behind it, cannot be improved by a search from many starts."""
+    length, points = tharwat2018.best_curve(problem(world), 3, SAMPLES)
+    assert length == pytest.approx(THARWAT["problems"][world]["reference"], abs=1e-4)
+    assert tharwat2018.fitness(points[None], problem(world), SAMPLES, 0.0)[0] == pytest.approx(length)
+    assert tharwat2018.fitness(points[None], problem(world), SAMPLES, BETA)[0] == pytest.approx(length, abs=1e-4), "it is free"
+
+
+def test_no_free_curve_is_told():
+    """One control point cannot lead round circles that all but close the way."""
+    walls = np.array([[2.0, y] for y in np.arange(-10, 10.1, 1.0)])
+    closed = problem("equal")._replace(workspace=Circles((-10.0, 10.0, -10.0, 10.0), walls, np.full(len(walls), 0.9), "unit"))
+    with pytest.raises(ValueError, match="no free curve of 1 control points found from 60 starts"):
+        tharwat2018.best_curve(closed, 1, SAMPLES)
 
 
 def test_local_minima():

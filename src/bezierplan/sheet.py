@@ -122,20 +122,22 @@ def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, column
     with mpl.rc_context(style.SETTINGS):
         figure = Figure(figsize=(width, width * rows / columns))
         grid = _places(figure, panels, rows, columns)
-        notes = []
+        headings, notes = [], []
         for number, panel in enumerate(panels):
             own = frame[frame["panel"] == number]
-            note = kind_module(panel["kind"]).draw(grid.flat[number], own, scene, panel)
-            notes.append(_wrapped(note, width / columns, style.SMALLEST_TEXT))
+            notes.append(kind_module(panel["kind"]).draw(grid.flat[number], own, scene, panel))
             letter = f"({string.ascii_lowercase[number]}) " if len(panels) > 1 else ""
-            heading = _wrapped(letter + _title(panel, own, scene), width / columns, style.TITLE_TEXT)
-            grid.flat[number].set_title(heading, loc="left")
-        for first in range(0, len(panels), columns):
-            _write_notes(grid.flat[first : first + columns], notes[first : first + columns])
+            headings.append(letter + _title(panel, own, scene))
         for axes in grid.flat[len(panels) :]:
             axes.set_visible(False)
         if scene.narrow:
             _name_axes_once(grid)
+        room = _room(figure, grid)
+        for number in range(len(panels)):
+            notes[number] = _broken(notes[number], room, style.SMALLEST_TEXT)
+            grid.flat[number].set_title(_broken(headings[number], room, style.TITLE_TEXT), loc="left")
+        for first in range(0, len(panels), columns):
+            _write_notes(grid.flat[first : first + columns], notes[first : first + columns])
         _lay_out(figure, grid, _draw_legend(figure))
     return figure
 
@@ -181,10 +183,17 @@ def _name_axes_once(grid: np.ndarray) -> None:
                 axes.set_xlabel("")
 
 
-def _wrapped(text: str, width: float, size: float) -> str:
-    """Text broken after spaces, commas and slashes, short enough for a panel of a width in inches; size of the text in points."""
-    beside = 36 if width >= style.NARROW_PANEL else 30  # points that the labels of an upright axis take
-    most = int((72 * width - beside) / (0.57 * size))  # on average a character of this font is a little less wide than this
+def _room(figure: Figure, grid: np.ndarray) -> float:
+    """Room for text above each of the panels (rows, columns), in points."""
+    columns = grid.shape[1]
+    beside = 36 if figure.get_figwidth() / columns >= style.NARROW_PANEL else 30  # what labels of an upright axis take, if they are short
+    left = sum(max(_margins(axes)[0] for axes in column) + style.GAP / 2 for column in grid.T)
+    return 72 * figure.get_figwidth() / columns - max(beside, 72 * left / columns)
+
+
+def _broken(text: str, room: float, size: float) -> str:
+    """Text broken after spaces, commas and slashes into lines that fit a room; room and size of the text in points."""
+    most = int(room / (0.57 * size))  # on average a character of this font is a little less wide than this
     lines = []
     for paragraph in text.splitlines():
         line = ""
@@ -215,9 +224,10 @@ def _draw_legend(figure: Figure) -> float:
 def _lay_out(figure: Figure, grid: np.ndarray, legend: float) -> None:
     """Place panels (rows, columns), all as wide as the sheet allows, a row's tops level, and fit the sheet's height to them.
 
-    Two rounds, because the labels beside a panel depend on its size. legend: room for it, in inches.
+    Three rounds, because the labels beside a panel depend on its size: ticks, and names of upright axes, which are broken to fit its
+    height. legend: room for it, in inches.
     """
-    for _ in range(2):
+    for _ in range(3):
         margins = np.array([[_margins(axes) for axes in row] for row in grid]) + style.GAP / 2
         left, right = margins[:, :, :2].max(axis=0).T
         bottom, top = margins[:, :, 2:].max(axis=1).T
@@ -233,6 +243,8 @@ def _lay_out(figure: Figure, grid: np.ndarray, legend: float) -> None:
             height = heights[row, column]
             corner = x[column] / sheet_width, (y[row] - height) / sheet_height
             axes.set_position([*corner, width / sheet_width, height / sheet_height])
+            if axes.name != "3d":
+                axes.set_ylabel(_broken(axes.get_ylabel(), 72 * height, style.SMALLEST_TEXT))
 
 
 def _margins(axes: Axes) -> tuple[float, float, float, float]:

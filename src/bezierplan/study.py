@@ -190,7 +190,7 @@ def table_job(study: Study, table: str, scale: str) -> dict:
 
 def listing_job(study: Study, table: str) -> dict:
     """What a table depends on that shows no runs, beside the files of published numbers."""
-    return {"spec": study.tables[table], "module": study.module()}
+    return {"spec": study.tables[table], "module": study.module(), "labels": study.labels}
 
 
 def figure_job(study: Study, figure: str, scale: str) -> dict:
@@ -282,6 +282,32 @@ def tried(study: Study) -> list[str]:
     return [name for name, (identity, _) in alternatives(study).items() if "claims" in assumption_of(study, identity)]
 
 
+def methods_of_claims(study: Study, claims: list[dict], experiment: str) -> list[str]:
+    """Methods of an experiment without variants that claims compare; all of them where a check names none."""
+    methods = [name for name in study.experiments[experiment]["methods"] if "variant_of" not in study.methods[name]]
+    named = set()
+    for claim in claims:
+        for check in claim["checks"]:
+            if check.get("experiment") == experiment:
+                named |= _compared(study, claim, check) or set(methods)
+    return [name for name in methods if name in named]
+
+
+def _compared(study: Study, claim: dict, check: dict) -> set[str]:
+    """Methods that a check names; of `rest` those of the claim's table."""
+    found = set(_as_list(check.get("where", {}).get("method", [])))
+    if check.get("across", "method") == "method":
+        found.update(check.get("groups", []), check.get("than", []), *check.get("pairs", []), *check.get("order", []))
+    if "rest" in found:
+        tables = [study.tables[name] for name in _as_list(claim.get("artefact", [])) if name in study.tables]
+        found.update(*(_as_list(table.get("where", {}).get("method", list(study.methods))) for table in tables))
+    return found
+
+
+def _as_list(value: Any) -> list:
+    return value if isinstance(value, list) else [value]
+
+
 def alternatives_described(study: Study) -> dict[str, dict]:
     """What `analysis.sensitivity` prints of each alternative, by its name."""
     described = {}
@@ -327,8 +353,11 @@ def headline_claims(study: Study, name: str) -> list[dict]:
 
 
 def kind_of(study: Study, artefact: str) -> str:
-    """The kind of a table, or of the first panel of a figure."""
-    return study.tables[artefact]["kind"] if artefact in study.tables else study.figures[artefact]["panels"][0]["kind"]
+    """The kind of a table, or of the first panel of a figure; of a comparison that of the tables which it is of."""
+    if artefact in study.figures:
+        return study.figures[artefact]["panels"][0]["kind"]
+    kind = study.tables[artefact]["kind"]
+    return "pivot" if kind == "comparison" else kind
 
 
 def smoke(studies: dict[str, Study]) -> tuple[list[tuple[str, str]], list[tuple[str, str, str]]]:

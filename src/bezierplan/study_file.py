@@ -309,6 +309,12 @@ def _check_table(study: Study, table: dict, place: str) -> None:
     if table["kind"] == "transcribed":
         _found(study.folder / "published" / table["published"], f"{place}: published")
         return
+    if table["kind"] == "comparison":
+        for name in table["of"]:
+            _known(name, [each for each, other in study.compared().items() if "published" in other], f"{place}: of")
+        for metric in table["metrics"]:
+            _known(metric, metrics.METRICS, f"{place}: metrics")
+        return
     if table["kind"] == "function":
         _known(table["function"], _functions(study), f"{place}: function")
         return

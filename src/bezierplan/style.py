@@ -48,6 +48,7 @@ OURS = {"color": BLUE, "linestyle": "-", "linewidth": 1.3}
 
 # The one run that a panel shows, and the proven limit that no path can beat.
 RUN_SHOWN = {"color": RED, "linestyle": "-", "linewidth": 1.8}
+REFERENCE = {"color": BLACK, "linestyle": (0, (6, 1.5, 1, 1.5)), "linewidth": 0.8}
 BOUND = {"color": BLACK, "linestyle": (0, (1, 1.2)), "linewidth": 1.0}
 
 # Lines side by side, by name: the colours of Okabe and Ito first. Two that share their dashes (every fifth) differ in lightness.

@@ -111,8 +111,11 @@ def listing_job(wildcards):
 
 
 def listing_published(wildcards):
-    """The file that a transcribed table shows; all of them for a function of the study."""
-    file = STUDIES[wildcards.study].published_file(wildcards.listing)
+    """The file that a transcribed table shows, the comparisons that one is of, or all files of published numbers for a function."""
+    spec, study = listing_job(wildcards)["spec"], STUDIES[wildcards.study]
+    if spec["kind"] == "comparison":
+        return [f"results/{wildcards.scale}/{wildcards.study}/tables/{name}.comparison.csv" for name in spec["of"]]
+    file = study.published_file(wildcards.listing)
     return [file] if file else published_files(wildcards)
 
 
@@ -140,7 +143,7 @@ def figure_code(wildcards):
 
 def figure_published(wildcards):
     """Published numbers, for the kinds that draw them and the functions that ask for them."""
-    drawn = any(panel["kind"] == "boxes" or panel.get("published") for panel in figure_job(wildcards)["spec"]["panels"])
+    drawn = any(panel["kind"] in ("boxes", "critical_difference") or panel.get("published") for panel in figure_job(wildcards)["spec"]["panels"])
     return published_files(wildcards) if drawn else []
 
 
@@ -212,7 +215,7 @@ def alternative_runs(wildcards):
     changed = studies.methods_changed(study, wildcards.alternative)
     files = []
     for experiment in claims_experiments(wildcards):
-        methods = [name for name in study.experiments[experiment]["methods"] if "variant_of" not in study.methods[name]]
+        methods = studies.methods_of_claims(study, claims_in_force(wildcards), experiment)
         files += chunk_files(wildcards, experiment, [name for name in methods if name not in changed])
         files += chunk_files(wildcards, experiment, [name for name in methods if name in changed], folder=ALTERNATIVE)
     return files

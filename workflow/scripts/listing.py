@@ -9,5 +9,5 @@ with log.job(snakemake.log[0]):
 
     job = snakemake.params.job
     functions = vars(importlib.import_module(job["module"])) if job["module"] else {}
-    table = listing.table(job["spec"], list(snakemake.input.published), functions)
+    table = listing.table(job["spec"], list(snakemake.input.published), functions, job["labels"])
     table.to_csv(snakemake.output[0], index=False, float_format="%.10g", lineterminator="\n")

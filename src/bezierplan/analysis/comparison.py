@@ -14,6 +14,7 @@ One row for each group of runs, metric and statistic; an empty cell means that t
 | value_ours | the statistic of these runs |
 | best, mean, median, quartile1, quartile3 | of the same runs; best is the lowest |
 | low95_ours, high95_ours | 95 % bootstrap interval of value_ours; empty below two runs, and for min, max and range |
+| low95_chance, high95_chance | central 95 % of what experiments of n_published runs may print, as far as ours tell (`statistics.chance`) |
 | quantile_published | quantile of the published number in experiments of n_published runs (`yardstick`); in our runs if that is empty |
 | reproduced | is that within the central 95 %? Ours are rounded like the printed one, ties count; empty for times, and below six runs |
 | share_claimed | share of all runs whose path passed the planner's own test |
@@ -22,6 +23,7 @@ One row for each group of runs, metric and statistic; an empty cell means that t
 | gap | median over the feasible runs of length / bound - 1 |
 """
 
+import math
 from typing import Any
 
 import pandas as pd
@@ -33,7 +35,7 @@ from bezierplan.analysis.results import Results
 _COLUMNS = [
     *("metric", "statistic", "unit", "n_published", "value_published", "n_ours", "value_ours"),
     *("best", "mean", "median", "quartile1", "quartile3", "low95_ours", "high95_ours"),
-    *("quantile_published", "reproduced", "share_claimed", "share_feasible", "bound", "gap"),
+    *("low95_chance", "high95_chance", "quantile_published", "reproduced", "share_claimed", "share_feasible", "bound", "gap"),
 ]
 
 
@@ -111,6 +113,9 @@ def _described(row: pd.Series, keys: list[str], name: str) -> dict[str, Any]:
     quantile, reproduced = statistics.yardstick(
         statistic, numbers, row["value_published"], size, row["decimals"], statistics.generator(f"{row_name}/yardstick")
     )
+    chance = (math.nan, math.nan)
+    if not pd.isna(row["value_published"]):
+        chance = statistics.chance(statistic, numbers, size, statistics.generator(f"{row_name}/yardstick"))
     return {
         "n_ours": len(numbers),
         "value_ours": statistics.statistic(statistic, numbers),
@@ -118,6 +123,8 @@ def _described(row: pd.Series, keys: list[str], name: str) -> dict[str, Any]:
         **{each: statistics.statistic(each, numbers) for each in ("mean", "median", "quartile1", "quartile3")},
         "low95_ours": low,
         "high95_ours": high,
+        "low95_chance": chance[0],
+        "high95_chance": chance[1],
         "quantile_published": quantile,
         # Seconds of another machine are shown, not judged.
         "reproduced": None if row["unit"] == "s" else reproduced,

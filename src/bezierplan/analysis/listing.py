@@ -1,17 +1,63 @@
-"""Tables that show no runs: what a paper prints beside its results, and what a study's function computes."""
+"""Tables that show no runs: what a paper prints beside its results, what a study's function computes, and published numbers beside ours."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pandas as pd
 
+from bezierplan.analysis.results import select
 
-def table(spec: dict, published: list[str], functions: Mapping[str, Callable[[dict[str, pd.DataFrame]], pd.DataFrame]]) -> pd.DataFrame:
-    """A table of kind `transcribed`, every cell as it is written, or of kind `function`, called with all published tables by file name.
+# What a table of kind `comparison` shows beside the keys: columns of `comparison.compare`, and their headings.
+_SHOWN = {
+    "metric": "metric",
+    "statistic": "statistic",
+    "n_published": "runs of the paper",
+    "value_published": "published",
+    "n_ours": "our runs",
+    "value_ours": "ours",
+    "low95_chance": "95 % by chance, from",
+    "high95_chance": "to",
+    "quantile_published": "quantile of the published",
+    "reproduced": "within",
+}
+_DECIMALS = 3
 
-    published: the files, of a transcribed table its one.
+
+def table(
+    spec: dict,
+    files: list[str],
+    functions: Mapping[str, Callable[[dict[str, pd.DataFrame]], pd.DataFrame]],
+    labels: Mapping[str, str],
+) -> pd.DataFrame:
+    """A table of kind `transcribed`, every cell as it is written, of kind `function`, called with all published tables by file name, or of
+    kind `comparison` (`beside`).
+
+    files: of published numbers, of a transcribed table its one; of a comparison those of the tables that it is of.
     """
     if spec["kind"] == "transcribed":
-        (file,) = published
+        (file,) = files
         return pd.read_csv(file, dtype=str, keep_default_na=False)
-    return functions[spec["function"]]({Path(file).stem: pd.read_csv(file) for file in published})
+    if spec["kind"] == "comparison":
+        return beside(spec, {Path(file).name.partition(".")[0]: pd.read_csv(file) for file in files}, labels)
+    return functions[spec["function"]]({Path(file).stem: pd.read_csv(file) for file in files})
+
+
+def beside(spec: dict, comparisons: dict[str, pd.DataFrame], labels: Mapping[str, str]) -> pd.DataFrame:
+    """Published numbers of several tables beside ours, and the range that experiments of the paper's size give by chance.
+
+    spec: `metrics`, the metrics shown; `where`: column -> value or list, of tables that have the column. comparisons: as from
+    `comparison.compare`, by table. labels: how names are printed.
+    """
+    shown = []
+    for name, rows in comparisons.items():
+        keys = rows.columns[: rows.columns.get_loc("metric")].to_list()
+        where = {key: value for key, value in spec.get("where", {}).items() if key in keys}
+        rows = select(rows[rows["value_published"].notna()], where | {"metric": spec["metrics"]})
+        shown.append(rows[[*keys, *_SHOWN]].assign(table=name))
+    found = pd.concat(shown, ignore_index=True)
+    keys = [column for column in found.columns if column not in (*_SHOWN, "table")]
+    for key in (*keys, "metric"):
+        found[key] = [labels.get(value, value) if isinstance(value, str) else value for value in found[key]]
+    counted = found.select_dtypes("float").columns.difference(["quantile_published"])
+    found = found.round(dict.fromkeys([*counted, "quantile_published"], _DECIMALS))
+    return found[["table", *keys, *_SHOWN]].rename(columns=_SHOWN)

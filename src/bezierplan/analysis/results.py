@@ -65,8 +65,11 @@ def read_all(runs: list[str], repeats: dict[str, int], problems: list[str], boun
 
 
 def read_published(files: list[str]) -> pd.DataFrame | None:
-    """The published numbers in some files, one below the other; files of another form are left out. None if there is none."""
-    tables = [pd.read_csv(file) for file in files]
+    """The published numbers in some files, one below the other, the table's name (of its file) in the column `table`.
+
+    Files of another form are left out. None if there is none.
+    """
+    tables = [pd.read_csv(file).assign(table=PurePath(file).stem) for file in files]
     tidy = [table for table in tables if {"metric", "statistic", "value"} <= set(table)]
     return pd.concat(tidy, ignore_index=True) if tidy else None
 

@@ -175,20 +175,34 @@ def yardstick(
     """
     if not len(values) or math.isnan(published):
         return math.nan, None
-    tail = TAIL
-    if size is None:
-        least = most = values
-    elif name in ("min", "max"):
-        least, most = _extremes(name, values, size)
-    else:
-        least = most = predicted(name, values, size, rng)
-        if name not in ("count", "share"):
-            tail = _expanded_tail(len(values))
+    least, most, tail = _experiments(name, values, size, rng)
     if decimals is not None:
         least, most, published = np.round(least, decimals), np.round(most, decimals), round(published, decimals)
     below, above = np.mean(most < published), np.mean(least > published)
     reproduced = bool(below <= 1 - tail and above <= 1 - tail) if len(values) >= LEAST_RUNS else None
     return float((below + 1 - above) / 2), reproduced
+
+
+def chance(name: str, values: np.ndarray, size: int | None, rng: np.random.Generator) -> tuple[float, float]:
+    """Ends of the central 95 % among which `yardstick` wants a published number, with the same random draws; not numbers without values.
+
+    An end is infinite where our values (n,) do not tell how far the least or the largest of `size` others may lie.
+    """
+    if not len(values):
+        return math.nan, math.nan
+    least, most, tail = _experiments(name, values, size, rng)
+    low, high = np.quantile(least, tail, method="lower"), np.quantile(most, 1 - tail, method="higher")
+    return float(low), float(high)
+
+
+def _experiments(name: str, values: np.ndarray, size: int | None, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, float]:
+    """The least and the most that experiments of a size may print of our values (n,), and what to leave out at either end of them."""
+    if size is None:
+        return values, values, TAIL
+    if name in ("min", "max"):
+        return *_extremes(name, values, size), TAIL
+    drawn = predicted(name, values, size, rng)
+    return drawn, drawn, TAIL if name in ("count", "share") else _expanded_tail(len(values))
 
 
 def _expanded_tail(n: int) -> float:

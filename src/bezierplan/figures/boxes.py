@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 
 from bezierplan import metrics, style
 from bezierplan.analysis.results import Results
-from bezierplan.figures.lines import axis_label, constants, in_order, printed, runs_note
+from bezierplan.figures.lines import LIMITS, axis_label, constants, in_order, printed, runs_note, shared_limits
 
 # Whiskers end at the last value within so many interquartile ranges of the box.
 _REACH = 1.5
@@ -18,14 +18,18 @@ _PARTS = {"low": "whislo", "quartile1": "q1", "median": "med", "quartile3": "q3"
 
 
 # Columns of published numbers that tell no runs apart.
-_PRINTED = ["metric", "statistic", "n", "unit", "value"]
+_PRINTED = ["table", "metric", "statistic", "n", "unit", "value"]
+
+# Published means farther away than so many times the range of all that is found here stand at the edge, with their value.
+_FAR = 0.5
 
 
-def data(results: Results, *, metric: str, by: str = "method") -> pd.DataFrame:
+def data(results: Results, *, metric: str, by: str = "method", limits: bool = False) -> pd.DataFrame:
     """One row a part of a box; columns: those of `lines.constants`, `by` by its own name, runs and feasible_runs (counts), part, value.
 
     Parts: low and high (where the whiskers end), quartile1, median, quartile3; beyond, a value beyond the whiskers; mean; published, the
-    mean that the paper prints. Values are in the metric's unit, of the runs that have the metric. A group without any has no rows.
+    mean that the paper prints. Values are in the metric's unit, of the runs that have the metric. A group without any has no rows. With
+    limits, of no group: reference (the best known path of the kind) and bound (the exact shortest length), each where all runs share it.
 
     by: a column of the runs table. Raises KeyError for an unknown metric or column.
     """
@@ -35,6 +39,8 @@ def data(results: Results, *, metric: str, by: str = "method") -> pd.DataFrame:
         named = constants(runs) | {by: group, "runs": len(own), "feasible_runs": int(own["feasible"].sum())}
         parts = _box(np.sort(own["value"].dropna().to_numpy())) + [("published", mean) for mean in _published_means(results, own, metric)]
         rows += [named | {"part": part, "value": value} for part, value in parts]
+    if limits:
+        rows += [constants(runs) | {"part": name, "value": value} for name, value in shared_limits(runs).items()]
     return pd.DataFrame(rows)
 
 
@@ -71,13 +77,17 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     groups = in_order(frame[by], panel)
     own = [frame[frame[by] == group].groupby("part")["value"].apply(list).to_dict() for group in groups]
     _draw_boxes(axes, own)
+    for name, look in LIMITS.items():
+        for value in frame.loc[frame["part"] == name, "value"]:
+            axes.axvline(value, zorder=1.5, **look)
+    far = _draw_far(axes, own)
     marks = {
         "beyond": {"color": style.BLUE, "marker": ".", "markersize": 1.6, "label": f"beyond {_REACH} interquartile ranges", "zorder": 1},
         "mean": {"color": style.RED, "marker": "x", "markersize": 4, "label": "mean", "zorder": 4},
         "published": {**style.PUBLISHED_MARK, "label": "published mean", "zorder": 5},
     }
     for part, look in marks.items():
-        points = [(value, height) for height, parts in enumerate(own) for value in parts.get(part, [])]
+        points = [(value, height) for height, parts in enumerate(own) for value in parts.get(part, []) if value not in far]
         if points:
             axes.plot(*zip(*points), **({"linestyle": ""} | look))
     axes.set_ylim(len(groups) - 0.4, -0.6)
@@ -86,6 +96,30 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     axes.set_xlabel(axis_label(panel["metric"], scene))
     axes.grid(visible=True, axis="x")
     return runs_note(frame, "box", "method" if by == "method" else "row")
+
+
+def _draw_far(axes: Axes, groups: list[dict[str, list[float]]]) -> set[float]:
+    """Mark published means that would press the boxes together at the edge that they lie beyond, and return them."""
+    found = [value for parts in groups for part, values in parts.items() if part != "published" for value in values]
+    if not found:
+        return set()
+    low, high = min(found), max(found)
+    reach = _FAR * (high - low)
+    far = set()
+    for height, parts in enumerate(groups):
+        for value in parts.get("published", []):
+            if low - reach <= value <= high + reach:
+                continue
+            far.add(value)
+            above = value > high
+            at = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "center", "ha": "right" if above else "left"}
+            axes.annotate(f"{value:.4g}", (1.0 if above else 0.0, height), xytext=(-7 if above else 7, 0), zorder=5, **at)
+            edge = style.PUBLISHED_MARK | {"marker": ">" if above else "<", "label": "published mean, beyond the scale"}
+            axes.plot(1.0 if above else 0.0, height, transform=axes.get_yaxis_transform(), clip_on=False, zorder=5, **edge)
+    if far:
+        room = 0.25 * (high - low)
+        axes.set_xlim(low - (room if min(far) < low else room / 4), high + (room if max(far) > high else room / 4))
+    return far
 
 
 def _draw_boxes(axes: Axes, groups: list[dict[str, list[float]]]) -> None:

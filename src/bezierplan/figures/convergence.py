@@ -10,7 +10,7 @@ from scipy.optimize import isotonic_regression
 from bezierplan import style
 from bezierplan.analysis import statistics
 from bezierplan.analysis.results import Results
-from bezierplan.figures.lines import constants, in_order, printed, runs_note
+from bezierplan.figures.lines import LIMITS, constants, in_order, printed, runs_note, shared_limits
 from bezierplan.figures.paths import feasible_note, picked, run_note
 
 # Least distance of names beside a panel, as a share of its height: a line of text where two panels stand side by side.
@@ -21,7 +21,12 @@ _MARKS = 5
 
 
 def data(
-    results: Results, *, pick: dict[str, Any] | None = None, hue: str | None = None, statistic: Literal["mean", "median"] = "mean"
+    results: Results,
+    *,
+    pick: dict[str, Any] | None = None,
+    hue: str | None = None,
+    statistic: Literal["mean", "median"] = "mean",
+    reference: bool = False,
 ) -> pd.DataFrame:
     """One row a generation, and with `hue` one for each of its values as well. A run that stopped early keeps its last objective.
 
@@ -29,14 +34,16 @@ def data(
 
     With `pick`, columns: those of `paths.picked`, generation, objective (of the picked run; empty without one), median, quantile10 and
     quantile90, bound. With `hue`, columns: those of `lines.constants`, the hue's own name, runs and feasible_runs (counts), generation,
-    objective (the statistic), bound (empty where problems differ in it).
+    objective (the statistic), bound (empty where problems differ in it). With `reference` a column of that name, the length of the best
+    known path of the methods' own kind, empty where problems differ in it.
 
     pick: the run, as in `analysis.results.pick`. hue: a column of the runs table. Raises ValueError unless either is given, and with `pick`
     unless all runs are of one problem and one method.
     """
     if (pick is None) == (hue is None):
         raise ValueError("a panel of kind convergence needs either pick or hue")
-    return _of_one_run(results, pick) if hue is None else _of_groups(results, hue, statistic)
+    frame = _of_one_run(results, pick) if hue is None else _of_groups(results, hue, statistic)
+    return frame.assign(reference=shared_limits(results.runs).get("reference", np.nan)) if reference else frame
 
 
 def _of_one_run(results: Results, pick: dict[str, Any]) -> pd.DataFrame:
@@ -75,8 +82,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     axes.xaxis.get_major_locator().set_params(integer=True)
     axes.set_xlabel("generation (-)")
     axes.grid(visible=True)
-    if np.isfinite(frame["bound"].iloc[0]):
-        axes.axhline(frame["bound"].iloc[0], label="shortest path possible", **style.BOUND)
+    for name, look in LIMITS.items():
+        if name in frame and np.isfinite(frame[name].iloc[0]):
+            axes.axhline(frame[name].iloc[0], **look)
     if "hue" in panel:
         return _draw_groups(axes, frame, scene, panel)
     _draw_one_run(axes, frame)

@@ -67,6 +67,18 @@ def constants(runs: pd.DataFrame) -> dict[str, Any]:
     return {column: runs[column].iloc[0] for column in ("problem", "method") if runs[column].nunique() == 1}
 
 
+# Lines that stand beside what is found: the exact shortest length, and the best known path of the methods' own kind.
+LIMITS = {
+    "reference": {**style.REFERENCE, "label": "best known path of the same kind"},
+    "bound": {**style.BOUND, "label": "shortest path possible"},
+}
+
+
+def shared_limits(runs: pd.DataFrame) -> dict[str, float]:
+    """Values of `LIMITS` that all runs share, by name."""
+    return {name: runs[name].iloc[0] for name in LIMITS if name in runs and runs[name].notna().all() and runs[name].nunique() == 1}
+
+
 def in_order(values: pd.Series, panel: dict) -> list[Any]:
     """The different values of a column: those that the panel's `where` lists in its order, then the others sorted."""
     wanted = panel.get("where", {}).get(values.name)
@@ -114,6 +126,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
             _draw_repeats(axes, own[own["part"] == "repeat"], x, None if hue is None else look["color"])
         else:
             axes.plot(own[x], own["value"], label=label or None, **_joined(look, len(own)))
+    if (frame[x] % 1 == 0).all():
+        axes.xaxis.get_major_locator().set_params(integer=True)
     axes.set_xlabel(axis_label(x, scene))
     axes.set_ylabel(axis_label(panel["metric"], scene, statistic))
     axes.grid(visible=True)
