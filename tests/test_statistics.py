@@ -189,3 +189,15 @@ def test_predicted_mean_has_the_error_of_both_samples():
     drawn = predicted("mean", values, 20, generator("both"))
     assert drawn.shape == (statistics.DRAWS,)
     assert drawn.std() == pytest.approx(values.std() * math.sqrt(1 / 20 + 1 / 50), rel=0.08)
+
+
+def test_chance_is_what_the_yardstick_accepts():
+    """A published number is reproduced where it lies between the ends, and beyond them it is not."""
+    values = np.random.default_rng(0).normal(10, 2, 30)
+    for name in ("mean", "median", "min"):
+        low, high = statistics.chance(name, values, 10, statistics.generator(name))
+        assert low < statistics.statistic(name, values) < high or name == "min"
+        for published, within in ((low + 1e-6, True), (high - 1e-6, True), (low - 0.05, False), (high + 0.05, False)):
+            if np.isfinite(published):
+                assert statistics.yardstick(name, values, published, 10, None, statistics.generator(name))[1] == within, (name, published)
+    assert np.isnan(statistics.chance("mean", np.array([]), 10, statistics.generator("empty"))).all()

@@ -65,9 +65,9 @@ def data(
 
     panels: kind, title, experiment or data with where (as in `analysis.results.select`) or workspace, and options of the kind. results: by
     experiment. workspaces: by name. functions: what `data` may name; each is called once, for the table that its panels draw, with the
-    workspace of a panel that names one as well, and with the published tables if a panel asks for them; for a panel with an experiment it is
-    called with the panel's results. published: all published tables by file name. Raises ValueError for options or runs that a kind cannot
-    draw.
+    workspace of a panel that names one as well, and with the published tables if a panel asks for them; for a panel with an experiment it
+    is called with the panel's results. published: all published tables by file name. Raises ValueError for options or runs that a kind
+    cannot draw.
     """
     alone = [panel for panel in panels if "data" in panel and "experiment" not in panel]
     wanted = {(panel["data"], panel.get("workspace")): panel.get("published", False) for panel in alone}
