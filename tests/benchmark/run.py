@@ -21,7 +21,7 @@ from numba import njit
 from bezierplan import curves, study_file
 from bezierplan.exact import bounds, checker
 from bezierplan.exact.region import region
-from bezierplan.planners import binary_genetic, chaotic_pso
+from bezierplan.planners import binary_genetic, chaotic_pso, node_genetic
 from bezierplan.problem import Path as Curve
 from bezierplan.problem import Problem, Workspace
 from bezierplan.workspaces import files
@@ -32,11 +32,11 @@ ROUNDS = 5
 SOURCE = sys.path[0]
 
 
-def cpu_seconds(work: Callable[[], object]) -> float:
+def cpu_seconds(work: Callable[[], object], rounds: int = ROUNDS) -> float:
     """CPU seconds of the fastest of several rounds, after one that compiles."""
     work()
     seconds = []
-    for _ in range(ROUNDS):
+    for _ in range(rounds):
         before = time.process_time()
         work()
         seconds.append(time.process_time() - before)
@@ -129,6 +129,31 @@ def workspaces() -> Iterator[tuple[str, Workspace]]:
         yield f"polygons {file.stem}", files.polygons_from_geojson(file.read_text(), "m")
 
 
+def benchmark_node_genetic() -> None:
+    """The proposed mutation of meledje on the maps of the study, and on random maps of growing size.
+
+    Prepared once a map: the least energy of all paths, and up to `node_genetic.TABLE_CELLS` cells a table of all edges, whose size is told.
+    """
+    study = study_file.load(study_file.read_config({"studies": ["meledje"]}))["meledje"]
+    maps = {name: (files.load(study.workspaces[name], study.folder), study.problems[name]["settings"]) for name in list(study.problems)[:4]}
+    maps |= {f"{side} x {side}": (random_grid(side, np.random.default_rng(side)), {}) for side in (16, 32, 64, 128)}
+    print(f"\n{'node_genetic':16}{'prepared in s':>16}{'ms a run':>12}{'MB of edges':>16}")
+    for name, (grid, own) in maps.items():
+        settings = study.resolved("proposed") | own
+        problem = Problem(name, grid, grid.centre(0), grid.centre(grid.occupied.size - 1))
+        ground = node_genetic.ground_of(grid, settings["friction"])
+        prepared = cpu_seconds(lambda: _prepare(grid, settings["friction"]), rounds=1)  # noqa: B023
+        runs = 20
+        seconds = cpu_seconds(lambda: [node_genetic.plan(problem, np.random.default_rng(seed), **settings) for seed in range(runs)])  # noqa: B023
+        print(f"  {name:14}{prepared:16.3f}{1000 * seconds / runs:12.2f}{(ground.met.nbytes + ground.energy.nbytes) / 1e6:16.1f}")
+
+
+def _prepare(grid: Grid, friction: float) -> None:
+    node_genetic._ground.cache_clear()
+    node_genetic._cheapest_known.cache_clear()
+    node_genetic.cheapest(node_genetic.ground_of(grid, friction), 0, grid.occupied.size - 1)
+
+
 def benchmark_geometry() -> None:
     """Microseconds a check (median over random curves, half of them short) and milliseconds a bound from corner to corner."""
     print(f"\n{'workspace':26}{'check: median us':>18}{'99 % us':>10}{'colliding':>11}{'bound: ms':>12}")
@@ -172,5 +197,6 @@ def benchmark_start() -> None:
 if __name__ == "__main__":
     benchmark_binary_genetic()
     benchmark_chaotic_pso()
+    benchmark_node_genetic()
     benchmark_geometry()
     benchmark_start()

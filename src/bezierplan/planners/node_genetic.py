@@ -153,16 +153,14 @@ def plan(
     elif math.isinf(optimum):
         found, stop = _NOTHING, "no path"
     else:
-        drawn = np.flatnonzero(~grid.occupied.ravel() | (random_node == "any"))
-        ends = [start, target]
         found = _search(
             starts,
             moves,
             ground,
             start,
             target,
-            np.setdiff1d(np.flatnonzero(~grid.occupied), ends),
-            np.setdiff1d(drawn, ends),
+            _inner(~grid.occupied, start, target),
+            _inner(~grid.occupied | (random_node == "any"), start, target),
             population,
             Rules(
                 mutation=get_args(Mutation).index(mutation),
@@ -205,6 +203,12 @@ def plan(
 
 
 _NOTHING = _Found(np.empty(0, dtype=np.int64), math.inf, 0, np.array([math.inf]), 1, False, 0.0, math.nan, 0.0)
+
+
+def _inner(cells: np.ndarray, start: int, target: int) -> np.ndarray:
+    """Numbers of cells (rows, columns), true or false, without start and target."""
+    numbers = np.flatnonzero(cells)
+    return numbers[(numbers != start) & (numbers != target)]
 
 
 def serves(problem: Problem) -> None:
