@@ -7,6 +7,7 @@ from pathlib import Path as File
 import numpy as np
 import pandas as pd
 import pytest
+import shapely
 
 from bezierplan import checked, problems, running, study_file
 from bezierplan.checked import Fault
@@ -85,6 +86,33 @@ def test_maps_change_as_the_paper_says():
         _, path = node_genetic.cheapest(node_genetic.ground_of(before, 1.0), 0, 255)
         ground = node_genetic.ground_of(after, 1.0)
         assert sum(node_genetic.obstacles_met(ground, *edge) for edge in itertools.pairwise(path.tolist())) == 2
+
+
+# Share of the way, of the exact optimum, after which the map changes -> cell (column, row), what remains, and that with what was gone;
+# by a program of its own.
+DRIVEN = {
+    ("env1", 10): ((2, 1), 26.7527, 29.380),
+    ("env1", 25): ((6, 2), 22.6296, 29.197),
+    ("env1", 50): ((8, 7), 13.1531, 26.287),
+    ("env2", 10): ((4, 1), 28.0907, 31.646),
+    ("env2", 25): ((9, 1), 23.1908, 32.078),
+    ("env2", 50): ((9, 5), 14.1421, 31.916),
+}
+
+
+@pytest.mark.parametrize(("environment", "percent"), DRIVEN)
+def test_the_robot_plans_anew_from_the_cell_where_it_is(environment, percent):
+    (column, row), remaining, total = DRIVEN[environment, percent]
+    before = problem(f"{environment}_initial")
+    energy, cells = node_genetic.cheapest(node_genetic.ground_of(before.workspace, 1.0), 0, 255)
+    driven = shapely.LineString(node_genetic.centres(before.workspace, cells))
+    at = driven.interpolate(percent / 100, normalized=True)
+    assert before.workspace.cell_of(at.x, at.y) == (row, column)
+    after = problem(f"{environment}_after_{percent}")
+    assert after.start == (column + 0.5, row + 0.5)
+    rest, _ = node_genetic.cheapest(node_genetic.ground_of(after.workspace, 1.0), 16 * row + column, 255)
+    assert rest == pytest.approx(remaining, abs=1e-4)
+    assert percent / 100 * energy + rest == pytest.approx(total, abs=1e-3)
 
 
 # Drawings
