@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from bezierplan import study_file
+from bezierplan import running, study_file
+from bezierplan import study as studies
 from bezierplan.checked import Fault
 
 SONG = Path(__file__).parents[1] / "config" / "studies" / "song2016"
@@ -60,6 +61,18 @@ FAULTS = {
         "settings: gene: no planner of this study has this setting; did you mean genes?",
     ),
     "unknown setting of a method": (EXPERIMENTS, "{curve: polyline,", "{curv: polyline,", "settings: curv: unknown; did you mean curve?"),
+    "unknown setting of a problem": (
+        EXPERIMENTS,
+        "\n  0_255: {workspace: figure2,",
+        "\n  0_255: {workspace: figure2, settings: {gene: 6},",
+        "problems: 0_255: settings: gene: unknown",
+    ),
+    "wrong setting of a problem": (
+        EXPERIMENTS,
+        "\n  0_255: {workspace: figure2,",
+        "\n  0_255: {workspace: figure2, settings: {population: 201},",
+        "experiments: routes: methods: nonsmooth: settings: population: 201; parents are crossed in pairs",
+    ),
     "missing setting": (EXPERIMENTS, "  elitism: 1\n", "", "settings: elitism: missing; binary_genetic needs it"),
     "probability above 1": (EXPERIMENTS, "mutation_probability: 0.1", "mutation_probability: 1.1", "1.1; expected a number from 0 to 1"),
     "negative penalty": (EXPERIMENTS, "penalty: 10.0", "penalty: -1.0", "penalty: -1.0; expected a number at least 0"),
@@ -231,3 +244,20 @@ def test_unknown_key_of_the_configuration_is_told():
 def test_the_same_study_twice_is_told():
     with pytest.raises(Fault, match="name song2016 is there already"):
         study_file.load([SONG, SONG])
+
+
+def test_settings_of_a_problem_stand_between_those_of_the_study_and_of_a_method(folder):
+    edit(
+        folder / EXPERIMENTS,
+        "\n  0_255: {workspace: figure2,",
+        "\n  0_255: {workspace: figure2, settings: {genes: 5, samples: 7, generations: 9},",
+    )
+    study = study_file.load([folder])["song2016"]
+    job = studies.job(study, "routes", "smooth", "smoke", 0)
+    first, second = (running.settings_in(job, running.Condition(problem, {})) for problem in ("0_15", "0_255"))
+    assert (first["genes"], first["generations"], first["samples"]) == (6, 100, 601)
+    assert second == first | {"genes": 5, "generations": 9}  # the method has samples of its own
+    assert running.settings_in(job, running.Condition("0_255", {"genes": 4}))["genes"] == 4
+    assert "settings" not in studies.job(study, "routes", "shortest_path", "smoke", 0)["problems"]["0_255"]
+    assert "On 0 to 255: genes 5, samples 7, generations 9" in studies.caption(study, "table1", "smoke")
+    assert all("settings" not in problem for problem in studies.problems_job(study, "routes", "smoke")["problems"].values())

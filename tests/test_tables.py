@@ -214,6 +214,18 @@ def test_wrong_published_number_is_flagged(number, reproduced):
     assert found["reproduced"] == reproduced
 
 
+def test_seconds_of_another_machine_are_shown_but_not_judged():
+    ours = results()
+    ours.runs["cpu_s"] = 0.01
+    given = pd.DataFrame(
+        [{"problem": "long", "method": "plain", "metric": "cpu_s", "statistic": "mean", "n": 30, "unit": "s", "value": 200.0}]
+    )
+    spec = SPEC | {"values": [{"metric": "cpu_s", "statistic": "mean", "label": "time", "decimals": 3}]}
+    found = row(comparison.compare(ours, spec, given, {}, [], "study/table1"), "long", "plain", "cpu_s")
+    assert (found["value_published"], found["value_ours"]) == (200.0, pytest.approx(0.01))
+    assert pd.isna(found["reproduced"])
+
+
 def test_shares_bound_and_gap():
     ours = results()
     found = row(compare(ours), "long", "plain", "length")
