@@ -7,12 +7,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan import checked, problems
+from bezierplan import checked, curves, problems
 from bezierplan.analysis import audit
 from bezierplan.analysis.results import Results
-from bezierplan.exact import bounds
+from bezierplan.exact import bounds, checker
+from bezierplan.exact.region import region
 from bezierplan.planners import bca
-from bezierplan.problem import planner_module, planner_settings
+from bezierplan.problem import Path, planner_module, planner_settings
 from bezierplan.studies import ma2020
 from bezierplan.workspaces import files
 
@@ -50,6 +51,25 @@ def test_maps(name):
     other = grid.occupied[1:, :-1] & grid.occupied[:-1, 1:] & ~grid.occupied[1:, 1:] & ~grid.occupied[:-1, :-1]
     assert not diagonal.any()
     assert not other.any()
+
+
+# Free control points of the shortest curves found.
+BEST_KNOWN = {
+    "environment1": [(9.5, 14.5), (1.5, 3.5), (9.5, 6.5), (10.5, 7.5), (8.5, 19.5), (1.5, 5.5), (15.5, 19.5), (18.5, 19.5)],
+    "environment2": [(3.5, 6.5), (5.5, 11.5), (9.5, 9.5), (4.5, 19.5), (16.5, 12.5), (3.5, 19.5), (12.5, 17.5), (11.5, 17.5)],
+}
+
+
+@pytest.mark.parametrize("name", BEST_KNOWN)
+def test_reference_is_the_length_of_a_path_that_can_be(name):
+    grid = problem(name).workspace
+    assert len(BEST_KNOWN[name]) == STUDY["settings"]["control_points"]
+    for x, y in BEST_KNOWN[name]:
+        assert (x % 1, y % 1) == (0.5, 0.5)
+        assert not grid.occupied[int(y), int(x)]
+    path = Path("bezier", np.array([problem(name).start, *BEST_KNOWN[name], problem(name).target]))
+    assert curves.length(path) == pytest.approx(STUDY["problems"][name]["reference"], abs=1e-4)
+    assert checker.check(curves.bezier_pieces(path), region(grid)).feasible
 
 
 @pytest.mark.parametrize(("workspace", "name"), [("environment1", "environment1"), ("environment2", "environment2")])
