@@ -4,6 +4,7 @@ import inspect
 import itertools
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path as File
 
 import numpy as np
@@ -19,6 +20,7 @@ from bezierplan.analysis.results import Results
 from bezierplan.checked import SCHEMAS
 from bezierplan.figures import along_path, bars, boxes, convergence, drawing, lines, paths, workspace
 from bezierplan.problem import Path, Problem, Workspace
+from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.polygons import Polygons
@@ -197,6 +199,48 @@ def test_paths_data_holds_all_that_is_drawn():
     np.testing.assert_array_equal(parts["bound"], [[5, 5], [10, 30], [35, 35]])
     np.testing.assert_allclose(parts["path"][[0, -1]], [[5, 5], [35, 35]])
     np.testing.assert_array_equal(parts["hull"][0], parts["hull"][-1])
+
+
+def test_paths_side_by_side(tmp_path):
+    found = results()
+    other = found.runs.assign(method="other", id=found.runs["id"].str.replace("smooth", "other"), length=found.runs["length"] + 1)
+    both = found._replace(runs=pd.concat([found.runs, other], ignore_index=True))
+    frame = paths.data(both, pick=LOWEST, hue="method")
+    assert set(frame["part"]) == {"start", "target", "bound", "path"}, "no control points"
+    for method, own in frame.groupby("method"):
+        alone = paths.data(both._replace(runs=both.runs[both.runs["method"] == method]), pick=LOWEST, control="none")
+        pd.testing.assert_frame_equal(own.reset_index(drop=True)[alone.columns], alone)
+    panel = {"kind": "paths", "experiment": "routes", "pick": LOWEST, "hue": "method", "where": {"method": ["other", "smooth"]}}
+    figure = drawn(both, [panel], 1, tmp_path)
+    legend = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert [text for text in legend if "cell" not in text] == ["other", "smooth (quadratic pieces)", "shortest path possible", "start", "target"]
+    length = found.runs["length"].iloc[1]
+    wanted = f"other {length + 1:.1f}, smooth (quadratic pieces) {length:.1f}"
+    assert any(wanted in " ".join(text.split()) for text in words(figure))
+
+
+def test_paths_side_by_side_say_who_has_none(tmp_path):
+    found = results(feasible=(False, False, False))
+    panel = {"kind": "paths", "experiment": "routes", "pick": LOWEST, "hue": "method"}
+    assert any("(quadratic pieces) no path" in " ".join(text.split()) for text in words(drawn(found, [panel], 1, tmp_path)))
+
+
+def test_large_fields_are_drawn_by_their_circles():
+    circles = Circles((0.0, 40.0, 0.0, 40.0), np.array([[10.0, 20.0]]), np.array([3.0]), "cell")
+    small = workspace.parts(random_field.from_circles(circles))
+    assert small["part"].value_counts().to_dict() == {"free": 1681 - 29, "occupied": 29, "corner": 2, "circle": 1}
+    large = workspace.parts(random_field.from_circles(replace(circles, bounds=(0.0, 100.0, 0.0, 100.0))))
+    assert large["part"].tolist() == ["corner", "corner", "circle"]
+    assert large["x"].tolist() == [-0.5, 100.5, 10.0]
+
+
+def test_functions_get_the_published_tables_that_they_ask_for():
+    def double(published):
+        return published["table1"].assign(value=2 * published["table1"]["value"])
+
+    published = {"table1": pd.DataFrame({"k": [1, 2], "value": [3.0, 4.0]})}
+    panel = {"kind": "lines", "data": "double", "published": True, "x": "k", "metric": "value"}
+    assert sheet.data([panel], {}, {}, {"double": double}, published)["value"].tolist() == [6, 8]
 
 
 def test_paths_meet_the_corners_of_a_polyline():

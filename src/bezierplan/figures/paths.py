@@ -87,9 +87,9 @@ def data(
     that has one), x, y (in the workspace's unit). Without a run to show, start and target only. Only curves that lie within it have a hull,
     and control points are left out where some are tangents.
 
-    pick: the run, as in `analysis.results.pick`. explicit: {curve, points}, a path without a run. hue: a column; a run is picked for each of
-    its values, and the rows name it; their control points are not drawn. control: whether control points are drawn
-    with their polygon and hull, alone, or not at all. view: what is seen of the workspace, as its bounds; all rows are here nevertheless.
+    pick: the run, as in `analysis.results.pick`. explicit: {curve, points}, a path without a run. hue: a column; a run is picked for each
+    of its values, which the rows name, and drawn without control points. control: whether control points are drawn with their polygon and
+    hull, alone, or not at all. view: what is seen of the workspace, as its bounds; all rows are here nevertheless.
     Raises ValueError unless either pick or explicit is given and all runs, of one value of hue, are of one problem and one method, and if a
     curve cannot have such points.
     """

@@ -162,8 +162,8 @@ OBSTACLES = (5, 10, 15, 20, 25)
 def expected_length(side: int, radius: float, obstacles: np.ndarray | int) -> np.ndarray | float:
     """Mean of `cells4` of paths between opposite corners that never turn back, in cells; radius: a share of the side.
 
-    Such a path counts 2 cells for each of the side, but 1.5 along the free diagonal. A circle whose centre is uniform in the square leaves the
-    diagonal free with the probability (1 - sqrt(2) radius)^2: the share of the square that is further from it than the radius.
+    Such a path counts 2 cells for each of the side, but 1.5 along the free diagonal. A circle whose centre is uniform in the square leaves
+    the diagonal free with the probability (1 - sqrt(2) radius)^2: the share of the square that is further from it than the radius.
     """
     free = (1 - np.sqrt(2) * radius) ** (2 * np.asarray(obstacles))
     return side * (2 - (2 - DIAGONAL) * free)
@@ -269,7 +269,7 @@ def crossover_and_mutation() -> pd.DataFrame:
         marks += [arrow | {"x": tail[0], "y": tail[1]}, arrow | {"x": head[0], "y": head[1]}]
     frame = np.array([[-0.5, 0.5], [3.5, 0.5], [3.5, -0.5], [-0.5, -0.5], [-0.5, 0.5]]) + (0, at[one][1])
     border = {"mark": "line", "role": "first", "group": "subspace", "label": "subspace 00 of the parents", "operator": "crossover"}
-    return pd.DataFrame(marks + [border | {"x": x, "y": y} for x, y in frame])
+    return pd.DataFrame([*marks, *(border | {"x": x, "y": y} for x, y in frame)])
 
 
 class Verdict(NamedTuple):
@@ -377,7 +377,11 @@ def validation() -> pd.DataFrame:
         {"mark": "circle", "role": "obstacle", "group": "obstacles", "label": "obstacle", "x": x, "y": y, "radius": radius}
         for (x, y), radius in zip(grid.drawn.centres.tolist(), grid.drawn.radii)
     ]
-    looks = {"accepted": ("first", "control point"), "obstacle": ("accent", "on an obstacle"), "too near": ("second", "too near to another")}
+    looks = {
+        "accepted": ("first", "control point"),
+        "obstacle": ("accent", "on an obstacle"),
+        "too near": ("second", "too near to another"),
+    }
     for candidate, (point, word) in enumerate(found, 1):
         if word == "accepted":
             ring = {"mark": "line", "role": "muted", "group": f"ring {candidate}", "label": f"distance r = {LEAST_DISTANCE:g}"}

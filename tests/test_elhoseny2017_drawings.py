@@ -1,0 +1,133 @@
+"""elhoseny2017: the radius of the obstacles from the printed lengths, and what its drawings draw."""
+
+import math
+from pathlib import Path as File
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from bezierplan import cell_length, curves
+from bezierplan.exact.checker import check
+from bezierplan.exact.region import region
+from bezierplan.figures import drawing
+from bezierplan.problem import Path
+from bezierplan.studies import elhoseny2017
+from bezierplan.workspaces import random_field
+from bezierplan.workspaces.circles import Circles
+
+FOLDER = File(__file__).parents[1] / "config" / "studies" / "elhoseny2017"
+PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
+
+
+def test_expected_lengths_are_those_of_free_and_blocked_diagonals():
+    rng = np.random.default_rng(0)
+    trials = 20_000
+    for radius, obstacles in ((0.025, 5), (0.06, 15)):
+        x, y = rng.random((2, trials, obstacles))
+        free = (abs(x - y) / math.sqrt(2) > radius).all(axis=1)
+        lengths = np.where(free, 150.0, 200.0)
+        error = lengths.std() / math.sqrt(trials)
+        assert elhoseny2017.expected_length(100, radius, obstacles) == pytest.approx(lengths.mean(), abs=4 * error)
+    assert elhoseny2017.expected_length(200, 0.025, 0) == 300
+    assert elhoseny2017.expected_length(200, 0.5, 1000) == pytest.approx(400)
+
+
+def test_the_lengths_along_free_and_blocked_diagonals_are_those_of_cells4():
+    empty = random_field.from_circles(Circles((0, 40, 0, 40), np.empty((0, 2)), np.empty(0), "cell"))
+    assert cell_length.length4(Path("polyline", np.array([[0.0, 0], [40, 40]])), empty) == elhoseny2017.expected_length(40, 0.025, 0)
+    around = Path("polyline", np.array([[0.0, 0], [14.2, 23.7], [40, 40]]))
+    assert cell_length.length4(around, empty) == elhoseny2017.expected_length(40, 0.7, 1000) == 80
+
+
+def test_one_radius_fits_both_fields_best():
+    table = elhoseny2017.radius_fit(PUBLISHED)
+    least = table[table["lengths"] == "least error"]
+    assert set(least["radius / side"]) == {0.025}
+    assert least["mean error / mean length"].tolist() == pytest.approx([0.0395, 0.0288], abs=5e-5)
+    by_side = elhoseny2017.radius_errors(PUBLISHED)
+    best = by_side.loc[by_side.groupby("side")["relative_error"].idxmin()]
+    assert best["radius"].between(0.022, 0.028).all()
+    printed = table[table["lengths"].str.startswith("printed")]
+    assert printed["5 obstacles"].tolist() == [158, 159, 314, 315]
+
+
+def test_the_curves_beside_the_printed_lengths():
+    frame = elhoseny2017.radius_lengths(PUBLISHED)
+    assert set(frame["side"]) == {100, 200}
+    own = frame[(frame["side"] == 100) & (frame["lengths"] == "printed, Case 2")]
+    assert own["cells4"].tolist() == [159, 168, 183, 195, 211]
+    assert frame[frame["lengths"].str.startswith("R")].groupby("lengths")["cells4"].max().is_monotonic_increasing
+
+
+def colours(operator):
+    marks = elhoseny2017.crossover_and_mutation()
+    cells = marks[(marks["operator"] == operator) & (marks["mark"] == "cell")]
+    assert len(cells) == 16
+    return {role: set(own["group"]) for role, own in cells.groupby("role")}
+
+
+def test_crossover_stays_in_the_subspace_of_its_parents():
+    found = colours("crossover")
+    assert found["accent"] == {"0011", "0000"}
+    # Section 2.2.1 lists these four.
+    assert found["accent"] | found["muted"] == {"0010", "0011", "0001", "0000"}
+
+
+def test_mutation_changes_one_digit():
+    found = colours("mutation")
+    assert found["accent"] == {"0011"}
+    assert found["muted"] == {"1011", "0111", "0001", "0010"}
+    marks = elhoseny2017.crossover_and_mutation()
+    places = marks[marks["mark"] == "cell"].drop_duplicates("group").set_index("group")[["x", "y"]]
+    for child in found["muted"]:
+        assert np.abs(places.loc[child] - places.loc["0011"]).sum() == 1, "drawn beside its parent"
+
+
+def curve_of(marks):
+    return marks.loc[marks["group"] == "curve", ["x", "y"]].to_numpy()
+
+
+def test_the_genes_of_a_chromosome_are_those_of_its_field():
+    marks = drawing.data(elhoseny2017.chromosome())
+    genes = marks[marks["mark"] == "cell"].sort_values(["gene", "width"])
+    assert len(genes) == 50
+    assert (genes["value"].to_numpy()[::2] == genes["value"].to_numpy()[1::2]).all()
+    field = genes[genes["width"] == 1].set_index("gene")
+    assert field["value"].value_counts().to_dict() == {0: 22, 1: 2, -1: 1}
+    assert (field["x"] == field.index // 5).all()
+    np.testing.assert_allclose(field["y"] - field["y"].min(), field.index % 5)
+    assert field.loc[12, "value"] == -1
+    # The drawn curve is the one of the control points, and free.
+    ones = field[field["value"] == 1]
+    base = field["y"].min()
+    points = sorted(zip(ones["x"], (ones["y"] - base).round(9)), key=sum)
+    path = Path("bezier", np.array([(0, 0), *points, (4, 4)], dtype=float))
+    np.testing.assert_allclose(curve_of(marks)[[0, -1]] - (0, base), [[0, 0], [4, 4]])
+    middle = curves.sample_matrix("bezier", 4, 201) @ path.points
+    distances = np.hypot(*(curve_of(marks)[:, None] - (0, base) - middle).transpose(2, 0, 1)).min(axis=1)
+    assert distances.max() < 0.05
+    grid = random_field.from_circles(Circles((0, 4, 0, 4), np.array([[2.0, 2.0]]), np.array([0.8]), "cell"))
+    assert check(curves.bezier_pieces(path), region(grid)).feasible
+
+
+def test_ten_points_are_judged_in_turn():
+    marks = drawing.data(elhoseny2017.validation())
+    circles = marks[marks["mark"] == "circle"]
+    assert len(circles) == 3
+    assert set(circles["radius"]) == {1.0}
+    points = marks[marks["candidate"].notna()].sort_values("candidate")
+    assert points["candidate"].tolist() == list(range(1, 11))
+    accepted = []
+    for point in points.itertuples():
+        covered = np.hypot(circles["x"] - point.x, circles["y"] - point.y).min() <= 1
+        near = any(math.dist((point.x, point.y), other) < 2.5 for other in accepted)
+        assert point.verdict == ("obstacle" if covered else "too near" if near else "accepted")
+        if point.verdict == "accepted":
+            accepted.append((point.x, point.y))
+    assert set(points["verdict"]) == {"obstacle", "too near", "accepted"}
+    rings = marks[marks["group"].str.startswith("ring", na=False)].groupby("group")
+    assert len(rings) == len(accepted)
+    curve = curve_of(marks)
+    np.testing.assert_allclose(curve[[0, -1]], [[4, 0], [16, 18]])
+    assert np.hypot(*(curve[:, None] - circles[["x", "y"]].to_numpy()).transpose(2, 0, 1)).min() > 1 - math.sqrt(0.5)
