@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy
 import shapely
 
 from bezierplan.exact.bounds import Bound, centre_path, lattice_path, least_length, shortest_path
@@ -17,6 +18,7 @@ from bezierplan.problem import Problem
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid, from_lines
+from bezierplan.workspaces.lattice import STEPS, neighbours
 from bezierplan.workspaces.polygons import Polygons
 
 DATA = Path(__file__).parent / "data"
@@ -325,6 +327,34 @@ def test_a_diagonal_beside_an_occupied_cell(rule, length):
     bound = lattice_path(occupied, (0, 0), (1, 1), ROOT2, rule)
     assert bound.length == length
     assert bound.points[[0, -1]].tolist() == [[0.5, 0.5], [1.5, 1.5]]
+
+
+@pytest.mark.parametrize("weight", [1.5, ROOT2, 0.9, 2.5])
+@pytest.mark.parametrize("rule", ["free", "one", "none"])
+def test_lattice_paths_are_the_shortest_of_the_whole_graph(rule, weight):
+    rng = np.random.default_rng(0)
+    found = 0
+    for _ in range(60):
+        rows, columns = rng.integers(1, 15, 2)
+        occupied = rng.random((rows, columns)) < rng.choice([0.0, 0.2, 0.4])
+        start, target = (tuple(rng.integers((rows, columns)).tolist()) for _ in range(2))
+        occupied[start] = occupied[target] = False
+        reached = neighbours(occupied, rule)
+        tails, steps = np.nonzero(reached >= 0)
+        weights = np.where(STEPS[steps].all(axis=1), weight, 1.0)
+        graph = scipy.sparse.coo_array((weights, (tails, reached[tails, steps])), shape=(occupied.size, occupied.size)).tocsr()
+        least = scipy.sparse.csgraph.dijkstra(graph, indices=start[0] * columns + start[1])[target[0] * columns + target[1]]
+        bound = lattice_path(occupied, start, target, weight, rule)
+        assert bound.length == pytest.approx(least, rel=1e-12)
+        if np.isfinite(least):
+            found += 1
+            column, row = np.floor(bound.points).astype(int).T
+            assert (row[0], column[0], row[-1], column[-1]) == (*start, *target)
+            cells = row * columns + column
+            assert all(other in reached[one] for one, other in itertools.pairwise(cells))
+            diagonal = (np.abs(np.diff(bound.points, axis=0)).sum(axis=1) == 2).sum()
+            assert bound.length == pytest.approx(len(cells) - 1 - diagonal + weight * diagonal, rel=1e-12)
+    assert found > 30
 
 
 def test_a_lattice_path_to_an_occupied_cell_and_to_itself():

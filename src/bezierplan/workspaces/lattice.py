@@ -4,14 +4,15 @@ Cells have the numbers of `grid.Grid`; lengths are in cells.
 """
 
 import math
-from typing import Literal, NamedTuple, get_args
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from bezierplan.workspaces.grid import Grid
 
 Corners = Literal["free", "one", "none"]
-"""How many of the two cells beside a diagonal step may be occupied: both, one, none."""
+CORNERS = {"free": 2, "one": 1, "none": 0}
+"""How many of the two cells beside a diagonal step may be occupied."""
 
 STEPS = np.array([(0, -1), (0, 1), (1, 0), (-1, 0), (-1, -1), (1, -1), (-1, 1), (1, 1)])
 """Rows and columns of the eight steps: W, E, N, S, SW, NW, SE, NE."""
@@ -63,16 +64,15 @@ def neighbours(occupied: np.ndarray, corners: Corners) -> np.ndarray:
 
     occupied: bool (rows, columns). Raises ValueError for an unknown rule.
     """
-    if corners not in get_args(Corners):
-        raise ValueError(f"unknown corner rule {corners!r}; known: {', '.join(get_args(Corners))}")
+    if corners not in CORNERS:
+        raise ValueError(f"unknown corner rule {corners!r}; known: {', '.join(CORNERS)}")
     walled = np.pad(occupied, 1, constant_values=True)
     row, column = np.argwhere(~occupied).T + 1
     # The two cells beside a step; of a step along an axis these are the cells that it leaves and enters.
     beside = [walled[row + up, column].astype(int) + walled[row, column + right] for up, right in STEPS]
-    most = {"free": 2, "one": 1, "none": 0}[corners]
     reached = np.full((occupied.size, len(STEPS)), -1)
     free = np.flatnonzero(~occupied)
-    reached[free] = np.where(np.column_stack(beside) <= most, _around(occupied)[free], -1)
+    reached[free] = np.where(np.column_stack(beside) <= CORNERS[corners], _around(occupied)[free], -1)
     return reached
 
 
