@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan import cell_length, curves
+from bezierplan import cell_length, curves, study, study_file
 from bezierplan.exact.checker import check
 from bezierplan.exact.region import region
 from bezierplan.figures import drawing
@@ -82,6 +82,13 @@ def test_mutation_changes_one_digit():
     places = marks[marks["mark"] == "cell"].drop_duplicates("group").set_index("group")[["x", "y"]]
     for child in found["muted"]:
         assert np.abs(places.loc[child] - places.loc["0011"]).sum() == 1, "drawn beside its parent"
+
+
+def test_figures_may_show_controls_by_name():
+    own = study_file.load(study_file.read_config({"studies": ["elhoseny2017"]}))["elhoseny2017"]
+    assert study.methods_of(own, "figure7", "fields100") == ["straight_line"]
+    assert study.methods_of(own, "figure10", "fields100") == ["prm", "abc_ep", "ga", "mga"]
+    assert study.caption(own, "figure7", "full").startswith(own.figures["figure7"]["title"])
 
 
 def curve_of(marks):

@@ -213,7 +213,8 @@ def test_paths_side_by_side(tmp_path):
     panel = {"kind": "paths", "experiment": "routes", "pick": LOWEST, "hue": "method", "where": {"method": ["other", "smooth"]}}
     figure = drawn(both, [panel], 1, tmp_path)
     legend = [text.get_text() for text in figure.legends[0].get_texts()]
-    assert [text for text in legend if "cell" not in text] == ["other", "smooth (quadratic pieces)", "shortest path possible", "start", "target"]
+    expected = ["other", "smooth (quadratic pieces)", "shortest path possible", "start", "target"]
+    assert [text for text in legend if "cell" not in text] == expected
     length = found.runs["length"].iloc[1]
     wanted = f"other {length + 1:.1f}, smooth (quadratic pieces) {length:.1f}"
     assert any(wanted in " ".join(text.split()) for text in words(figure))

@@ -24,8 +24,8 @@ from bezierplan.exact import bounds, checker
 from bezierplan.exact.region import region
 from bezierplan.planners import binary_genetic, chaotic_pso, node_genetic
 from bezierplan.problem import Path as Curve
-from bezierplan.problem import Problem, Workspace
-from bezierplan.workspaces import files
+from bezierplan.problem import Problem, Workspace, planner_module
+from bezierplan.workspaces import files, random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 
@@ -101,6 +101,23 @@ def benchmark_chaotic_pso() -> None:
         evaluations = runs * settings["particles"] * (settings["iterations"] + 1)
         seconds = cpu_seconds(lambda: [chaotic_pso.plan(problem, np.random.default_rng(seed), **settings) for seed in range(runs)])  # noqa: B023
         print(f"  {method:14}{evaluations / seconds:16,.0f}{1000 * seconds / runs:12.2f}")
+
+
+def benchmark_fields() -> None:
+    """Methods of elhoseny2017 from corner to corner of its fields with 15 obstacles, small and large ones."""
+    study = study_file.load(study_file.read_config({"studies": ["elhoseny2017"]}))["elhoseny2017"]
+    runs = 10
+    print(f"\n{'random fields':16}{'evaluations/s':>16}{'ms a run':>12}{'side':>8}  obstacles")
+    for side, home in itertools.product((100, 200), ("published_like", "dense")):
+        described = {"side": side, "start": (0, 0), "target": (side, side), "obstacles": 15}
+        fields = [random_field.field(study.workspaces[home], described | {"layout": i}, home) for i in range(runs)]
+        problems = [Problem(home, grid, (0.0, 0.0), (float(side), float(side))) for grid in fields]
+        for method in study.experiments["fields100"]["methods"]:
+            planner, settings = planner_module(study.planner(method)), study.resolved(method)
+            plans = [planner.plan(each, np.random.default_rng(0), **settings) for each in problems]
+            seconds = cpu_seconds(lambda: [planner.plan(each, np.random.default_rng(0), **settings) for each in problems])  # noqa: B023
+            rate = f"{sum(each.evaluations for each in plans) / seconds:16,.0f}"
+            print(f"  {method:14}{rate}{1000 * seconds / runs:12.2f}{side:8}  {home}")
 
 
 def random_grid(side: int, rng: np.random.Generator) -> Grid:
@@ -205,5 +222,6 @@ if __name__ == "__main__":
     benchmark_binary_genetic()
     benchmark_chaotic_pso()
     benchmark_node_genetic()
+    benchmark_fields()
     benchmark_geometry()
     benchmark_start()

@@ -267,7 +267,7 @@ def crossover_and_mutation() -> pd.DataFrame:
         arrow = {"mark": "arrow", "role": "second", "group": f"to {child}", "operator": "mutation"}
         tail, head = ((x, y) + share * towards for share in (0.3, 0.68))
         marks += [arrow | {"x": tail[0], "y": tail[1]}, arrow | {"x": head[0], "y": head[1]}]
-    frame = np.array([[-0.5, 0.5], [3.5, 0.5], [3.5, -0.5], [-0.5, -0.5], [-0.5, 0.5]]) + (0, at[one][1])
+    frame = np.add([[-0.5, 0.5], [3.5, 0.5], [3.5, -0.5], [-0.5, -0.5], [-0.5, 0.5]], (0, at[one][1]))
     border = {"mark": "line", "role": "first", "group": "subspace", "label": "subspace 00 of the parents", "operator": "crossover"}
     return pd.DataFrame([*marks, *(border | {"x": x, "y": y} for x, y in frame)])
 
