@@ -1,0 +1,181 @@
+"""elhoseny2017: its printed numbers, worked example, audit and claims of its own; faults of its random fields and settings."""
+
+import re
+import shutil
+from pathlib import Path as File
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from bezierplan import study_file
+from bezierplan.analysis import audit
+from bezierplan.analysis.results import Results
+from bezierplan.checked import Fault
+from bezierplan.studies import elhoseny2017
+
+FOLDER = File(__file__).parents[1] / "config" / "studies" / "elhoseny2017"
+PUBLISHED = {file.stem: audit.read_published(str(file)) for file in sorted((FOLDER / "published").glob("*.csv"))}
+
+
+# Printed numbers.
+
+
+def test_every_cell_of_the_tables_of_lengths_is_there():
+    for table, total in (("table2", 8414), ("table3", 17244)):
+        cells = PUBLISHED[table]
+        assert len(cells) == 40
+        assert not cells.duplicated(["route", "obstacles", "method"]).any()
+        assert cells["value"].sum() == total
+        assert set(cells["method"]) == {"prm", "abc_ep", "ga", "mga"}
+
+
+def test_every_cell_of_the_tables_of_times_is_there():
+    assert len(PUBLISHED["table5"]) == len(PUBLISHED["table6"]) == 20
+    assert PUBLISHED["table6"].query("method == 'prm' and obstacles == 15")["value"].item() == 1.9
+    assert PUBLISHED["table5"].query("method == 'mga_plain' and obstacles == 25 and statistic == 'std'")["value"].item() == 0.47
+
+
+# The worked example.
+
+
+def test_the_table_of_the_example():
+    table = elhoseny2017.q_table(PUBLISHED).set_index("solutions")
+    pairs = table.loc[["S1, S2", "S1, S3", "S2, S3"]]
+    assert pairs[["N11", "N00", "N10", "N01"]].to_numpy().tolist() == [[3, 2, 2, 3], [2, 3, 3, 2], [2, 2, 4, 2]]
+    assert pairs["Q"].tolist() == [0.0, 0.0, -0.3333]
+    assert table.loc["mean", "Q"] == -0.1111
+    assert table.loc["S3", [f"gene {gene}" for gene in range(1, 11)]].tolist() == [1, 1, 1, 1, 0, 0, 0, 0, 0, 0]
+
+
+def test_the_example_agrees_with_the_text():
+    mark, effect, interval, units = elhoseny2017.q_example({}, {}, PUBLISHED)
+    assert (mark, interval, units) == ("+", None, 3)
+    assert effect == pytest.approx(1 / 9 - 0.11, abs=1e-12)
+    changed = PUBLISHED["table1"].copy()
+    changed.loc[0, "value"] = 1 - changed.loc[0, "value"]
+    assert elhoseny2017.q_example({}, {}, PUBLISHED | {"table1": changed})[0] == "-"
+
+
+# The audit.
+
+
+@pytest.fixture(scope="module")
+def rows():
+    return audit.table("elhoseny2017", elhoseny2017.audit(PUBLISHED))
+
+
+def broken(rows, rule):
+    return set(rows.loc[rows["rule"].str.contains(rule) & ~rows["consistent"], "place"])
+
+
+def test_where_road_maps_are_not_the_longest(rows):
+    assert broken(rows, "PRM the longest") == {"route=case2, obstacles=5, method=prm", "route=case2, obstacles=25, method=prm"}
+
+
+def test_the_proposed_method_is_printed_as_the_shortest_and_ga_as_second(rows):
+    assert broken(rows, "proposed method the shortest") == set()
+    assert broken(rows, "GA second") == set()
+
+
+def test_the_least_possible_length_is_kept(rows):
+    assert broken(rows, "counts less than 1.5") == set()
+    turning_back = broken(rows, "at most 2 cells")
+    assert {"route=case2, obstacles=25, method=mga", "route=case1, obstacles=25, method=mga"} <= turning_back
+    assert "route=case1, obstacles=20, method=mga" not in turning_back
+
+
+def test_where_the_proposed_method_is_not_the_cheapest(rows):
+    places = {f"method=mga, obstacles={obstacles}, beside mga_plain" for obstacles in (5, 10, 15)}
+    assert broken(rows, "cheaper than all others") == places | {"method=mga, obstacles=5, beside ga"}
+
+
+def test_tables_5_and_6_agree_on_the_proposed_method_and_not_on_ga(rows):
+    assert broken(rows, "same time of the proposed method") == set()
+    assert len(broken(rows, "what both call GA")) == 5
+
+
+def test_the_text_swaps_two_counts_and_has_eta_end_at_0(rows):
+    assert broken(rows, "counts as it defines") == {"S1, S2: N10", "S1, S2: N01"}
+    assert broken(rows, "Q of the counts in the text") == set()
+    last = rows[rows["rule"].str.contains("eta decreases to 0")].iloc[0]
+    assert not last["consistent"]
+    assert last["limit"] == pytest.approx(0.358, abs=5e-4)
+
+
+# The claim on printed lengths over the bounds.
+
+
+def results(side, least):
+    table = pd.DataFrame(
+        [
+            {"problem": f"{route}_{obstacles}_{layout}", "route": route, "obstacles": obstacles, "side": side, "bound8": least + layout}
+            for route in ("case1", "case2")
+            for obstacles in (5, 10, 15, 20, 25)
+            for layout in range(4)
+        ]
+    )
+    twice = pd.concat([table.assign(method="mga"), table.assign(method="prm")], ignore_index=True)
+    return Results(twice, {}, pd.DataFrame())
+
+
+def test_printed_lengths_over_the_bounds():
+    found = {"fields100": results(100, 150.0), "fields200": results(200, 300.0)}
+    mark, effect, _, fields = elhoseny2017.printed_over_bound({}, found, PUBLISHED)
+    assert (mark, fields) == ("-", 80)
+    printed = PUBLISHED["table2"].query("method != 'mga'")["value"].max() / 151.5, PUBLISHED["table3"].query("method != 'mga'")["value"].max() / 301.5
+    assert effect == pytest.approx(max(printed), rel=1e-12)
+    low = {name: PUBLISHED[name].assign(value=150.0 * factor) for name, factor in (("table2", 1), ("table3", 2))}
+    assert elhoseny2017.printed_over_bound({}, found, PUBLISHED | low)[0] == "+"
+
+
+# Faults.
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A copy of the study to be spoilt."""
+    return File(shutil.copytree(FOLDER, tmp_path / "elhoseny2017"))
+
+
+FAULTS = {
+    "no side": ("    side: 100\n", "", "problems: case1_100: workspace: published_like: side is needed"),
+    "no cell of the field": ("target: [100, 100]", "target: [101, 100]", "target: [101, 100]: outside the field; expected x and y from 0 to 100"),
+    "a start without coordinates": ("start: [0, 0]\n    target: [100, 100]", "start_cell: 0\n    target_cell: 5", "start_cell: 0: "),
+    "no layouts": ("    layouts: &fields {smoke: 2, full: 10, extended: 100}\n", "    layouts: &fields 5\n", "layouts: 5: expected numbers for smoke"),
+    "obstacles below 0": ("[5, 10, 15, 20, 25]", "[-5, 10, 15, 20, 25]", "obstacles: 0: -5: a whole number of at least 0"),
+    "a field with no way through": ("radius: 0.06,", "radius: 0.4,", "radius: "),
+    "a radius of 0": ("radius: 0.025,", "radius: 0,", "radius: 0: a number above 0"),
+    "an odd population": ("population: 60 ", "population: 61 ", "population: 61; parents are crossed in pairs"),
+    "a population of none": ("population: 60 ", "population: 0 ", "population: 0; expected a whole number at least 2"),
+    "no iterations": ("iterations: 80 ", "iterations: 0 ", "iterations: 0; expected a whole number at least 1"),
+    "a probability above 1": ("crossover_probability: 0.8", "crossover_probability: 1.8", "1.8; expected a number from 0 to 1"),
+    "a rate below 0": ("mutation_rate: 0.006", "mutation_rate: -0.006", "-0.006; expected a number from 0 to 1"),
+    "more first points than a curve can have": ("first_points: 5", "first_points: 60", "first_points: 60; a curve has at most 59"),
+    "an unknown rule for diversity": ("diversity: more_offspring", "diversity: more", "diversity: 'more'; expected one of none"),
+}
+
+
+def test_the_study_itself_has_no_fault(folder):
+    assert study_file.load([folder])["elhoseny2017"].title
+
+
+@pytest.mark.parametrize("fault", FAULTS, ids=str)
+def test_a_fault_is_told_in_one_line(fault, folder):
+    old, new, told = FAULTS[fault]
+    file = folder / "experiments.yaml"
+    text = file.read_text()
+    assert old in text
+    file.write_text(text.replace(old, new, 1))
+    with pytest.raises(Fault) as caught:
+        study_file.load([folder])
+    message = str(caught.value)
+    assert told in message
+    assert "\n" not in message
+    assert re.search(r"experiments\.yaml: ", message)
+
+
+def test_means_of_fields_follow_the_free_diagonals():
+    """The expected length is that of a monotone path: 1.5 N where the diagonal is free, and 2 N where it is not."""
+    blocked = np.array([1 - (1 - np.sqrt(2) * 0.025) ** (2 * n) for n in (5, 25)])
+    np.testing.assert_allclose(elhoseny2017.expected_length(100, 0.025, np.array([5, 25])), 150 + 50 * blocked)
