@@ -123,8 +123,8 @@ def test_printed_lengths_over_the_bounds():
     found = {"fields100": results(100, 150.0), "fields200": results(200, 300.0)}
     mark, effect, _, fields = elhoseny2017.printed_over_bound({}, found, PUBLISHED)
     assert (mark, fields) == ("-", 80)
-    printed = PUBLISHED["table2"].query("method != 'mga'")["value"].max() / 151.5, PUBLISHED["table3"].query("method != 'mga'")["value"].max() / 301.5
-    assert effect == pytest.approx(max(printed), rel=1e-12)
+    largest = {name: PUBLISHED[name].query("method != 'mga'")["value"].max() for name in ("table2", "table3")}
+    assert effect == pytest.approx(max(largest["table2"] / 151.5, largest["table3"] / 301.5), rel=1e-12)
     low = {name: PUBLISHED[name].assign(value=150.0 * factor) for name, factor in (("table2", 1), ("table3", 2))}
     assert elhoseny2017.printed_over_bound({}, found, PUBLISHED | low)[0] == "+"
 
@@ -140,9 +140,9 @@ def folder(tmp_path):
 
 FAULTS = {
     "no side": ("    side: 100\n", "", "problems: case1_100: workspace: published_like: side is needed"),
-    "no cell of the field": ("target: [100, 100]", "target: [101, 100]", "target: [101, 100]: outside the field; expected x and y from 0 to 100"),
+    "no cell of the field": ("target: [100, 100]", "target: [101, 100]", "target: [101, 100]: outside the field; expected x and y from 0"),
     "a start without coordinates": ("start: [0, 0]\n    target: [100, 100]", "start_cell: 0\n    target_cell: 5", "start_cell: 0: "),
-    "no layouts": ("    layouts: &fields {smoke: 2, full: 10, extended: 100}\n", "    layouts: &fields 5\n", "layouts: 5: expected numbers for smoke"),
+    "no layouts": ("layouts: &fields {smoke: 2, full: 10, extended: 100}", "layouts: &fields 5", "layouts: 5: expected numbers for smoke"),
     "obstacles below 0": ("[5, 10, 15, 20, 25]", "[-5, 10, 15, 20, 25]", "obstacles: 0: -5: a whole number of at least 0"),
     "a field with no way through": ("radius: 0.06,", "radius: 0.4,", "radius: "),
     "a radius of 0": ("radius: 0.025,", "radius: 0,", "radius: 0: a number above 0"),

@@ -98,7 +98,9 @@ def column_name(column: str, labels: dict[str, str]) -> str:
 
 
 def axis_label(column: str, scene: Any, statistic: str = "") -> str:
-    """Name and unit of what an axis shows; a column that is no metric counts something, or has no unit."""
+    """Name and unit of what an axis shows; a column that is no metric has its unit in its label, or counts something, or has none."""
+    if column not in metrics.METRICS and column_name(column, scene.labels).endswith(")"):
+        return f"{statistic} {column_name(column, scene.labels)}".lstrip()
     unit = metrics.unit(column, scene.unit) if column in metrics.METRICS else "-"
     return f"{statistic} {column_name(column, scene.labels)} ({unit})".lstrip()
 

@@ -13,6 +13,7 @@ import pandas as pd
 
 from bezierplan.analysis.results import Results, select
 from bezierplan.cell_length import DIAGONAL, occupied_cells, samples, touched_cells
+from bezierplan.exact.region import region
 from bezierplan.problem import Path
 from bezierplan.search.diversity import q_of_rows, q_statistic
 from bezierplan.workspaces import random_field
@@ -112,7 +113,8 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
                 rule = "the text has GA second"
                 rows.append(_row(table, f"{place}, method=ga", rule, lengths["ga"], rivals, lengths["mga"] < lengths["ga"] < rivals))
     means = {
-        name: published[name].query("statistic == 'mean'").set_index(["method", "obstacles"])["value"] for name in ("table5", "table6")
+        name: published[name].query("statistic == 'mean'").set_index(["method", "obstacles"])["value"].sort_index()
+        for name in ("table5", "table6")
     }
     for table, times in means.items():
         for (method, obstacles), time in times.drop("mga").items():
@@ -152,6 +154,28 @@ def _place(row: tuple) -> str:
 
 # ---------------------------------------------------------------------------------------------------------------------
 # The radius of the obstacles, which the paper does not give, from its lengths
+
+
+def printed_times(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
+    """Table 6, for Figure 11; columns: method, obstacles and cpu_s, in seconds on a machine that the paper does not name."""
+    return published["table6"].rename(columns={"value": "cpu_s"})[["method", "obstacles", "cpu_s"]]
+
+
+LARGER_SIDES = (100, 200, 500, 1000, 2000)
+
+
+def memory() -> pd.DataFrame:
+    """What a field takes in memory, beside its circles; columns: side, part and megabytes.
+
+    The occupied cells serve all planners; the certified check has them once more, with all edges and corners of cells.
+    """
+    rows = []
+    for side in LARGER_SIDES:
+        grid = random_field.from_circles(Circles((0.0, side, 0.0, side), np.empty((0, 2)), np.empty(0), "cell"))
+        checked = sum(array.nbytes for array in region(grid) if isinstance(array, np.ndarray))
+        for part, size in (("occupied cells", grid.occupied.nbytes), ("certified check", checked)):
+            rows.append({"side": side, "part": part, "megabytes": size / 1e6})
+    return pd.DataFrame(rows)
 
 
 RADII = (0.015, 0.02, 0.025, 0.03, 0.04, 0.05, 0.06)  # shares of the side
@@ -212,9 +236,7 @@ def radius_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
     printed["lengths"] = "printed, " + printed.pop("route").str.replace("case", "Case ")
     counts = np.arange(min(OBSTACLES), max(OBSTACLES) + 1)
     expected = [
-        pd.DataFrame(
-            {"side": side, "lengths": f"R = {radius:g} N", "obstacles": counts, "cells4": expected_length(side, radius, counts)}
-        )
+        pd.DataFrame({"side": side, "lengths": f"R = {radius:g} N", "obstacles": counts, "cells4": expected_length(side, radius, counts)})
         for side in SIDES.values()
         for radius in (0.015, 0.025, 0.05)
     ]
