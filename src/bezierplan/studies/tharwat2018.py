@@ -24,9 +24,9 @@ BEST_KNOWN = {
     "public": ((0.7197, 2.1662), (-0.1836, 2.8501), (2.2284, 1.1334)),
 }
 # Such curves are sought from so many random ones, first with few samples; the best of these ends are improved with all samples.
-STARTS, FEW_SAMPLES, IMPROVED = 60, 34, 16
+STARTS, FEW_SAMPLES, IMPROVED = 40, 34, 10
 SAMPLES = 100  # of a path, as the planner takes
-MOST_POINTS = 5  # control points of the best curves that are sought
+MOST_POINTS = 4  # control points of the best curves that are sought
 
 MOVED = 1  # which of them moves in Figures 10 and 11: the middle one
 GRID = 201  # places along each side of the field
