@@ -21,7 +21,7 @@ _PARTS = {"low": "whislo", "quartile1": "q1", "median": "med", "quartile3": "q3"
 _PRINTED = ["table", "metric", "statistic", "n", "unit", "value"]
 
 # Published means farther away than so many times the range of all that is found here stand at the edge, with their value.
-_FAR = 0.5
+_FAR = 0.25
 
 
 def data(results: Results, *, metric: str, by: str = "method", limits: bool = False) -> pd.DataFrame:
@@ -80,7 +80,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     for name, look in LIMITS.items():
         for value in frame.loc[frame["part"] == name, "value"]:
             axes.axvline(value, zorder=1.5, **look)
-    far = _draw_far(axes, own)
+    far = _draw_far(axes, own, frame.loc[frame["part"].isin(list(LIMITS)), "value"].to_list())
     marks = {
         "beyond": {"color": style.BLUE, "marker": ".", "markersize": 1.6, "label": f"beyond {_REACH} interquartile ranges", "zorder": 1},
         "mean": {"color": style.RED, "marker": "x", "markersize": 4, "label": "mean", "zorder": 4},
@@ -98,9 +98,12 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     return runs_note(frame, "box", "method" if by == "method" else "row")
 
 
-def _draw_far(axes: Axes, groups: list[dict[str, list[float]]]) -> set[float]:
-    """Mark published means that would press the boxes together at the edge that they lie beyond, and return them."""
-    found = [value for parts in groups for part, values in parts.items() if part != "published" for value in values]
+def _draw_far(axes: Axes, groups: list[dict[str, list[float]]], limits: list[float]) -> set[float]:
+    """Mark published means that would press the boxes together at the edge that they lie beyond, and return them.
+
+    groups: values by part. limits: other values that are shown.
+    """
+    found = limits + [value for parts in groups for part, values in parts.items() if part != "published" for value in values]
     if not found:
         return set()
     low, high = min(found), max(found)
@@ -117,8 +120,10 @@ def _draw_far(axes: Axes, groups: list[dict[str, list[float]]]) -> set[float]:
             edge = style.PUBLISHED_MARK | {"marker": ">" if above else "<", "label": "published mean, beyond the scale"}
             axes.plot(1.0 if above else 0.0, height, transform=axes.get_yaxis_transform(), clip_on=False, zorder=5, **edge)
     if far:
-        room = 0.25 * (high - low)
-        axes.set_xlim(low - (room if min(far) < low else room / 4), high + (room if max(far) > high else room / 4))
+        # Ends of the scale: where means begin to be far, if some are, and otherwise all that is shown with a little room.
+        shown = found + [value for parts in groups for value in parts.get("published", []) if value not in far]
+        room = 0.05 * (high - low)
+        axes.set_xlim(low - reach if min(far) < low else min(shown) - room, high + reach if max(far) > high else max(shown) + room)
     return far
 
 
