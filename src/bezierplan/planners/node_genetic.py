@@ -143,7 +143,7 @@ def plan(
     grid = problem.workspace
     ground = ground_of(grid, friction)
     start, target = (_cell_at(grid, end, getattr(problem, end)) for end in ("start", "target"))
-    optimum = cheapest(ground, start, target)[0]
+    optimum = _optimum(_key(grid, friction), start, target)
     starts, moves = rng.spawn(2)
     if obstacles_met(ground, start, target) == 0:
         # Nothing to search: a walk sees its target at once, and paths without inner nodes cannot change.
@@ -236,8 +236,13 @@ def centres(grid: Grid, cells: np.ndarray) -> np.ndarray:
 
 def ground_of(grid: Grid, friction: float) -> Ground:
     """The ground of a grid, with all its edges measured if it has no more than `TABLE_CELLS` cells. Not to be changed."""
+    return _ground(*_key(grid, friction))
+
+
+def _key(grid: Grid, friction: float) -> tuple:
+    """What the ground of a grid follows from, so that it is made once a map."""
     heights = b"" if grid.heights is None else (grid.heights / grid.cell).tobytes()
-    return _ground(grid.occupied.shape, grid.occupied.tobytes(), heights, float(friction), TABLE_CELLS)
+    return grid.occupied.shape, grid.occupied.tobytes(), heights, float(friction), TABLE_CELLS
 
 
 @lru_cache(maxsize=8)
@@ -312,27 +317,15 @@ def _passed(ground, one, other):
     return met, climb
 
 
+@lru_cache(maxsize=64)
+def _optimum(key: tuple, start: int, target: int) -> float:
+    """The least energy of a problem on the ground of a key (`_key`)."""
+    return cheapest(_ground(*key), start, target)[0]
+
+
 def cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.ndarray]:
     """Least energy, in cells, of a path from cell to cell that meets no obstacle, and its cells; infinite and none without such a path."""
-    return _cheapest_known(_Same(ground), start, target)
-
-
-class _Same:
-    """A ground as a key: `_ground` gives the same object for the same content."""
-
-    def __init__(self, ground: Ground) -> None:
-        self.ground = ground
-
-    def __hash__(self) -> int:
-        return id(self.ground)
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and self.ground is other.ground
-
-
-@lru_cache(maxsize=64)
-def _cheapest_known(same: _Same, start: int, target: int) -> tuple[float, np.ndarray]:
-    energy, before = _cheapest(same.ground, start, target)
+    energy, before = _cheapest(ground, start, target)
     if math.isinf(energy):
         return energy, np.empty(0, dtype=np.int64)
     path = [target]
@@ -428,7 +421,7 @@ def _search(starts, moves, ground, start, target, free, drawn, population, rules
                 evaluations += mutate(moves, path, drawn, ground, rules)
                 feasible += was_feasible
                 spoiled += was_feasible and _path_met(path, ground) > 0
-        if rules.elitism and len(best) <= paths.shape[1]:
+        if rules.elitism:
             _copy(best, paths[0], best_length)
             lengths[0] = best_length
 
