@@ -3,9 +3,14 @@
 Colours differ in lightness as well as in hue, and what could be mistaken in a grey print differs in line style, width or mark too.
 """
 
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 # Widths of one and of two text columns of a journal, in inches.
 NARROW, WIDE = 85 / 25.4, 174 / 25.4
@@ -109,3 +114,21 @@ def bars(count: int) -> list[dict[str, Any]]:
         {"facecolor": _FILLS[i % len(_FILLS)], "hatch": _HATCHES[i % len(_HATCHES)], "edgecolor": BLACK, "linewidth": 0.5}
         for i in range(count)
     ]
+
+
+def in_order(values: pd.Series, panel: dict) -> list[Any]:
+    """The different values of a column: those that the panel's `where` lists in its order, then the others sorted."""
+    wanted = panel.get("where", {}).get(values.name)
+    listed = wanted if isinstance(wanted, list) else []
+    present = values.dropna().unique().tolist()
+    return [value for value in listed if value in present] + sorted(set(present) - set(listed))
+
+
+def printed(value: Any, column: str, labels: dict[str, str]) -> str:
+    """How a value of a column is printed: a name by its label, a number behind the column's."""
+    return labels.get(value, value) if isinstance(value, str) else f"{column_name(column, labels)} = {value:g}"
+
+
+def column_name(column: str, labels: dict[str, str]) -> str:
+    """How a column or a metric is printed."""
+    return labels.get(column, column.replace("_", " "))

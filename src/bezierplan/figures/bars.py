@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 
 from bezierplan import style
 from bezierplan.analysis.results import Results
-from bezierplan.figures.lines import axis_label, column_name, in_order, printed, summary
+from bezierplan.figures.lines import axis_label, summary
 
 # Metrics that the exact shortest length bounds from below.
 _BOUNDED = ("length", "objective")
@@ -35,16 +35,16 @@ def data(results: Results, *, x: str, hue: str, metric: str, statistic: Literal[
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     """Draw the rows of `data`; returns the note below the panel's title."""
     x, hue = panel["x"], panel["hue"]
-    groups, bars = in_order(frame[x], panel), in_order(frame[hue], panel)
+    groups, bars = style.in_order(frame[x], panel), style.in_order(frame[hue], panel)
     width = _FILLED / len(bars)
     for number, (bar, look) in enumerate(zip(bars, style.bars(len(bars)))):
         own = frame[frame[hue] == bar]
         at = own[x].map(groups.index).to_numpy() + (number - (len(bars) - 1) / 2) * width
-        _draw_bars(axes, own, at, width, look | {"label": printed(bar, hue, scene.labels)})
+        _draw_bars(axes, own, at, width, look | {"label": style.printed(bar, hue, scene.labels)})
     axes.set_xlim(-0.5, len(groups) - 0.5)
     axes.set_xticks(range(len(groups)), [scene.labels.get(group, group) if isinstance(group, str) else f"{group:g}" for group in groups])
     axes.tick_params(axis="x", length=0, pad=32)  # below the shares
-    axes.set_xlabel(f"{column_name(x, scene.labels)} (-)")
+    axes.set_xlabel(f"{style.column_name(x, scene.labels)} (-)")
     axes.set_ylabel(axis_label(panel["metric"], scene, panel.get("statistic", "mean")))
     axes.grid(visible=True, axis="y")
     return "below each bar: share of feasible runs"

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 
 from bezierplan import metrics, style
 from bezierplan.analysis.results import Results
-from bezierplan.figures.lines import LIMITS, axis_label, constants, in_order, printed, runs_note, shared_limits
+from bezierplan.figures.lines import LIMITS, axis_label, constants, runs_note, shared_limits
 
 # Whiskers end at the last value within so many interquartile ranges of the box.
 _REACH = 1.5
@@ -74,7 +74,7 @@ def _published_means(results: Results, runs: pd.DataFrame, metric: str) -> list[
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     """Draw the rows of `data`, the first box on top; returns the note below the panel's title."""
     by = panel.get("by", "method")
-    groups = in_order(frame[by], panel)
+    groups = style.in_order(frame[by], panel)
     own = [frame[frame[by] == group].groupby("part")["value"].apply(list).to_dict() for group in groups]
     _draw_boxes(axes, own)
     for name, look in LIMITS.items():
@@ -91,7 +91,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
         if points:
             axes.plot(*zip(*points), **({"linestyle": ""} | look))
     axes.set_ylim(len(groups) - 0.4, -0.6)
-    axes.set_yticks(range(len(groups)), [printed(group, by, scene.labels) for group in groups])
+    axes.set_yticks(range(len(groups)), [style.printed(group, by, scene.labels) for group in groups])
     axes.tick_params(axis="y", length=0)
     axes.set_xlabel(axis_label(panel["metric"], scene))
     axes.grid(visible=True, axis="x")

@@ -10,7 +10,7 @@ from scipy.optimize import isotonic_regression
 from bezierplan import style
 from bezierplan.analysis import statistics
 from bezierplan.analysis.results import Results
-from bezierplan.figures.lines import LIMITS, constants, in_order, printed, runs_note, shared_limits
+from bezierplan.figures.lines import LIMITS, constants, runs_note, shared_limits
 from bezierplan.figures.paths import feasible_note, picked, run_note
 
 # Least distance of names beside a panel, as a share of its height: a line of text where two panels stand side by side.
@@ -103,7 +103,7 @@ def _draw_one_run(axes: Axes, frame: pd.DataFrame) -> None:
 
 def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     hue, statistic = panel["hue"], panel.get("statistic", "mean")
-    groups = in_order(frame[hue], panel)
+    groups = style.in_order(frame[hue], panel)
     looks = style.lines(groups)
     lines = [frame.loc[frame[hue] == group] for group in groups]
     for number, (own, look) in enumerate(zip(lines, looks)):
@@ -111,7 +111,7 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> st
         axes.plot(own["generation"], own["objective"], markevery=(number * step // len(groups), step), **look)
     axes.set_ylabel(f"{statistic} objective ({scene.unit})")
     axes.set_box_aspect(style.HIGH_PANEL_HEIGHT)
-    _name_lines(axes, [own["objective"].iloc[-1] for own in lines], [printed(group, hue, scene.labels) for group in groups], looks)
+    _name_lines(axes, [own["objective"].iloc[-1] for own in lines], [style.printed(group, hue, scene.labels) for group in groups], looks)
     return runs_note(frame, statistic, "line")
 
 

@@ -79,30 +79,12 @@ def shared_limits(runs: pd.DataFrame) -> dict[str, float]:
     return {name: runs[name].iloc[0] for name in LIMITS if name in runs and runs[name].notna().all() and runs[name].nunique() == 1}
 
 
-def in_order(values: pd.Series, panel: dict) -> list[Any]:
-    """The different values of a column: those that the panel's `where` lists in its order, then the others sorted."""
-    wanted = panel.get("where", {}).get(values.name)
-    listed = wanted if isinstance(wanted, list) else []
-    present = values.dropna().unique().tolist()
-    return [value for value in listed if value in present] + sorted(set(present) - set(listed))
-
-
-def printed(value: Any, column: str, labels: dict[str, str]) -> str:
-    """How a value of a column is printed: a name by its label, a number behind the column's."""
-    return labels.get(value, value) if isinstance(value, str) else f"{column_name(column, labels)} = {value:g}"
-
-
-def column_name(column: str, labels: dict[str, str]) -> str:
-    """How a column or a metric is printed."""
-    return labels.get(column, column.replace("_", " "))
-
-
 def axis_label(column: str, scene: Any, statistic: str = "") -> str:
     """Name and unit of what an axis shows; a column that is no metric has its unit in its label, or counts something, or has none."""
-    if column not in metrics.METRICS and column_name(column, scene.labels).endswith(")"):
-        return f"{statistic} {column_name(column, scene.labels)}".lstrip()
+    if column not in metrics.METRICS and style.column_name(column, scene.labels).endswith(")"):
+        return f"{statistic} {style.column_name(column, scene.labels)}".lstrip()
     unit = metrics.unit(column, scene.unit) if column in metrics.METRICS else "-"
-    return f"{statistic} {column_name(column, scene.labels)} ({unit})".lstrip()
+    return f"{statistic} {style.column_name(column, scene.labels)} ({unit})".lstrip()
 
 
 def runs_note(frame: pd.DataFrame, statistic: str, where: str) -> str:
@@ -119,10 +101,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     x, hue = panel["x"], panel.get("hue")
     of_runs = "experiment" in panel
     statistic = panel.get("statistic", "mean") if of_runs else ""
-    groups = [None] if hue is None else in_order(frame[hue], panel)
+    groups = [None] if hue is None else style.in_order(frame[hue], panel)
     for group, look in zip(groups, style.lines(groups)):
         own = frame if hue is None else frame[frame[hue] == group]
-        label = statistic if hue is None else printed(group, hue, scene.labels)
+        label = statistic if hue is None else style.printed(group, hue, scene.labels)
         if of_runs:
             _draw_statistic(axes, own[own["part"] == "statistic"], x, look | {"label": label})
             _draw_repeats(axes, own[own["part"] == "repeat"], x, None if hue is None else look["color"])

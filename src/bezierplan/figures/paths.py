@@ -15,7 +15,6 @@ from bezierplan import curves, style
 from bezierplan.analysis.results import Results, path_of
 from bezierplan.analysis.results import pick as pick_run
 from bezierplan.figures import workspace as workspaces
-from bezierplan.figures.lines import in_order, printed
 from bezierplan.problem import Path
 
 # About as many straight steps are drawn for a curve; the ends of its pieces are always among them.
@@ -164,13 +163,13 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     """Draw the paths of all values of hue, each in a look of its own, and what belongs to their problem once; returns their lengths."""
     hue = panel["hue"]
-    values = in_order(frame[hue], panel)
+    values = style.in_order(frame[hue], panel)
     lengths = []
     for value, look in zip(values, style.lines(values)):
         own = frame[frame[hue] == value]
         _draw_parts(axes, own[own["part"] == "collision"], narrow=scene.narrow, clip="view" in panel)
         path = own[own["part"] == "path"]
-        name = printed(value, hue, scene.labels)
+        name = style.printed(value, hue, scene.labels)
         axes.plot(path["x"], path["y"], zorder=3, **look | {"marker": "", "label": name})
         lengths.append(f"{name} {own['length'].iloc[0]:.1f}" if len(path) else f"{name} no path")
     once = frame[frame["part"].isin(["start", "target", "bound"])].drop_duplicates(["part", "x", "y"])
