@@ -1,0 +1,44 @@
+"""Sequences of nodes on maps of growing size."""
+
+import itertools
+
+import numpy as np
+from geometry import random_grid
+from timing import cpu_seconds
+
+from bezierplan import study_file
+from bezierplan.planners import node_genetic
+from bezierplan.problem import Problem
+from bezierplan.workspaces import files
+from bezierplan.workspaces.grid import Grid
+
+
+def benchmark_node_genetic() -> None:
+    """The proposed mutation of meledje on the maps of the study, and on random maps of growing size.
+
+    Prepared once a map: the least energy of all paths, and up to `node_genetic.TABLE_CELLS` cells a table of all edges, whose size is told.
+    """
+    study = study_file.load(study_file.read_config({"studies": ["meledje"]}))["meledje"]
+    maps = {name: (files.load(study.workspaces[name], study.folder), study.problems[name]["settings"]) for name in list(study.problems)[:4]}
+    maps |= {f"{side} x {side}": (_grid_in_the_way(side), {}) for side in (16, 32, 64, 128)}
+    print(f"\n{'node_genetic':16}{'prepared in s':>16}{'ms a run':>12}{'MB of edges':>16}")
+    for name, (grid, own) in maps.items():
+        settings = study.resolved("proposed") | own
+        problem = Problem(name, grid, grid.centre(0), grid.centre(grid.occupied.size - 1))
+        ground = node_genetic.ground_of(grid, settings["friction"])
+        prepared = cpu_seconds(lambda: _prepare(grid, settings["friction"]), rounds=1)  # noqa: B023
+        runs = 20
+        seconds = cpu_seconds(lambda: [node_genetic.plan(problem, np.random.default_rng(seed), **settings) for seed in range(runs)])  # noqa: B023
+        print(f"  {name:14}{prepared:16.3f}{1000 * seconds / runs:12.2f}{(ground.met.nbytes + ground.energy.nbytes) / 1e6:16.1f}")
+
+
+def _grid_in_the_way(side: int) -> Grid:
+    """A random grid whose corners do not see each other, so that there is something to search."""
+    grids = (random_grid(side, np.random.default_rng(seed)) for seed in itertools.count(side))
+    return next(each for each in grids if node_genetic.obstacles_met(node_genetic.ground_of(each, 1.0), 0, side * side - 1))
+
+
+def _prepare(grid: Grid, friction: float) -> None:
+    node_genetic._ground.cache_clear()
+    node_genetic._cheapest_known.cache_clear()
+    node_genetic.cheapest(node_genetic.ground_of(grid, friction), 0, grid.occupied.size - 1)

@@ -1,0 +1,45 @@
+"""Median CPU time of a run of every method of every study."""
+
+import time
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from bezierplan import problems, running, study_file
+from bezierplan import study as studies
+
+RUNS = 5
+
+
+def _milliseconds(run: Callable[[int], object]) -> float:
+    """Median of several runs, by number, after one that compiles."""
+    run(0)
+    taken = []
+    for number in range(RUNS):
+        before = time.process_time()
+        run(number)
+        taken.append(1e3 * (time.process_time() - before))
+    return float(np.median(taken))
+
+
+def _methods(study: studies.Study) -> Iterator[tuple[str, str]]:
+    """Every method with the first experiment that it takes part in; controls are the same everywhere and left out."""
+    seen = set(study.controls)
+    for experiment, description in study.experiments.items():
+        for method in description["methods"]:
+            if method not in seen:
+                seen.add(method)
+                yield experiment, method
+
+
+def benchmark_runs() -> None:
+    """Each method of each study on the first condition of its first experiment."""
+    print(f"\n{'a run':44}{'median ms':>12}   under")
+    for key, study in study_file.load(study_file.read_config({})).items():
+        for experiment, method in _methods(study):
+            job = studies.job(study, experiment, method, "smoke", 0)
+            made, _ = problems.build_all(studies.problems_job(study, experiment, "smoke"), study.folder)
+            condition = next(running.conditions(list(job["problems"]), job["vary"]))
+            problem = made[condition.problem]
+            taken = _milliseconds(lambda number: running.run(job, condition, number, problem))  # noqa: B023
+            print(f"  {key + ' ' + method:42}{taken:12.2f}   {condition.name}", flush=True)
