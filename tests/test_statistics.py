@@ -94,6 +94,21 @@ def test_interval_covers_the_truth_about_95_times_in_100(name):
     assert 0.88 <= hits / 150 <= 0.99
 
 
+@pytest.mark.parametrize("name", sorted(set(STATISTICS) - set(statistics.WITHOUT_INTERVAL)))
+def test_interval_of_many_values_is_nearly_that_of_the_bootstrap(name, monkeypatch):
+    values = np.random.default_rng(7).gamma(4, size=400)
+    values = (values > 3).astype(float) if name in ("count", "share") else values
+    low, high = interval(name, values, generator("many"))
+    monkeypatch.setattr(statistics, "MOST_RESAMPLED", 1000)
+    assert (low, high) == pytest.approx(interval(name, values, generator("many")), abs=0.2 * (high - low))
+    assert low < statistic(name, values) < high
+
+
+def test_interval_of_many_values_with_infinite_ones_is_resampled():
+    values = np.append(np.random.default_rng(8).normal(size=400), math.inf)
+    assert all(map(math.isfinite, interval("median", values, generator("infinite"))))
+
+
 @pytest.mark.parametrize(("name", "count"), [("mean", 0), ("mean", 1), ("min", 10), ("max", 10), ("range", 10)])
 def test_interval_is_empty_where_it_would_say_nothing(name, count):
     assert all(math.isnan(end) for end in interval(name, np.arange(float(count)), generator("a")))

@@ -14,7 +14,7 @@ DRAWS = 10_000
 TAIL = 0.025
 # With fewer runs the central 95 % says nothing, and no published number is judged.
 LEAST_RUNS = 6
-# Above so many values a normal approximation takes the place of the bootstrap where claims are judged.
+# Above so many values a normal approximation takes the place of the bootstrap.
 MOST_RESAMPLED = 200
 # Most numbers drawn at once: blocks of this size stay in the processor's cache.
 BLOCK = 1 << 15
@@ -96,14 +96,18 @@ def resampled(name: str, values: np.ndarray, size: int, rng: np.random.Generator
 def influence(name: str, values: np.ndarray) -> np.ndarray:
     """How far each of values (n,), n at least 2, moves a named statistic: its empirical influence function (Hampel 1974), (n,).
 
-    Its standard deviation, divided by the root of n, is the standard error of the statistic. For mean, share, std, median and iqr; raises
-    KeyError for another name.
+    Its standard deviation, divided by the root of n, is the standard error of the statistic. Raises KeyError for `WITHOUT_INTERVAL` and for
+    an unknown name.
     """
     return {
         "mean": _mean_influence,
         "share": _mean_influence,
+        "count": lambda values: len(values) * _mean_influence(values),
         "std": _std_influence,
         "median": lambda values: _quantile_influence(values, 0.5),
+        "unstated": lambda values: _quantile_influence(values, 0.5),
+        "quartile1": lambda values: _quantile_influence(values, 0.25),
+        "quartile3": lambda values: _quantile_influence(values, 0.75),
         "iqr": lambda values: _quantile_influence(values, 0.75) - _quantile_influence(values, 0.25),
     }[name](values)
 
@@ -132,13 +136,17 @@ def normal_draws(centre: float, error: float) -> np.ndarray:
 
 
 def interval(name: str, values: np.ndarray, rng: np.random.Generator) -> tuple[float, float]:
-    """95 % percentile bootstrap interval of a named statistic of values (n,).
+    """95 % percentile bootstrap interval of a named statistic of values (n,), above `MOST_RESAMPLED` values its normal approximation.
 
     Not a number for fewer than two values, and for statistics that depend on how many there are (`WITHOUT_INTERVAL`).
     """
     if len(values) < 2 or name in WITHOUT_INTERVAL:
         return math.nan, math.nan
-    low, high = np.quantile(resampled(name, values, len(values), rng), [TAIL, 1 - TAIL])
+    if len(values) > MOST_RESAMPLED and np.isfinite(values).all():
+        draws = normal_draws(statistic(name, values), influence(name, values).std(ddof=1) / math.sqrt(len(values)))
+    else:
+        draws = resampled(name, values, len(values), rng)
+    low, high = np.quantile(draws, [TAIL, 1 - TAIL])
     return float(low), float(high)
 
 
