@@ -40,5 +40,4 @@ def _grid_in_the_way(side: int) -> Grid:
 
 def _prepare(grid: Grid, friction: float) -> None:
     node_genetic._ground.cache_clear()
-    node_genetic._cheapest_known.cache_clear()
     node_genetic.cheapest(node_genetic.ground_of(grid, friction), 0, grid.occupied.size - 1)
