@@ -14,12 +14,16 @@ from bezierplan.problem import planner_module, planner_settings, setting_fault
 
 STUDIES = Path(__file__).parents[1] / "config" / "studies"
 CLAIMS = {"song2016": 10, "tharwat2018": 41, "ma2020": 21, "meledje": 10, "elhoseny2017": 24}
+# Sentences of maps and moving obstacles, which are not run yet, and of the inside of a run, which nothing measures.
+TO_COME = {"elhoseny2017": {"C16", "C17", "C18", "C21", "C22"}}
+# Of use to readers' own claims; of the papers' only those to come need it.
+IDLE_KEYS = {"failures"}
 CHECKS = {
-    "lower": 52,
+    "lower": 49,
     "ordered": 25,
-    "share": 22,
+    "share": 20,
     "trend": 13,
-    "function": 8,
+    "function": 7,
     "equal_within": 5,
     "published_arithmetic": 3,
     "difference": 2,
@@ -60,7 +64,8 @@ def names_by_column(claim):
 
 @pytest.mark.parametrize("key", CLAIMS)
 def test_claims_are_complete_and_numbered(key):
-    assert [claim["id"] for claim in claims(key)] == [f"C{number + 1}" for number in range(CLAIMS[key])]
+    numbered = [f"C{number + 1}" for number in range(CLAIMS[key])]
+    assert [claim["id"] for claim in claims(key)] == [name for name in numbered if name not in TO_COME.get(key, ())]
 
 
 def test_number_of_claims_and_deciding_checks():
@@ -160,7 +165,7 @@ def test_no_key_of_a_kind_of_test_is_unused():
     for kind in kinds:
         name = kind["if"]["properties"]["test"]["const"]
         used = set().union(*(check.keys() for check in all_checks() if check["test"] == name))
-        assert set(kind["then"]["properties"]) - used == set(), name
+        assert set(kind["then"]["properties"]) - used <= IDLE_KEYS, name
 
 
 FAULTS = {
