@@ -33,9 +33,13 @@ def benchmark_node_genetic() -> None:
 
 
 def _grid_in_the_way(side: int) -> Grid:
-    """A random grid whose corners do not see each other, so that there is something to search."""
+    """A random grid whose corners do not see each other but are connected, so that there is something to search."""
     grids = (random_grid(side, np.random.default_rng(seed)) for seed in itertools.count(side))
-    return next(each for each in grids if node_genetic.obstacles_met(node_genetic.ground_of(each, 1.0), 0, side * side - 1))
+    return next(grid for grid in grids if _has_work(node_genetic.ground_of(grid, 1.0), 0, side * side - 1))
+
+
+def _has_work(ground: node_genetic.Ground, start: int, target: int) -> bool:
+    return node_genetic.obstacles_met(ground, start, target) > 0 and node_genetic.cheapest(ground, start, target)[0] < np.inf
 
 
 def _prepare(grid: Grid, friction: float) -> None:
