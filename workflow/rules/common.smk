@@ -143,7 +143,9 @@ def figure_code(wildcards):
 
 def figure_published(wildcards):
     """Published numbers, for the kinds that draw them and the functions that ask for them."""
-    drawn = any(panel["kind"] in ("boxes", "critical_difference") or panel.get("published") for panel in figure_job(wildcards)["spec"]["panels"])
+    drawn = any(
+        panel["kind"] in ("boxes", "critical_difference") or panel.get("published") for panel in figure_job(wildcards)["spec"]["panels"]
+    )
     return published_files(wildcards) if drawn else []
 
 
