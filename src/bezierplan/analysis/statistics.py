@@ -160,13 +160,15 @@ def predicted(name: str, values: np.ndarray, size: int, rng: np.random.Generator
         true = values.sum()
         counts = rng.binomial(size, rng.beta(true + 0.5, len(values) - true + 0.5, DRAWS))
         return counts / (size if name == "share" else 1)
-    rows = max(1, BLOCK // max(size, len(values)))
+    rows = max(1, BLOCK // size)
     drawn = np.empty(DRAWS)
     for first in range(0, DRAWS, rows):
         block = drawn[first : first + rows]
-        world = rng.integers(len(values), size=(len(block), len(values)), dtype=np.int32)
-        experiment = rng.integers(len(values), size=(len(block), size), dtype=np.int32)
-        block[:] = STATISTICS[name](values[np.take_along_axis(world, experiment, axis=1)])
+        # Of the first draw only those places are filled that the second one asks for, each once.
+        places, world = rng.integers(len(values), size=(2, len(block), size), dtype=np.int32)
+        places.sort(axis=1)
+        asked_first = np.where(np.diff(places, axis=1, prepend=-1) > 0, np.arange(size), 0)
+        block[:] = STATISTICS[name](values[np.take_along_axis(world, np.maximum.accumulate(asked_first, axis=1), axis=1)])
     return drawn
 
 
