@@ -182,9 +182,14 @@ def homotopy_class(points: np.ndarray, workspace: Workspace) -> float:
     """
     if not len(points) or not isinstance(workspace, Circles):
         return np.nan
-    ahead = points[:, None] - workspace.centres
-    angles = np.unwrap(np.arctan2(ahead[..., 1], ahead[..., 0]), axis=0)
-    return float((2.0 ** np.arange(len(workspace.centres)))[angles[-1] > angles[0]].sum())
+    x, y = np.ascontiguousarray(points.T)[:, None] - workspace.centres.T[:, :, None]
+    angles = np.arctan2(y[:, [0, -1]], x[:, [0, -1]])
+    # Where the way crosses the ray to the left of the centre its angle goes on from pi to -pi, or back.
+    leftward = x[:, :-1] * y[:, 1:] > y[:, :-1] * x[:, 1:]
+    above = y >= 0
+    rounds = (above[:, :-1] & ~above[:, 1:] & leftward).sum(axis=1) - (~above[:, :-1] & above[:, 1:] & ~leftward).sum(axis=1)
+    swept = angles[:, 1] - angles[:, 0] + 2 * np.pi * rounds
+    return float((2.0 ** np.arange(len(workspace.centres)))[swept > 0].sum())
 
 
 def _homotopy(runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
