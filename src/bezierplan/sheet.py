@@ -184,11 +184,12 @@ def _name_axes_once(grid: np.ndarray) -> None:
 
 
 def _room(figure: Figure, grid: np.ndarray) -> float:
-    """Room for text above each of the panels (rows, columns), in points."""
-    columns = grid.shape[1]
-    beside = 36 if figure.get_figwidth() / columns >= style.NARROW_PANEL else 30  # what labels of an upright axis take, if they are short
-    left = sum(max(_margins(axes)[0] for axes in column) + style.GAP / 2 for column in grid.T)
-    return 72 * figure.get_figwidth() / columns - max(beside, 72 * left / columns)
+    """Room for text above each of the panels (rows, columns), up to what stands beside its neighbour, in points."""
+    width, columns = 72 * figure.get_figwidth(), grid.shape[1]
+    least = 36 if width / columns >= 72 * style.NARROW_PANEL else 30  # what labels of an upright axis take, if they are short
+    margins = 72 * (np.array([[_margins(axes)[:2] for axes in row] for row in grid]) + style.GAP / 2)
+    left, right = margins.max(axis=0).T
+    return (width - np.maximum(left, least).sum() - right.sum()) / columns + right.min()
 
 
 def _broken(text: str, room: float, size: float) -> str:
