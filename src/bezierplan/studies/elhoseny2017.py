@@ -165,7 +165,7 @@ LARGER_SIDES = (100, 200, 500, 1000, 2000)
 
 
 def memory() -> pd.DataFrame:
-    """What a field takes in memory, beside its circles; columns: side, part and megabytes.
+    """What a field takes in memory, beside its circles; columns: side, held (what is), and megabytes.
 
     The occupied cells serve all planners; the certified check has them once more, with all edges and corners of cells.
     """
@@ -173,8 +173,8 @@ def memory() -> pd.DataFrame:
     for side in LARGER_SIDES:
         grid = random_field.from_circles(Circles((0.0, side, 0.0, side), np.empty((0, 2)), np.empty(0), "cell"))
         checked = sum(array.nbytes for array in region(grid) if isinstance(array, np.ndarray))
-        for part, size in (("occupied cells", grid.occupied.nbytes), ("certified check", checked)):
-            rows.append({"side": side, "part": part, "megabytes": size / 1e6})
+        for held, size in (("occupied cells", grid.occupied.nbytes), ("certified check", checked)):
+            rows.append({"side": side, "held": held, "megabytes": size / 1e6})
     return pd.DataFrame(rows)
 
 
