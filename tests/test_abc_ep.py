@@ -41,11 +41,11 @@ def field(*circles, side=100):
     return Problem("test", grid, (0.0, 0.0), (float(side), float(side)))
 
 
-def drawn(number, radius=0.06, obstacles=25, side=100):
+def drawn(number, radius=0.06, obstacles=15, side=100):
     """A random field, both pairs of corners in turn."""
     start, target = [((0, 0), (side, side)), ((side, 0), (0, side))][number % 2]
     ends = {"start": start, "target": target, "side": side, "obstacles": obstacles}
-    grid = random_field.field({"radius": radius, "clear_ends": 2.0, "unit": "cell"}, ends, f"test/{number}")
+    grid = random_field.field({"radius": radius, "clear_ends": 2.0, "unit": "cell"}, ends | {"layout": number}, "test")
     return Problem("test", grid, tuple(map(float, start)), tuple(map(float, target)))
 
 

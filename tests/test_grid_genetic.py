@@ -32,7 +32,7 @@ def drawn(number, radius=0.06, obstacles=25, side=100):
     """A random field, both pairs of corners in turn."""
     start, target = [((0, 0), (side, side)), ((side, 0), (0, side))][number % 2]
     ends = {"start": start, "target": target, "side": side, "obstacles": obstacles}
-    grid = random_field.field({"radius": radius, "clear_ends": 2.0, "unit": "cell"}, ends, f"test/{number}")
+    grid = random_field.field({"radius": radius, "clear_ends": 2.0, "unit": "cell"}, ends | {"layout": number}, "test")
     return Problem("test", grid, tuple(map(float, start)), tuple(map(float, target)))
 
 

@@ -134,11 +134,11 @@ def test_start_equal_to_target_is_a_path_of_no_length():
     assert plan(problem([[2, 2, 1]], target=(0.0, 0.0))).objective == 0
 
 
-def field(number, obstacles=25, side=100):
+def field(number, obstacles=10, side=100):
     """A random field of cells, both pairs of corners in turn."""
     start, target = [((0, 0), (side, side)), ((side, 0), (0, side))][number % 2]
     ends = {"start": start, "target": target, "side": side, "obstacles": obstacles}
-    grid = random_field.field({"radius": 0.06, "clear_ends": 2.0, "unit": "cell"}, ends, f"test/{number}")
+    grid = random_field.field({"radius": 0.06, "clear_ends": 2.0, "unit": "cell"}, ends | {"layout": number}, "test")
     return Problem("test", grid, tuple(map(float, start)), tuple(map(float, target)))
 
 

@@ -20,10 +20,9 @@ def field(description: dict, problem: dict, name: str) -> Grid:
     """The field of a problem, drawn from names and numbers alone: problems that differ in one of them have nothing in common.
 
     description: radius, that of all circles as a share of the side, clear_ends, the cells that stay free between a circle and start or
-    target, and unit. problem: side (N), start, target, layout, its number, and obstacles, how
-    many circles. name: of study and workspace. Centres are uniform in the square from 0 to N; those
-    too near to start or target are drawn again. Circles may overlap. A field in which no path of free cells leads from start to target is
-    drawn again as a whole.
+    target, and unit. problem: side (N), start, target, obstacles, how many circles, and layout, the number of the field. name: of study and
+    workspace. Centres are uniform in the square from 0 to N; those too near to start or target are drawn again. Circles may overlap. A
+    field in which no path of free cells leads from start to target is drawn again as a whole.
 
     Raises ValueError, naming the key, if start or target is no cell of the field, and if no field can be found.
     """
