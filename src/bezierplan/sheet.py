@@ -108,7 +108,7 @@ def write_data(frame: pd.DataFrame, file: str) -> None:
 
 def read_data(file: str) -> pd.DataFrame:
     """What `write_data` wrote, every number to its last bit."""
-    return pd.read_csv(file)
+    return pd.read_csv(file, low_memory=False)  # a column of each kind as a whole
 
 
 def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, columns: int) -> Figure:
