@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan import study_file
+from bezierplan import checked, study_file
 from bezierplan.analysis import audit
 from bezierplan.analysis.results import Results
 from bezierplan.checked import Fault
@@ -179,3 +179,15 @@ def test_means_of_fields_follow_the_free_diagonals():
     """The expected length is that of a monotone path: 1.5 N where the diagonal is free, and 2 N where it is not."""
     blocked = np.array([1 - (1 - np.sqrt(2) * 0.025) ** (2 * n) for n in (5, 25)])
     np.testing.assert_allclose(elhoseny2017.expected_length(100, 0.025, np.array([5, 25])), 150 + 50 * blocked)
+
+
+def test_memory_is_of_the_fields_of_the_study():
+    described = checked.read(FOLDER / "experiments.yaml", "experiments")
+    gravel = described["problems"]["gravel"]
+    assert described["workspaces"]["gravel"] == {"kind": "random_field", **elhoseny2017.GRAVEL}
+    assert {key: gravel[key] for key in elhoseny2017.GRAVEL_FIELD} == elhoseny2017.GRAVEL_FIELD
+    assert gravel["obstacles"] == list(elhoseny2017.MORE_OBSTACLES)
+    table = elhoseny2017.memory().set_index(["held", "obstacles", "side"])["megabytes"]
+    cells = table["occupied cells"]
+    assert (cells.xs(500, level="side") == 501**2 / 1e6).all(), "obstacles take no cells of their own"
+    assert table["certified check"].xs(500, level="side").is_monotonic_increasing, "but edges"

@@ -162,19 +162,28 @@ def printed_times(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
 
 
 LARGER_SIDES = (100, 200, 500, 1000, 2000)
+# The workspace and the problem `gravel` of the study.
+GRAVEL = {"radius": 0.004, "clear_ends": 2.0, "unit": "cell"}
+GRAVEL_FIELD = {"side": 500, "start": [0, 0], "target": [500, 500]}
+MORE_OBSTACLES = (25, 50, 100, 200, 400)
 
 
 def memory() -> pd.DataFrame:
-    """What a field takes in memory, beside its circles; columns: side, held (what is), and megabytes.
+    """What empty fields of some sides take in memory, and one side's with many obstacles; columns: side, obstacles, held (what is),
+    megabytes.
 
     The occupied cells serve all planners; the certified check has them once more, with all edges and corners of cells.
     """
+    empty = [(side, 0, Circles((0.0, side, 0.0, side), np.empty((0, 2)), np.empty(0), "cell")) for side in LARGER_SIDES]
+    fields = [(side, count, random_field.from_circles(circles)) for side, count, circles in empty]
+    for count in MORE_OBSTACLES:
+        described = GRAVEL_FIELD | {"obstacles": count, "layout": 0}
+        fields.append((GRAVEL_FIELD["side"], count, random_field.field(GRAVEL, described, "elhoseny2017/gravel")))
     rows = []
-    for side in LARGER_SIDES:
-        grid = random_field.from_circles(Circles((0.0, side, 0.0, side), np.empty((0, 2)), np.empty(0), "cell"))
+    for side, count, grid in fields:
         checked = sum(array.nbytes for array in region(grid) if isinstance(array, np.ndarray))
         for held, size in (("occupied cells", grid.occupied.nbytes), ("certified check", checked)):
-            rows.append({"side": side, "held": held, "megabytes": size / 1e6})
+            rows.append({"side": side, "obstacles": count, "held": held, "megabytes": size / 1e6})
     return pd.DataFrame(rows)
 
 
