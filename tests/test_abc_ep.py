@@ -4,11 +4,10 @@ import math
 
 import numpy as np
 import pytest
+from fields import assert_path_fits, drawn
 
 from bezierplan import cell_length, curves
 from bezierplan.exact import bounds
-from bezierplan.exact.checker import check
-from bezierplan.exact.region import region
 from bezierplan.planners import abc_ep
 from bezierplan.problem import Problem, planner_settings, setting_fault
 from bezierplan.workspaces import random_field
@@ -41,30 +40,16 @@ def field(*circles, side=100):
     return Problem("test", grid, (0.0, 0.0), (float(side), float(side)))
 
 
-def drawn(number, radius=0.06, obstacles=15, side=100):
-    """A random field, both pairs of corners in turn."""
-    start, target = [((0, 0), (side, side)), ((side, 0), (0, side))][number % 2]
-    ends = {"start": start, "target": target, "side": side, "obstacles": obstacles}
-    grid = random_field.field({"radius": radius, "clear_ends": 2.0, "unit": "cell"}, ends | {"layout": number}, "test")
-    return Problem("test", grid, tuple(map(float, start)), tuple(map(float, target)))
-
-
 def plan(problem, seed=0, **changes):
     return abc_ep.plan(problem, np.random.default_rng(seed), **(SETTINGS | changes))
 
 
 @pytest.mark.parametrize("number", range(12))
 def test_paths_touch_no_occupied_cell_and_are_as_long_as_said(number):
-    problem = drawn(number)
+    problem = drawn(number, obstacles=15)
     found = plan(problem, seed=number)
-    grid = problem.workspace
-    assert found.claimed_feasible
-    assert found.path.points[[0, -1]].tolist() == [list(problem.start), list(problem.target)]
-    assert cell_length.occupied_cells(*cell_length.touched_cells(*cell_length.samples(found.path, grid)), grid.occupied) == 0
-    assert check(curves.bezier_pieces(found.path), region(grid)).feasible
+    assert_path_fits(problem, found)
     assert found.objective == pytest.approx(curves.length(found.path), rel=1e-12)
-    bound8 = bounds.lattice_path(grid.occupied, grid.cell_of(*problem.start), grid.cell_of(*problem.target), 1.5, "free").length
-    assert bound8 <= cell_length.length8(found.path, grid) <= cell_length.length4(found.path, grid)
     assert found.history[0] == found.extra["first_length"]
     assert (np.diff(found.history) <= 0).all()
     assert found.history[-1] == found.objective
@@ -171,11 +156,12 @@ def test_cost_is_the_way_there_and_on_and_the_cones_around_points_chosen():
     path = np.array([[0.5, 0.5], [8.5, 6.5], [10.5, 10.5], [0.0, 0.0]])
     target = np.array([40.5, 40.5])
     point = np.array([13.9, 14.1])
+    colony = abc_ep._Colony(20, 10, 5, reach=10.0, step_weight=0.5, visited_weight=2.0, most_points=200)
     # The cones have their height in the middle of the point's cell.
     cones = max(0, 10 - math.dist((8.5, 6.5), (13.5, 14.5))) + max(0, 10 - math.dist((10.5, 10.5), (13.5, 14.5)))
     expected = 0.5 * math.dist((10.5, 10.5), point) + math.dist(point, target) + 2 * cones
-    assert abc_ep._cost(occupied, target, path, 3, point, 10.0, 0.5, 2.0) == pytest.approx(expected, rel=1e-12)
-    assert abc_ep._cost(occupied, target, path, 3, np.array([25.5, 10.5]), 10.0, 0.5, 2.0) == abc_ep._UNSEEN
+    assert abc_ep._cost(occupied, target, path, 3, point, colony) == pytest.approx(expected, rel=1e-12)
+    assert abc_ep._cost(occupied, target, path, 3, np.array([25.5, 10.5]), colony) == abc_ep._UNSEEN
 
 
 def test_children_keep_the_lengths_of_their_legs():
@@ -188,8 +174,9 @@ def test_children_keep_the_lengths_of_their_legs():
     legs[0, 0] = abc_ep._leg(grid.occupied, points[0], 0, 1e6)
     count = 2
     differences = []
+    evolution = abc_ep._Evolution(20, 150, 0.5, 0.2, spread=2.5, insertion_spread=0.3, opponents=5, blocked_penalty=1e6)
     for _ in range(room - 2):
-        new = abc_ep._mutated(rng, grid.occupied, points[0], legs[0], count, points[1], legs[1], 0.5, 0.2, 2.5, 0.3, 1e6)
+        new = abc_ep._mutated(rng, grid.occupied, points[0], legs[0], count, points[1], legs[1], evolution)
         measured = [abc_ep._leg(grid.occupied, points[1], p, 1e6) for p in range(new - 1)]
         assert legs[1, : new - 1].tolist() == measured
         kept = set(map(tuple, points[0, :count])) & set(map(tuple, points[1, :new]))

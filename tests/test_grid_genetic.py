@@ -4,14 +4,12 @@ import math
 
 import numpy as np
 import pytest
+from fields import assert_path_fits, drawn
 
 from bezierplan import cell_length, curves
 from bezierplan.exact import bounds
-from bezierplan.exact.checker import check
-from bezierplan.exact.region import region
 from bezierplan.planners import grid_genetic
 from bezierplan.problem import Problem, planner_settings, setting_fault
-from bezierplan.workspaces import random_field
 from bezierplan.workspaces.grid import Grid, from_lines
 
 SETTINGS = {
@@ -26,14 +24,6 @@ SETTINGS = {
     "detour_share": 0.125,
     "straight_on": 0.8,
 }
-
-
-def drawn(number, radius=0.06, obstacles=25, side=100):
-    """A random field, both pairs of corners in turn."""
-    start, target = [((0, 0), (side, side)), ((side, 0), (0, side))][number % 2]
-    ends = {"start": start, "target": target, "side": side, "obstacles": obstacles}
-    grid = random_field.field({"radius": radius, "clear_ends": 2.0, "unit": "cell"}, ends | {"layout": number}, "test")
-    return Problem("test", grid, tuple(map(float, start)), tuple(map(float, target)))
 
 
 def on_map(*lines, start=None, target=None):
@@ -57,10 +47,7 @@ def test_paths_are_free_and_cost_what_is_said(number):
     problem = drawn(number)
     found = plan(problem, seed=number)
     grid = problem.workspace
-    assert found.claimed_feasible
-    assert found.path.points[[0, -1]].tolist() == [list(problem.start), list(problem.target)]
-    assert cell_length.occupied_cells(*cell_length.touched_cells(*cell_length.samples(found.path, grid)), grid.occupied) == 0
-    assert check(curves.bezier_pieces(found.path), region(grid)).feasible
+    assert_path_fits(problem, found)
     assert found.objective == cell_length.length4(found.path, grid) == cell_length.length8(found.path, grid)
     assert least(problem) <= found.objective <= 1.03 * least(problem)
     assert (np.diff(found.history) <= 0).all()

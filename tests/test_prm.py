@@ -5,14 +5,13 @@ import math
 
 import numpy as np
 import pytest
+from fields import assert_path_fits, drawn
 
-from bezierplan import cell_length, curves
-from bezierplan.exact import bounds
+from bezierplan import curves
 from bezierplan.exact.checker import check
 from bezierplan.exact.region import region
 from bezierplan.planners import prm
 from bezierplan.problem import Problem, planner_settings, setting_fault
-from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import from_lines
 
@@ -134,30 +133,16 @@ def test_start_equal_to_target_is_a_path_of_no_length():
     assert plan(problem([[2, 2, 1]], target=(0.0, 0.0))).objective == 0
 
 
-def field(number, obstacles=10, side=100):
-    """A random field of cells, both pairs of corners in turn."""
-    start, target = [((0, 0), (side, side)), ((side, 0), (0, side))][number % 2]
-    ends = {"start": start, "target": target, "side": side, "obstacles": obstacles}
-    grid = random_field.field({"radius": 0.06, "clear_ends": 2.0, "unit": "cell"}, ends | {"layout": number}, "test")
-    return Problem("test", grid, tuple(map(float, start)), tuple(map(float, target)))
-
-
 @pytest.mark.parametrize("number", range(12))
 def test_paths_on_a_grid_touch_no_occupied_cell(number):
-    where = field(number)
+    where = drawn(number, obstacles=10)
     found = plan(where, seed=number, nodes=300, links="nearest")
-    grid = where.workspace
-    assert found.claimed_feasible
-    assert found.path.points[[0, -1]].tolist() == [list(where.start), list(where.target)]
-    assert cell_length.occupied_cells(*cell_length.touched_cells(*cell_length.samples(found.path, grid)), grid.occupied) == 0
-    assert check(curves.bezier_pieces(found.path), region(grid)).feasible
+    assert_path_fits(where, found)
     assert found.objective == pytest.approx(curves.length(found.path))
-    bound8 = bounds.lattice_path(grid.occupied, grid.cell_of(*where.start), grid.cell_of(*where.target), 1.5, "free").length
-    assert bound8 <= cell_length.length8(found.path, grid) <= cell_length.length4(found.path, grid)
 
 
 def test_nodes_on_a_grid_are_uniform_in_free_cells():
-    grid = field(0).workspace
+    grid = drawn(0).workspace
     low, high, is_free, _ = prm._on_grid(grid, 0.0)
     assert (low.tolist(), high.tolist()) == ([0, 0], [100, 100])
     nodes = prm._free_points(np.random.default_rng(0), 5000, low, high, is_free)
@@ -171,7 +156,7 @@ def test_nodes_on_a_grid_are_uniform_in_free_cells():
 
 
 def test_no_nodes_leave_the_straight_line_of_an_empty_field():
-    where = field(0, obstacles=0)
+    where = drawn(0, obstacles=0)
     assert plan(where, nodes=0, links="nearest").objective == pytest.approx(math.hypot(100, 100))
 
 
@@ -182,7 +167,7 @@ def test_a_sealed_target_on_a_grid():
 
 def test_a_grid_has_no_distance_to_keep():
     with pytest.raises(ValueError, match=r"d_min: 0\.5; on a grid expected 0"):
-        plan(field(0), d_min=0.5)
+        plan(drawn(0), d_min=0.5)
 
 
 def test_nearest_points_in_order_and_the_first_of_equally_near_ones():

@@ -5,6 +5,7 @@ import shutil
 from pathlib import Path
 
 import pytest
+from faults import told
 
 from bezierplan import running, study_file
 from bezierplan import study as studies
@@ -17,12 +18,6 @@ SONG = Path(__file__).parents[1] / "config" / "studies" / "song2016"
 def folder(tmp_path):
     """A copy of song2016 to be spoilt."""
     return Path(shutil.copytree(SONG, tmp_path / "song2016"))
-
-
-def edit(file, old, new):
-    text = file.read_text()
-    assert old in text
-    file.write_text(text.replace(old, new, 1))
 
 
 EXPERIMENTS, ARTEFACTS, MAP, TABLE = "experiments.yaml", "artefacts.yaml", "workspaces/figure2.txt", "published/table1.csv"
@@ -221,13 +216,9 @@ def test_the_study_itself_has_no_fault(folder):
 
 @pytest.mark.parametrize("fault", FAULTS, ids=str)
 def test_fault_is_told_in_one_line(fault, folder):
-    name, old, new, told = FAULTS[fault]
-    edit(folder / name, old, new)
-    with pytest.raises(Fault) as caught:
-        study_file.load([folder])
-    message = str(caught.value)
-    assert told in message
-    assert "\n" not in message
+    name, old, new, expected = FAULTS[fault]
+    message = told(folder / name, old, new, folder)
+    assert expected in message
     assert re.search(r"(experiments|artefacts|claims|assumptions)\.yaml|table1\.csv", message)
 
 
@@ -247,11 +238,10 @@ def test_the_same_study_twice_is_told():
 
 
 def test_settings_of_a_problem_stand_between_those_of_the_study_and_of_a_method(folder):
-    edit(
-        folder / EXPERIMENTS,
-        "\n  0_255: {workspace: figure2,",
-        "\n  0_255: {workspace: figure2, settings: {genes: 5, samples: 7, generations: 9},",
-    )
+    file = folder / EXPERIMENTS
+    place = "\n  0_255: {workspace: figure2,"
+    assert place in file.read_text()
+    file.write_text(file.read_text().replace(place, place + " settings: {genes: 5, samples: 7, generations: 9},", 1))
     study = study_file.load([folder])["song2016"]
     job = studies.job(study, "routes", "smooth", "smoke", 0)
     first, second = (running.settings_in(job, running.Condition(problem, {})) for problem in ("0_15", "0_255"))

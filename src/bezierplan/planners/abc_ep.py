@@ -8,7 +8,7 @@ It is then made shorter by leaving out what is not needed, and by mutations of a
 A leg is free if no cell that it touches is occupied. Lengths and points in the kernels are in cells.
 """
 
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -70,27 +70,18 @@ def plan(
     smaller_side = min(grid.occupied.shape) - 1  # between the centres of the outermost cells
     if problem.start == problem.target:
         generations = 0
-    points, history = _search(
-        *rng.spawn(2),
-        grid.occupied,
-        start,
-        target,
-        sources,
-        cycles,
-        trial_limit,
-        reach * smaller_side,
-        step_weight,
-        visited_weight,
-        most_points,
+    colony = _Colony(sources, cycles, trial_limit, reach * smaller_side, float(step_weight), float(visited_weight), most_points)
+    evolution = _Evolution(
         population,
         generations,
-        move_share,
-        removal_share,
+        float(move_share),
+        float(removal_share),
         spread * smaller_side,
-        insertion_spread,
+        float(insertion_spread),
         opponents,
         blocked_penalty / grid.cell,
     )
+    points, history = _search(*rng.spawn(2), grid.occupied, start, target, colony, evolution)
     history *= grid.cell
     extra = {"first_length": float(history[0]), "turns": max(0, len(points) - 2)}
     if len(points) == 0:
@@ -102,46 +93,38 @@ def plan(
     return Plan(path, history[-1], claimed_feasible=True, evaluations=evaluations, history=history, stop="generations", extra=extra)
 
 
+class _Colony(NamedTuple):
+    """Settings of `plan` for the colony; reach in cells."""
+
+    sources: int
+    cycles: int
+    trial_limit: int
+    reach: float
+    step_weight: float
+    visited_weight: float
+    most_points: int
+
+
+class _Evolution(NamedTuple):
+    """Settings of `plan` for the evolution; spread and blocked_penalty in cells."""
+
+    population: int
+    generations: int
+    move_share: float
+    removal_share: float
+    spread: float
+    insertion_spread: float
+    opponents: int
+    blocked_penalty: float
+
+
 @njit(cache=True)
-def _search(
-    colony_rng,
-    evolution_rng,
-    occupied,
-    start,
-    target,
-    sources,
-    cycles,
-    trial_limit,
-    reach,
-    step_weight,
-    visited_weight,
-    most_points,
-    population,
-    generations,
-    move_share,
-    removal_share,
-    spread,
-    insertion_spread,
-    opponents,
-    blocked_penalty,
-):
+def _search(colony_rng, evolution_rng, occupied, start, target, colony, evolution):
     """Points (points, 2) of the path, none if the colony found no way, and the shortest length so far (generations + 1,)."""
-    path = _first_path(colony_rng, occupied, start, target, sources, cycles, trial_limit, reach, step_weight, visited_weight, most_points)
+    path = _first_path(colony_rng, occupied, start, target, colony)
     if len(path) == 0:
         return path, np.full(1, np.inf)
-    return _evolve(
-        evolution_rng,
-        occupied,
-        _cut_short(occupied, path),
-        population,
-        generations,
-        move_share,
-        removal_share,
-        spread,
-        insertion_spread,
-        opponents,
-        blocked_penalty,
-    )
+    return _evolve(evolution_rng, occupied, _cut_short(occupied, path), evolution)
 
 
 # ---------------------------------------------------------------------------------------------------------------------
@@ -149,49 +132,48 @@ def _search(
 
 
 @njit(cache=True)
-def _first_path(rng, occupied, start, target, sources, cycles, trial_limit, reach, step_weight, visited_weight, most_points):
+def _first_path(rng, occupied, start, target, colony):
     """A free path (points, 2), point by point until the target is in sight; none if no free point is found, or not in so many points."""
-    path = np.empty((most_points + 2, 2))
+    path = np.empty((colony.most_points + 2, 2))
     path[0] = start
-    for count in range(1, most_points + 2):
+    for count in range(1, colony.most_points + 2):
         last = path[count - 1]
         if is_free_leg(occupied, last[0], last[1], target[0], target[1]):
             path[count] = target
             return path[: count + 1].copy()
-        if count <= most_points:
-            cost = _next_point(rng, occupied, target, path, count, sources, cycles, trial_limit, reach, step_weight, visited_weight)
-            if cost >= _UNSEEN:
-                break
+        if count <= colony.most_points and _next_point(rng, occupied, target, path, count, colony) >= _UNSEEN:
+            break
     return np.empty((0, 2))
 
 
 @njit(cache=True)
-def _next_point(rng, occupied, target, path, count, sources, cycles, trial_limit, reach, step_weight, visited_weight):
+def _next_point(rng, occupied, target, path, count, colony):
     """Put the best point that a colony finds behind the first `count` points of a path, in place. Returns its cost."""
     sides = np.array([occupied.shape[1], occupied.shape[0]])
     low, high = np.empty(2), np.empty(2)
     for k in range(2):
-        low[k] = max(0.5, path[count - 1, k] - reach)
-        high[k] = min(sides[k] - 0.5, path[count - 1, k] + reach)
+        low[k] = max(0.5, path[count - 1, k] - colony.reach)
+        high[k] = min(sides[k] - 0.5, path[count - 1, k] + colony.reach)
+    sources = colony.sources
     x, cost, failed = np.empty((sources, 2)), np.empty(sources), np.zeros(sources, dtype=np.int64)
     point = np.empty(2)
     best, best_cost = path[count], np.inf
     for i in range(sources):
         _draw(rng, low, high, x[i])
-        cost[i] = _cost(occupied, target, path, count, x[i], reach, step_weight, visited_weight)
+        cost[i] = _cost(occupied, target, path, count, x[i], colony)
 
-    for cycle in range(cycles + 1):
+    for cycle in range(colony.cycles + 1):
         # The best is remembered before a source that it came from can be drawn again.
         for i in range(sources):
             if cost[i] < best_cost:
                 best[0], best[1] = x[i]
                 best_cost = cost[i]
-        if cycle == cycles:
+        if cycle == colony.cycles:
             break
         for i in range(sources):
-            if failed[i] >= trial_limit:  # a scout
+            if failed[i] >= colony.trial_limit:  # a scout
                 _draw(rng, low, high, x[i])
-                cost[i] = _cost(occupied, target, path, count, x[i], reach, step_weight, visited_weight)
+                cost[i] = _cost(occupied, target, path, count, x[i], colony)
                 failed[i] = 0
         for turn in range(2):
             if turn == 1:
@@ -204,7 +186,7 @@ def _next_point(rng, occupied, target, path, count, sources, cycles, trial_limit
                 point[0], point[1] = x[i]
                 point[k] += (2 * rng.random() - 1) * (x[i, k] - x[other, k])
                 point[k] = min(max(point[k], low[k]), high[k])
-                tried = _cost(occupied, target, path, count, point, reach, step_weight, visited_weight)
+                tried = _cost(occupied, target, path, count, point, colony)
                 if tried < cost[i]:
                     x[i, k] = point[k]
                     cost[i] = tried
@@ -222,7 +204,7 @@ def _draw(rng, low, high, point):
 
 
 @njit(cache=True)
-def _cost(occupied, target, path, count, point, reach, step_weight, visited_weight):
+def _cost(occupied, target, path, count, point, colony):
     """What the next point costs: the way to it and from it to the target, and cones over the cells around the points chosen before."""
     last = path[count - 1]
     if not is_free_leg(occupied, last[0], last[1], point[0], point[1]):
@@ -230,11 +212,11 @@ def _cost(occupied, target, path, count, point, reach, step_weight, visited_weig
     height = 0.0
     column, row = np.floor(point[0]) + 0.5, np.floor(point[1]) + 0.5
     for chosen in range(1, count):
-        height += max(0.0, reach - _length(path[chosen, 0], path[chosen, 1], column, row))
+        height += max(0.0, colony.reach - _length(path[chosen, 0], path[chosen, 1], column, row))
     return (
-        step_weight * _length(last[0], last[1], point[0], point[1])
+        colony.step_weight * _length(last[0], last[1], point[0], point[1])
         + _length(point[0], point[1], target[0], target[1])
-        + visited_weight * height
+        + colony.visited_weight * height
     )
 
 
@@ -263,23 +245,12 @@ def _cut_short(occupied, path):
 
 
 @njit(cache=True)
-def _evolve(
-    rng,
-    occupied,
-    path,
-    population,
-    generations,
-    move_share,
-    removal_share,
-    spread,
-    insertion_spread,
-    opponents,
-    blocked_penalty,
-):
+def _evolve(rng, occupied, path, evolution):
     """The cheapest path of the last generation (points, 2), and the lowest cost so far (generations + 1,).
 
     Every path keeps the lengths of its legs, longer by the penalty where they are blocked: a mutation changes two of them at most.
     """
+    population, generations = evolution.population, evolution.generations
     room = len(path) + generations
     points, legs = np.empty((2 * population, room, 2)), np.empty((2 * population, room))
     counts, cost = np.full(2 * population, len(path)), np.empty(2 * population)
@@ -288,7 +259,7 @@ def _evolve(
         for p in range(len(path)):
             points[i, p, 0], points[i, p, 1] = path[p]
         for p in range(len(path) - 1):
-            legs[i, p] = _leg(occupied, points[i], p, blocked_penalty)
+            legs[i, p] = _leg(occupied, points[i], p, evolution.blocked_penalty)
         cost[i] = legs[i, : len(path) - 1].sum()
     history = np.empty(generations + 1)
     history[0] = cost[0]
@@ -296,56 +267,30 @@ def _evolve(
     for generation in range(generations):
         for i in range(population):
             parent, child = slots[i], slots[population + i]
-            counts[child] = _mutated(
-                rng,
-                occupied,
-                points[parent],
-                legs[parent],
-                counts[parent],
-                points[child],
-                legs[child],
-                move_share,
-                removal_share,
-                spread,
-                insertion_spread,
-                blocked_penalty,
-            )
+            counts[child] = _mutated(rng, occupied, points[parent], legs[parent], counts[parent], points[child], legs[child], evolution)
             cost[child] = legs[child, : counts[child] - 1].sum()
-        _rank(slots, _wins(rng, cost, opponents), cost)
+        _rank(slots, _wins(rng, cost, evolution.opponents), cost)
         history[generation + 1] = cost[slots[0]]
     return points[slots[0], : counts[slots[0]]], history
 
 
 @njit(cache=True)
-def _mutated(
-    rng,
-    occupied,
-    points,
-    legs,
-    count,
-    child,
-    child_legs,
-    move_share,
-    removal_share,
-    spread,
-    insertion_spread,
-    blocked_penalty,
-):
+def _mutated(rng, occupied, points, legs, count, child, child_legs, evolution):
     """Make a child of a path, in place: an inner point is moved or left out, or a midpoint put in. Returns the child's number of points."""
     kind = rng.random()
-    if count == 2 or kind >= move_share + removal_share:
+    if count == 2 or kind >= evolution.move_share + evolution.removal_share:
         changed = rng.integers(1, count)  # the child's new point, behind which the parent's are one further
         kept = changed
         for k in range(2):
             child[changed, k] = 0.5 * (points[changed - 1, k] + points[changed, k])
-        _shift(rng, occupied, child[changed], spread * insertion_spread)
+        _shift(rng, occupied, child[changed], evolution.spread * evolution.insertion_spread)
         behind = changed + 1
-    elif kind < move_share:
+    elif kind < evolution.move_share:
         changed = rng.integers(1, count - 1)
         kept = changed + 1
         for k in range(2):
             child[changed, k] = points[changed, k]
-        _shift(rng, occupied, child[changed], spread)
+        _shift(rng, occupied, child[changed], evolution.spread)
         behind = changed + 1
     else:
         changed = rng.integers(1, count - 1)
@@ -358,7 +303,7 @@ def _mutated(
         child[p + behind - kept, 0], child[p + behind - kept, 1] = points[p]
         child_legs[p + behind - kept] = legs[p]
     for p in range(changed - 1, behind):
-        child_legs[p] = _leg(occupied, child, p, blocked_penalty)
+        child_legs[p] = _leg(occupied, child, p, evolution.blocked_penalty)
     return count + behind - kept
 
 

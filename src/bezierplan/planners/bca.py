@@ -16,7 +16,7 @@ from numba import njit
 
 from bezierplan import curves
 from bezierplan.problem import Path, Plan, Problem, Range
-from bezierplan.search.genetic import complement_bit, redraw_gene, roulette, swap_tails
+from bezierplan.search.genetic import check_pairs, complement_bit, redraw_gene, roulette, swap_tails
 from bezierplan.workspaces.grid import ON_LINE, Grid
 
 workspaces = ("grid",)
@@ -36,8 +36,7 @@ _AT_CORNER = 1e-12
 
 def check(settings: dict) -> None:
     """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
-    if settings["population"] % 2:
-        raise ValueError(f"population: {settings['population']}; parents are crossed in pairs, so an even number is needed")
+    check_pairs(settings["population"])
     if settings["length_weight"] == 0:
         raise ValueError("length_weight: 0; a path without any cost has no fitness, so a number above 0 is needed")
 

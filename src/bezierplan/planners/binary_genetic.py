@@ -15,7 +15,7 @@ from numba import njit
 
 from bezierplan import curves
 from bezierplan.problem import Path, Plan, Problem, Range
-from bezierplan.search.genetic import complement_bit, roulette, swap_tails
+from bezierplan.search.genetic import check_pairs, complement_bit, roulette, swap_tails
 from bezierplan.workspaces.grid import ON_LINE, embed
 
 workspaces = ("grid",)
@@ -29,8 +29,7 @@ def check(settings: dict) -> None:
     least = curves.least_points(settings["curve"]) - 2
     if settings["genes"] < least:
         raise ValueError(f"genes: {settings['genes']}; a curve of kind {settings['curve']} needs at least {least}")
-    if settings["population"] % 2:
-        raise ValueError(f"population: {settings['population']}; parents are crossed in pairs, so an even number is needed")
+    check_pairs(settings["population"])
     if settings["spacing"] == "arc_length" and settings["curve"] != "polyline":
         raise ValueError("spacing: arc_length; only a polyline has it, other curves need parameter")
     if settings["cut"] == "gene" and settings["genes"] == 1:

@@ -11,6 +11,7 @@ from numba import njit
 
 from bezierplan.problem import Path, Plan, Problem, Range
 from bezierplan.search import cell_paths
+from bezierplan.search.genetic import check_pairs
 from bezierplan.workspaces.lattice import Corners, lattice, points
 
 workspaces = ("grid",)
@@ -19,8 +20,7 @@ exact = True
 
 def check(settings: dict) -> None:
     """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
-    if settings["population"] % 2:
-        raise ValueError(f"population: {settings['population']}; parents are crossed in pairs, so an even number is needed")
+    check_pairs(settings["population"])
 
 
 def plan(

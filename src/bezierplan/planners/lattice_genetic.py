@@ -11,7 +11,7 @@ from numba import njit
 
 from bezierplan.problem import Path, Plan, Problem, Range
 from bezierplan.search import cell_paths
-from bezierplan.search.genetic import redraw_gene, roulette, swap_tails
+from bezierplan.search.genetic import check_pairs, redraw_gene, roulette, swap_tails
 from bezierplan.workspaces.lattice import Corners, Lattice, lattice, points
 
 workspaces = ("grid",)
@@ -23,8 +23,7 @@ _MOST_DRAWS = 10_000
 
 def check(settings: dict) -> None:
     """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
-    if settings["population"] % 2:
-        raise ValueError(f"population: {settings['population']}; parents are crossed in pairs, so an even number is needed")
+    check_pairs(settings["population"])
 
 
 def plan(

@@ -15,6 +15,7 @@ from numba import njit
 from bezierplan.cell_length import cells4, cells8, occupied_cells, parts, polyline_length, sample, touched_cells
 from bezierplan.problem import Path, Plan, Problem, Range
 from bezierplan.search.diversity import q_statistic, shared
+from bezierplan.search.genetic import check_pairs
 from bezierplan.workspaces.grid import Grid
 
 workspaces = ("grid",)
@@ -113,8 +114,7 @@ class Found(NamedTuple):
 
 def check(settings: dict) -> None:
     """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
-    if settings["population"] % 2:
-        raise ValueError(f"population: {settings['population']}; parents are crossed in pairs, so an even number is needed")
+    check_pairs(settings["population"])
     if settings["first_points"] > MOST_POINTS:
         raise ValueError(f"first_points: {settings['first_points']}; a curve has at most {MOST_POINTS} control points between its ends")
 

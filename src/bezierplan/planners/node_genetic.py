@@ -15,7 +15,7 @@ import numpy as np
 from numba import njit
 
 from bezierplan.problem import Path, Plan, Problem, Range
-from bezierplan.search.genetic import roulette
+from bezierplan.search.genetic import check_pairs, roulette
 from bezierplan.workspaces.grid import Grid
 
 workspaces = ("grid",)
@@ -93,8 +93,7 @@ class _Found(NamedTuple):
 
 def check(settings: dict) -> None:
     """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
-    if settings["population"] % 2:
-        raise ValueError(f"population: {settings['population']}; parents are crossed in pairs, so an even number is needed")
+    check_pairs(settings["population"])
     if settings["friction"] == 0:
         raise ValueError("friction: 0; climbing is weighed by its reciprocal, so a number above 0 is needed")
 

@@ -7,6 +7,12 @@ import numpy as np
 from numba import njit
 
 
+def check_pairs(population: int) -> None:
+    """Raise ValueError, naming the setting and what would be right, for a population that cannot be crossed in pairs."""
+    if population % 2:
+        raise ValueError(f"population: {population}; parents are crossed in pairs, so an even number is needed")
+
+
 @njit(cache=True)
 def roulette(rng: np.random.Generator, fitness: np.ndarray, draws: int) -> np.ndarray:
     """Indices (draws,) of parents, drawn with replacement in proportion to fitness (n,), all above 0 (song2016, eq. 10)."""

@@ -1,0 +1,19 @@
+"""A fault put into a study's folder, and what is told of it."""
+
+from pathlib import Path
+
+import pytest
+
+from bezierplan import study_file
+from bezierplan.checked import Fault
+
+
+def told(file: Path, old: str, new: str, study: Path) -> str:
+    """What loading a study tells, in one line, when a file of its folder has new words in the place of old ones, which it must have."""
+    text = file.read_text()
+    assert old in text
+    file.write_text(text.replace(old, new, 1))
+    with pytest.raises(Fault) as caught:
+        study_file.load([study])
+    assert "\n" not in str(caught.value)
+    return str(caught.value)

@@ -1,0 +1,29 @@
+"""Random fields of cells for tests of planners, and what holds for every path that is found in one."""
+
+from bezierplan import cell_length, curves
+from bezierplan.exact import bounds
+from bezierplan.exact.checker import check
+from bezierplan.exact.region import region
+from bezierplan.problem import Plan, Problem
+from bezierplan.workspaces import random_field
+
+
+def drawn(number: int, radius: float = 0.06, obstacles: int = 25, side: int = 100) -> Problem:
+    """From corner to corner of the field of a number, both pairs of corners in turn; radius: of the obstacles, as a share of the side."""
+    start, target = [((0, 0), (side, side)), ((side, 0), (0, side))][number % 2]
+    described = {"start": start, "target": target, "side": side, "obstacles": obstacles, "layout": number}
+    grid = random_field.field({"radius": radius, "clear_ends": 2.0, "unit": "cell"}, described, "test")
+    return Problem("test", grid, tuple(map(float, start)), tuple(map(float, target)))
+
+
+def assert_path_fits(problem: Problem, found: Plan) -> None:
+    """The path leads from start to target, touches no occupied cell, is free by the certified check, and no shorter than the least path of
+    cells.
+    """
+    grid = problem.workspace
+    assert found.claimed_feasible
+    assert found.path.points[[0, -1]].tolist() == [list(problem.start), list(problem.target)]
+    assert cell_length.occupied_cells(*cell_length.touched_cells(*cell_length.samples(found.path, grid)), grid.occupied) == 0
+    assert check(curves.bezier_pieces(found.path), region(grid)).feasible
+    bound8 = bounds.lattice_path(grid.occupied, grid.cell_of(*problem.start), grid.cell_of(*problem.target), 1.5, "free").length
+    assert bound8 <= cell_length.length8(found.path, grid) <= cell_length.length4(found.path, grid)
