@@ -31,6 +31,15 @@ def test_comment_and_layout_do_not_count(tree):
     assert digest(tree, "bezierplan.running") == before
 
 
+def test_docstrings_do_not_count(tree):
+    before = digest(tree, "bezierplan.running")
+    file = tree / "bezierplan" / "running.py"
+    text = file.read_text()
+    assert '    """One row of the runs table' in text
+    file.write_text('"""New words.' + text.removeprefix('"""').replace('    """One row', '    """New words. One row'))
+    assert digest(tree, "bezierplan.running") == before
+
+
 def test_code_of_a_module_that_is_imported_by_way_of_others_counts(tree):
     before = digest(tree, "bezierplan.running"), digest(tree, "bezierplan.search.genetic")
     append(tree / "bezierplan" / "workspaces" / "grid.py", "\nNEW = 1\n")
@@ -59,3 +68,31 @@ def test_own_planner_counts_with_what_it_imports(tree, tmp_path):
     after = digest(tree, str(planner))
     append(planner, "NEW = 1\n")
     assert len({before, after, digest(tree, str(planner))}) == 3
+
+
+KERNELS = """
+import numpy as np
+from bezierplan.search import genetic
+genetic.roulette(np.random.default_rng(0), np.ones(4), 3)
+print(sum(genetic.roulette.stats.cache_hits.values()), genetic.roulette.stats.cache_path)
+"""
+
+
+def kernel(tree):
+    """Whether a kernel was found compiled, and the folder that it is kept in."""
+    answer = subprocess.run([sys.executable, "-c", KERNELS], env={"PYTHONPATH": str(tree)}, capture_output=True, text=True, check=True)
+    hits, folder = answer.stdout.split()
+    return int(hits), folder
+
+
+def test_a_kernel_outlives_an_edit_that_cannot_change_it(tree):
+    first, folder = kernel(tree)
+    assert (first, Path(folder).parent) == (0, tree.parent / ".cache" / "kernels")
+    file = tree / "bezierplan" / "search" / "genetic.py"
+    file.write_text("# a comment that moves all lines\n" + file.read_text())
+    append(tree / "bezierplan" / "running.py", "\nNEW = 1\n")
+    assert kernel(tree) == (1, folder)
+    append(file, "\nNEW = 1\n")
+    again, other = kernel(tree)
+    assert again == 0
+    assert other != folder

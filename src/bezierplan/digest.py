@@ -1,7 +1,7 @@
 """Digests of source code.
 
 A digest names what a result depends on, so that an edit re-runs exactly the jobs that it can change; it also names the folder
-in which numba keeps compiled kernels, because numba itself does not notice an edit in a module that a kernel calls.
+in which numba keeps the compiled kernels of a module, because numba itself does not notice an edit in a module that a kernel calls.
 """
 
 import ast
@@ -26,7 +26,17 @@ def _module_file(module: str) -> Path | None:
 
 @cache
 def _parsed(file: Path) -> ast.Module:
-    return ast.parse(file.read_text(encoding="utf-8"))
+    """The syntax tree of a file, without docstrings."""
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) and ast.get_docstring(node) is not None:
+            node.body = node.body[1:]
+    return tree
+
+
+@cache
+def _dumped(file: Path) -> str:
+    return ast.dump(_parsed(file))
 
 
 def _imports(module: str, tree: ast.Module) -> set[str]:
@@ -56,8 +66,8 @@ def _parents(module: str) -> set[str]:
 def source_digest(*modules: str) -> str:
     """Digest of modules and of every module of this package that they import, directly or not.
 
-    A module is a dotted name of this package or the path of a planner's file. Comments and layout do not count: the digest is
-    taken over syntax trees.
+    A module is a dotted name of this package or the path of a planner's file. Comments, docstrings and layout do not
+    count: the digest is taken over syntax trees.
     """
     own = [module for module in modules if not module.endswith(".py")]
     todo, trees = [*modules, *set().union(*map(_parents, own))], {}
@@ -68,30 +78,32 @@ def source_digest(*modules: str) -> str:
         file = Path(module) if module.endswith(".py") else _module_file(module)
         if file is None:
             raise ValueError(f"no module {module} in the package {ROOT}")
-        tree = _parsed(file.resolve())
-        trees[module] = tree
-        todo += _imports(ROOT if module.endswith(".py") else module, tree)
-    text = "\n".join(f"{name} {ast.dump(trees[name])}" for name in sorted(trees))
+        file = file.resolve()
+        trees[module] = _dumped(file)
+        todo += _imports(ROOT if module.endswith(".py") else module, _parsed(file))
+    text = "\n".join(f"{name} {trees[name]}" for name in sorted(trees))
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-def package_digest() -> str:
-    """Digest of the source text of the whole package."""
-    state = hashlib.sha256()
-    for file in sorted(PACKAGE.rglob("*.py")):
-        state.update(str(file.relative_to(PACKAGE)).encode() + b"\0" + file.read_bytes() + b"\0")
-    return state.hexdigest()[:16]
+# numba tries them in this order; the others serve the libraries that keep kernels of their own.
+LOCATORS = "bezierplan.kernel_cache.KernelCacheLocator,InTreeCacheLocator,UserWideCacheLocator"
+
+
+def kernel_folder(module: str, file: str) -> Path:
+    """The folder of compiled kernels of a module, of this package or a reader's own, in its present state."""
+    ours = module.split(".")[0] == ROOT and _module_file(module) is not None
+    return Path(os.environ["NUMBA_CACHE_DIR"]) / f"{Path(file).stem}-{source_digest(module if ours else file)}"
 
 
 def point_numba_cache() -> None:
-    """Give compiled kernels a cache folder that is named by the package's source.
+    """Give compiled kernels a place: `.cache/kernels` of the working tree or, where that cannot be written, of the user's home.
 
-    The folder lies in `.cache` of the working tree or, where that cannot be written, of the user's home. numba reads the variable once,
-    when it is imported; so an earlier import is corrected as well.
+    numba reads the variables once, when it is imported; so an earlier import is corrected as well.
     """
     tree = PACKAGE.parents[1]
     place = tree if os.access(tree, os.W_OK) else Path.home()
-    folder = str(place / ".cache" / "kernels" / package_digest())
-    os.environ["NUMBA_CACHE_DIR"] = folder
-    if "numba" in sys.modules:
-        sys.modules["numba"].config.CACHE_DIR = folder
+    given = {"CACHE_DIR": str(place / ".cache" / "kernels"), "CACHE_LOCATOR_CLASSES": LOCATORS}
+    for name, value in given.items():
+        os.environ[f"NUMBA_{name}"] = value
+        if "numba" in sys.modules:
+            setattr(sys.modules["numba"].config, name, value)
