@@ -73,6 +73,10 @@ class Range(NamedTuple):
         return f"from {self.low:g} to {self.high:g}"
 
 
+PLACE = ("workspace", "reference", "route", "side", "layout", "obstacles")
+"""Keys of a described problem that are columns of the runs table."""
+
+
 @cache
 def planner_module(planner: str) -> ModuleType:
     """The module of a planner: `name` is planners/name.py of this package, `folder/name.py` a file of the reader's own.
