@@ -34,11 +34,11 @@ def path(points, curve="polyline"):
 LIES = {
     "None": (None, "is a NoneType; expected a Plan"),
     "a tuple": (tuple(PLAN), "is a tuple; expected a Plan"),
-    "begins elsewhere": (path(LINE + [[1e-12, 0], [0, 0]]), "path: start: "),
+    "begins elsewhere": (path(LINE * [[1 + 1e-12, 1], [1, 1]]), "path: start: "),
     "ends elsewhere": (path(LINE - [[0, 0], [1, 0]]), "path: target: (8.0, 5.0); expected exactly (9.0, 5.0)"),
     "backwards": (path(LINE[::-1]), "path: start: "),
     "points not numbers": (path(LINE * np.nan), "path: points: expected finite numbers"),
-    "points infinite": (path(LINE + [[0, 0], [np.inf, 0]]), "path: points: expected finite numbers"),
+    "points infinite": (path(LINE * np.inf), "path: points: expected finite numbers"),
     "points flat": (path(LINE.ravel()), "path: points: expected an array of floats, (n, 2)"),
     "points in space": (path(np.ones((3, 3))), "path: points: expected an array of floats, (n, 2)"),
     "points as a list": (path(LINE.tolist()), "path: points: expected an array of floats, (n, 2)"),
