@@ -56,7 +56,12 @@ def read_published(file: str | None, spec: dict) -> pd.DataFrame:
     if file is None:
         return pd.DataFrame(columns=[*tables.keys(spec), "metric", "statistic", "n", "unit", "value"])
     # Only an empty cell means that there is nothing: `none` and `NA` may be names.
-    return pd.read_csv(file, keep_default_na=False, na_values=[""])
+    return as_read(pd.read_csv(file, keep_default_na=False, na_values=[""]), spec)
+
+
+def as_read(published: pd.DataFrame, spec: dict) -> pd.DataFrame:
+    """Published numbers with the metrics that a table takes them for: `reads` has the paper's word -> the metric, and may be missing."""
+    return published.assign(metric=published["metric"].replace(spec.get("reads", {})))
 
 
 def compare(
