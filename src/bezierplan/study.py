@@ -288,7 +288,7 @@ def methods_of_claims(study: Study, claims: list[dict], experiment: str) -> list
     named = set()
     for claim in claims:
         for check in claim["checks"]:
-            if check.get("experiment") == experiment:
+            if experiment in _as_list(check.get("experiment")):
                 named |= _compared(study, claim, check) or set(methods)
     return [name for name in methods if name in named]
 
