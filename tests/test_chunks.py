@@ -20,7 +20,9 @@ def test_chunks_hold_all_repeats_and_no_chunk_more(repeats, chunk, count):
     assert list(study.chunks(own, "first", "full")) == list(range(count))
 
 
-@pytest.mark.parametrize(("seeds", "paired"), [({}, False), ({"seeds": "own"}, False), ({"seeds": "shared"}, True), ({"seeds": "common"}, True)])
+@pytest.mark.parametrize(
+    ("seeds", "paired"), [({}, False), ({"seeds": "own"}, False), ({"seeds": "shared"}, True), ({"seeds": "common"}, True)]
+)
 def test_runs_are_pairs_where_methods_share_their_random_numbers(seeds, paired):
     """Runs of two methods with seeds of their own have nothing to do with each other."""
     own = SimpleNamespace(

@@ -21,7 +21,9 @@ def test_a_verdict_changes_where_the_alternative_has_another_one():
         "O3_0": {"study": "paper", "assumption": "O3", "detail": "memory", "setting": "m", "default": 1, "alternative": 0},
     }
     tried = {
-        "O2_8": pd.DataFrame({"id": ["C1", "C2"], "verdict": ["supported", "in part"], "holds": ["1 of 1", "2 of 3"], "effect": [1.25, -2.0]}),
+        "O2_8": pd.DataFrame(
+            {"id": ["C1", "C2"], "verdict": ["supported", "in part"], "holds": ["1 of 1", "2 of 3"], "effect": [1.25, -2.0]}
+        ),
         "O3_0": pd.DataFrame({"id": ["C3"], "verdict": ["supported"], "holds": ["1 of 1"], "effect": [0.5]}),
     }
     table = sensitivity.sensitivity(in_force, tried, described)
@@ -48,7 +50,9 @@ def test_a_verdict_changes_where_the_alternative_has_another_one():
 )
 def test_a_printed_length_may_lie_below_the_bound_by_half_a_unit_of_its_last_digit(printed, bound, consistent, tmp_path):
     file = tmp_path / "table1.csv"
-    file.write_text(f"problem,method,metric,statistic,n,unit,value\nacross,plain,length,min,10,m,{printed}\nacross,plain,cpu_s,min,10,s,1\n")
+    file.write_text(
+        f"problem,method,metric,statistic,n,unit,value\nacross,plain,length,min,10,m,{printed}\nacross,plain,cpu_s,min,10,s,1\n"
+    )
     bounds = {"table1": pd.DataFrame({"bound": [bound]}, index=["across"])}
     (row,) = audit.below_bound({"table1": audit.read_published(str(file))}, bounds)
     assert bool(row["consistent"]) == consistent
