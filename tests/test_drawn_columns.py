@@ -1,4 +1,4 @@
-"""Each line, band, bar and box of a panel is drawn from the column that it is named after: tables by hand, every column unlike the others."""
+"""Each line, band, bar and box of a panel is drawn from the column that it is named after: small tables, every column unlike the others."""
 
 import numpy as np
 import pandas as pd
