@@ -281,6 +281,15 @@ def test_many_units_by_normal_approximation(statistic, paired, monkeypatch):
     assert approximate["verdict"] == resampled["verdict"] == "supported"
 
 
+@pytest.mark.parametrize("n", [100, 300])
+def test_both_ends_of_an_interval_of_an_effect(n):
+    """Of two means of n normal values with the standard deviations 1 and 2: 1.96 standard errors away, resampled or not."""
+    row = judged(LOWER | {"statistic": "mean"}, table({"a": sample("a", 0, n=n), "b": sample("b", 1, n=n, std=2)}))
+    ends = (row[["low95", "high95"]].to_numpy(dtype=float) + 1) / math.sqrt(5 / n)
+    assert row["effect"] == pytest.approx(-1)
+    assert ends == pytest.approx([-1.96, 1.96], rel=0.1 if n == 100 else 0.01)
+
+
 def test_extremes_need_the_size_of_the_papers_experiment():
     check, runs = CASES["lower, extremes"][0]
     row = judged(check, runs)
