@@ -264,6 +264,7 @@ def claims_job(study: Study, claims: list[dict]) -> dict:
         "variant_of": {name: method["variant_of"] for name, method in study.methods.items() if "variant_of" in method},
         "paired": {name: experiment.get("seeds", "own") != "own" for name, experiment in experiments.items()},
         "paper_repeats": {name: experiment["repeats"]["full"] for name, experiment in experiments.items()},
+        "labels": study.labels,
     }
 
 
