@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import scipy
 import shapely
+from fields import BENCHMARK_MAPS
 
 from bezierplan.exact.bounds import Bound, centre_path, lattice_path, least_length, shortest_path
 from bezierplan.exact.checker import check
@@ -35,7 +36,7 @@ def reference(quantity):
 
 
 def imr_problem(name):
-    text = (MAPS / "imr" / f"{name}.geojson").read_text()
+    text = (BENCHMARK_MAPS / f"{name}.geojson").read_text()
     properties = json.loads(text)["properties"]
     return Problem(name, polygons_from_geojson(text, "m"), tuple(properties["start"]), tuple(properties["target"]))
 

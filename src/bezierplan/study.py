@@ -22,6 +22,9 @@ TIME_LIMIT = 600
 DRAWN = {"random_circles": "circles", "random_field": "grid", "random_blocks": "grid"}
 """Kinds of workspace that are drawn at random -> the kind that planners meet."""
 
+CELLS = ("raster",)
+"""Kinds of workspace read from files that planners meet as grids."""
+
 
 @dataclass(frozen=True)
 class Study:
@@ -81,7 +84,7 @@ class Study:
     def kind_of(self, problem: str) -> str:
         """The kind of workspace that planners meet in a problem."""
         kind = self.workspaces[self.problems[problem]["workspace"]]["kind"]
-        return DRAWN.get(kind, kind)
+        return "grid" if kind in CELLS else DRAWN.get(kind, kind)
 
     def problems_of(self, experiment: str, scale: str) -> dict[str, dict]:
         """Descriptions of an experiment's problems, by name. One with layouts stands for a problem each layout and number of obstacles."""
