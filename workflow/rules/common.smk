@@ -193,8 +193,11 @@ def published_files(wildcards):
 
 def audit_job(wildcards):
     study = STUDIES[wildcards.study]
-    tables = {Path(spec["published"]).stem: spec["experiment"] for spec in study.compared().values() if "published" in spec}
-    return {"study": study.key, "module": study.module(), "tables": tables, "experiments": sorted(set(tables.values()))}
+    specs = {Path(spec["published"]).stem: spec for spec in study.compared().values() if "published" in spec}
+    tables = {name: spec["experiment"] for name, spec in specs.items()}
+    decides = {name: spec.get("decides", {}) for name, spec in specs.items()}
+    experiments = sorted(set(tables.values()))
+    return {"study": study.key, "module": study.module(), "tables": tables, "decides": decides, "experiments": experiments}
 
 
 def audit_bounds(wildcards):
