@@ -92,9 +92,7 @@ def artefact_inputs(given: Studies, scale: str, study: str, table: str = "", fig
     name, own = table or figure, given[study]
     experiments = studies.experiments_of(own, name)
     return {
-        "runs": [
-            file for experiment in experiments for file in _chunks(own, scale, experiment, studies.methods_of(own, name, experiment))
-        ],
+        "runs": [file for experiment in experiments for file in _chunks(own, scale, experiment, studies.methods_of(own, name, experiment))],
         "problems": _problems(scale, study, experiments),
         "bounds": _bounds(scale, study, experiments),
     }
@@ -252,7 +250,10 @@ def audit_params(given: Studies, scale: str, study: str) -> dict:
 def sensitivity_inputs(given: Studies, scale: str, study: str) -> dict[str, list[str]]:
     """Input files of the table of alternatives."""
     tried = studies.tried(given[study])
-    return {"claims": [f"{_folder(scale, study)}/claims.csv"], "alternatives": [f"{_folder(scale, study, name)}/claims.csv" for name in tried]}
+    return {
+        "claims": [f"{_folder(scale, study)}/claims.csv"],
+        "alternatives": [f"{_folder(scale, study, name)}/claims.csv" for name in tried],
+    }
 
 
 def sensitivity_params(given: Studies, scale: str, study: str) -> dict:
