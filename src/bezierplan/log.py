@@ -53,13 +53,13 @@ def whole_files(files: Any) -> Iterator[Any]:
 
 def damaged(files: Iterable[str]) -> str:
     """What to do about the first Parquet file that cannot be read, such as one that was cut off; empty if there is none."""
-    import pyarrow
+    import pyarrow as pa
     import pyarrow.parquet as parquet
 
     for file in files:
         if str(file).endswith(".parquet"):
             try:
                 parquet.read_metadata(file)
-            except (OSError, pyarrow.ArrowException):
+            except (OSError, pa.ArrowException):
                 return f"{file}: not a whole Parquet file; delete it and start again: the workflow reproduces it"
     return ""

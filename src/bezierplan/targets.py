@@ -1,10 +1,10 @@
 """What Snakemake asks for a job: its input files, its params, and the files that make up a target.
 
-Each function takes the studies by name, and by name the parts of the path that a job writes: scale, study, experiment, method, chunk, table,
-listing, figure, alternative. Paths are relative to the working folder.
+Each function takes the studies by name, and by name the parts of the path that a job writes: scale, study, experiment, method, chunk,
+table, listing, figure, alternative. Paths are relative to the working folder.
 
-Params hold all that decides what a job writes, and nothing else: names and values (`study`), digests of the code that it calls, and digests of the
-content of the files that it reads beside those of the workflow itself. So dates of sources do not matter.
+Params hold all that decides what a job writes, and nothing else: names and values (`study`), digests of the code that it calls, and digests
+of the content of maps and published numbers. So no date of a source matters.
 """
 
 import os
@@ -98,17 +98,16 @@ def artefact_inputs(given: Studies, scale: str, study: str, table: str = "", fig
     }
 
 
-def table_inputs(given: Studies, scale: str, study: str, table: str) -> dict[str, list[str]]:
+def table_inputs(given: Studies, scale: str, study: str, table: str) -> dict[str, str | list[str]]:
     """Input files of a table of runs."""
-    published = given[study].published_file(table)
-    return artefact_inputs(given, scale, study, table=table) | {"published": [published] if published else []}
+    return artefact_inputs(given, scale, study, table=table) | {"published": given[study].published_file(table) or []}
 
 
 def table_params(given: Studies, scale: str, study: str, table: str) -> dict:
     """Params of a table of runs."""
     return {
         "job": _shown(given[study], table, studies.table_job(given[study], table, scale)),
-        "published": content_digest(*table_inputs(given, scale, study, table)["published"]),
+        "published": content_digest(*filter(None, [given[study].published_file(table)])),
         "code": _code("table"),
     }
 
@@ -168,7 +167,9 @@ def escaped(text: str) -> str:
 
 
 def _shown(study: Study, artefact: str, job: dict) -> dict:
-    """The job of a table or figure with the words that it prints: not its title, which stands in the caption, nor labels of what it does not show."""
+    """The job of a table or figure with the words that it prints: without its title, which stands in the caption, and without labels of
+    what it does not show.
+    """
     spec = {key: value for key, value in job["spec"].items() if key != "title"}
     return job | {"spec": spec, "labels": _labels(study, artefact)}
 
@@ -247,11 +248,11 @@ def audit_params(given: Studies, scale: str, study: str) -> dict:
     }
 
 
-def sensitivity_inputs(given: Studies, scale: str, study: str) -> dict[str, list[str]]:
+def sensitivity_inputs(given: Studies, scale: str, study: str) -> dict[str, str | list[str]]:
     """Input files of the table of alternatives."""
     tried = studies.tried(given[study])
     return {
-        "claims": [f"{_folder(scale, study)}/claims.csv"],
+        "claims": f"{_folder(scale, study)}/claims.csv",
         "alternatives": [f"{_folder(scale, study, name)}/claims.csv" for name in tried],
     }
 

@@ -6,7 +6,7 @@ from argparse import ArgumentParser
 from pathlib import Path
 from typing import Any
 
-import pyarrow
+import pyarrow as pa
 import pyarrow.parquet as parquet
 
 
@@ -33,7 +33,7 @@ def read_rows(file: Path, identity: str | None = None) -> list[dict[str, Any]]:
     """The rows of a chunk file, or those of one id. Raises ValueError for a file that holds no runs."""
     try:
         return parquet.read_table(file, filters=[("id", "=", identity)] if identity else None).to_pylist()
-    except pyarrow.ArrowException:
+    except pa.ArrowException:
         raise ValueError(f"{file}: not a whole Parquet file of runs; delete it: the workflow reproduces it") from None
 
 
