@@ -1,7 +1,7 @@
 """Every shell command of the README, executed in a copy of the tree whose configuration names song2016 alone.
 
-As printed: what takes seconds. As dry runs (`snakemake -n`, `make -n`): what takes minutes to hours. The command for a cluster: dry and without
-its executor. Not at all: the installation of that executor, which needs a network and would change this environment.
+As printed: what takes seconds. As dry runs (`snakemake -n`, `make -n`): what takes minutes to hours. The command for a cluster: dry and
+without its executor. Not at all: the installation of that executor, which needs a network and would change this environment.
 """
 
 import os
