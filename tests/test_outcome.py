@@ -5,8 +5,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from bezierplan import outcome
 from bezierplan.analysis import summary
+from bezierplan.commands import outcome
 
 ROOT = Path(__file__).parents[1]
 
