@@ -36,6 +36,7 @@ SETTINGS = {
     "invalid": "delete",
     "penalty": 20.0,
     "survival": "best_of_all",
+    "offspring": "both",
 }
 FEW = {"population": 20, "iterations": 10}
 
@@ -75,6 +76,7 @@ def rules(**changed):
         settings["invalid"] == "penalty",
         settings["penalty"],
         settings["survival"] == "generational",
+        settings["offspring"] == "both",
     )
 
 
@@ -213,6 +215,28 @@ def test_first_sights_never_change_a_verdict():
             free += bad == 0
             colliding += bad > 0
     assert min(free, colliding) > 50
+
+
+def test_a_target_on_the_border_is_looked_at_within_the_grid():
+    """Where no cell lies beyond, the first sight reads none: uncompiled it raises IndexError if it does."""
+    occupied = np.zeros((20, 20), dtype=bool)
+    for start, target in (((0.5, 0.5), (20.0, 20.0)), ((0.5, 10.5), (20.0, 10.5)), ((10.5, 0.5), (10.5, 20.0)), ((20.0, 20.0), (0.5, 0.5))):
+        points = np.array([start, target])
+        x, y = cell_length.sample(points, cell_length.parts(points), 1)
+        # A sample on a grid line is left to the walk over the cells.
+        assert not planner._is_free_at_first_sight.py_func(x, y, occupied)
+        assert not planner._is_free_at_first_sight(x, y, occupied)
+    x, y = np.linspace(0.5, 19.4, 50), np.linspace(0.6, 19.7, 50)
+    assert planner._is_free_at_first_sight.py_func(x, y, occupied)
+
+
+@pytest.mark.parametrize("target", [(20.0, 20.0), (20.0, 9.3), (9.3, 20.0)])
+def test_a_target_on_the_border_is_reached(target):
+    task = Problem("border", Grid(np.zeros((20, 20), dtype=bool), 1.0, "cell", (0.0, 0.0)), (0.5, 0.5), target)
+    found = run(task, **FEW)
+    assert found.claimed_feasible
+    assert np.array_equal(found.path.points[-1], target)
+    assert found.objective == pytest.approx(np.hypot(target[0] - 0.5, target[1] - 0.5), rel=0.02)
 
 
 # The search.
@@ -376,6 +400,45 @@ def test_parents_differ_and_are_drawn_in_proportion_to_fitness():
     # All unfit: every pair alike.
     pairs = [planner._parents(rng, np.cumsum(np.full(4, 1e-9))) for _ in range(2000)]
     assert len(set(pairs)) == 12
+
+
+def batch(seed, pool, field_, **changed):
+    """The chromosomes, as lists of genes, that a batch of offspring of a pool's two chromosomes adds."""
+    given = planner._empty_pool(200)
+    for place, ones in enumerate(pool):
+        planner._put(np.array(ones), len(ones), 100.0, True, given, place)
+    child = np.empty(planner._ROOM, dtype=np.int64)
+    arguments = (given, len(pool), np.cumsum(np.ones(len(pool))), 10, 0.8, child, field_, rules(**changed))
+    filled, tried, invalid = planner._add_offspring(np.random.default_rng(seed), *arguments)
+    return [given.ones[place, : given.count[place]].tolist() for place in range(len(pool), filled)], tried, invalid
+
+
+def test_children_and_mutants_join_the_pool_or_mutants_alone():
+    """Algorithm 2, lines 6 and 7: a crossover's children are added, and so is each of them mutated."""
+    found = field(100)
+    parents = [[gene(20, 40), gene(40, 60)], [gene(30, 20), gene(60, 30)]]
+    # By a crossover of two parents of two genes each a child has 0 to 4 genes, all of them the parents'; a mutant may have others.
+    inherited = set(parents[0]) | set(parents[1])
+    both, tried, _ = batch(1, parents, found, offspring="both", mutation="one_flip", crossover_probability=1.0, replacements=0)
+    alone, tried_alone, _ = batch(1, parents, found, offspring="mutated", mutation="one_flip", crossover_probability=1.0, replacements=0)
+    assert (tried, tried_alone) == (40, 20)
+    assert len(alone) <= 20 < len(both)
+    assert sum(set(child) <= inherited for child in both) >= 15
+    assert sum(set(child) <= inherited for child in alone) <= 3
+    # Without crossover and mutation all are copies of the parents.
+    both, *_ = batch(2, parents, found, offspring="both", mutation_rate=0.0, crossover_probability=0.0)
+    assert len(both) == 40
+    assert {tuple(child) for child in both} == {tuple(parent) for parent in parents}
+
+
+def test_children_in_the_pool_make_the_population_alike():
+    """What the paper's measure of diversity is there to notice: the same run with mutants alone stays diverse."""
+    task = problem()
+    both, alone = (run(task, 3, offspring=offspring) for offspring in ("both", "mutated"))
+    assert both.extra["distinct_chromosomes"] < 0.5 * alone.extra["distinct_chromosomes"]
+    assert both.extra["mean_q"] > alone.extra["mean_q"]
+    assert both.extra["extra_batches"] > alone.extra["extra_batches"]
+    assert both.evaluations > 1.5 * alone.evaluations
 
 
 def test_the_best_survive_and_of_equal_ones_the_first():

@@ -81,6 +81,7 @@ class Rules(NamedTuple):
     punished: bool
     penalty: float
     generational: bool
+    unmutated: bool
 
 
 class Pool(NamedTuple):
@@ -143,6 +144,7 @@ def plan(
     invalid: Literal["delete", "penalty"],
     penalty: Annotated[float, Range(0)],
     survival: Literal["best_of_all", "generational"],
+    offspring: Literal["both", "mutated"],
 ) -> Plan:
     """Shortest curve through control points on a lattice of cells (elhoseny2017, Algorithms 1 and 2).
 
@@ -156,6 +158,7 @@ def plan(
     curve, or quadratic pieces that meet half-way between the points (composite). fitness_length: what the fitness is the inverse of, the
     length of the sampled curve or a length that counts cells (`cell_length`). invalid: what becomes of a curve that touches occupied cells;
     with penalty cells each are added to its length. survival: the best of parents and offspring, or of the offspring alone (generational).
+    offspring: what joins the pool, the children of a crossover and beside them their mutants (both), or the mutants alone.
 
     The planner's own test: no cell that the sampled curve touches is occupied. Extra columns: distinct_chromosomes in the population and
     mean_q of the pool, means over the iterations; extra_batches of offspring; valid_share of the children.
@@ -185,6 +188,7 @@ def plan(
         invalid == "penalty",
         penalty,
         survival == "generational",
+        offspring == "both",
     )
     found = search(rng, field, rules)
     solved = len(found.ones) > 0
@@ -235,7 +239,8 @@ def search(rng: np.random.Generator, field: Field, rules: Rules) -> Found:
     """Algorithm 2; without a rule for diversity the plain algorithm."""
     batches = 1 + (rules.most_batches if rules.diversity == _MORE_OFFSPRING else 0)
     size = rules.population
-    children = 2 * size if rules.generational else size
+    pairs_crossed = size if rules.generational else size // 2
+    children = 2 * pairs_crossed * (2 if rules.unmutated else 1)
     pool, spare = _empty_pool(size + batches * children), _empty_pool(size)
     child = np.empty(_ROOM, dtype=np.int64)
     history, distinct = np.empty(rules.iterations + 1), np.empty(rules.iterations + 1)
@@ -262,7 +267,7 @@ def search(rng: np.random.Generator, field: Field, rules: Rules) -> Found:
             break
 
         wheel = np.cumsum(1.0 / pool.cost[:size])
-        filled, tried, invalid = _add_offspring(rng, pool, size, wheel, children, eta, child, field, rules)
+        filled, tried, invalid = _add_offspring(rng, pool, size, wheel, pairs_crossed, eta, child, field, rules)
         evaluations += tried
         bred += children
         lost += invalid
@@ -272,7 +277,7 @@ def search(rng: np.random.Generator, field: Field, rules: Rules) -> Found:
                 if pairs / (filled * (filled - 1) / 2) <= eta:
                     break
                 before = filled
-                filled, tried, invalid = _add_offspring(rng, pool, before, wheel, children, eta, child, field, rules)
+                filled, tried, invalid = _add_offspring(rng, pool, before, wheel, pairs_crossed, eta, child, field, rules)
                 pairs += _sum_of_q(pool, before, filled, len(field.points))
                 evaluations += tried
                 bred += children
@@ -285,37 +290,40 @@ def search(rng: np.random.Generator, field: Field, rules: Rules) -> Found:
 
 
 @njit(cache=True)
-def _add_offspring(rng, pool, filled, wheel, children, eta, child, field, rules):
-    """Add a batch of offspring of the pool's first chromosomes (Algorithm 1, lines 8 to 14) behind those that fill it.
+def _add_offspring(rng, pool, filled, wheel, pairs, eta, child, field, rules):
+    """Add a batch of offspring of the pool's first chromosomes (Algorithm 2, lines 6 and 7) behind those that fill it.
 
-    wheel: (population,) running sum of the parents' fitness. Returns how many fill the pool now, chromosomes validated, invalid children.
+    wheel: (population,) running sum of the parents' fitness. pairs: of parents that are crossed. Returns how many fill the pool now,
+    chromosomes validated, invalid children.
     """
     tried = invalid = 0
-    for _ in range(children // 2):
+    for _ in range(pairs):
         one, other = _parents(rng, wheel)
         crossed = rng.random() < rules.crossover_probability
         cut = rng.integers(1, len(field.points)) if crossed else 0
         for head, tail in ((one, other), (other, one)):
-            count = _cross(pool, head, tail, cut, child) if crossed else _cross(pool, head, head, 0, child)
-            count = _mutate(rng, child, count, field, rules)
-            cost, free = validate(child[:count], field, rules)
-            tried += 1
-            invalid += cost == np.inf
-            for _ in range(rules.replacements):
-                if cost < np.inf:
-                    break
-                count = _random_chromosome(rng, child, field, rules)
+            for mutated in range(0 if rules.unmutated else 1, 2):
+                count = _cross(pool, head, tail, cut, child) if crossed else _cross(pool, head, head, 0, child)
+                if mutated:
+                    count = _mutate(rng, child, count, field, rules)
                 cost, free = validate(child[:count], field, rules)
                 tried += 1
-            if cost == np.inf:
-                if not rules.generational:
+                invalid += cost == np.inf
+                for _ in range(rules.replacements):
+                    if cost < np.inf:
+                        break
+                    count = _random_chromosome(rng, child, field, rules)
+                    cost, free = validate(child[:count], field, rules)
+                    tried += 1
+                if cost == np.inf:
+                    if not rules.generational:
+                        continue
+                    # No parent survives, so the place is held as in the first population.
+                    cost = 1.0 / _UNFIT
+                if _is_too_alike(child[:count], cost, pool, filled, eta, field, rules):
                     continue
-                # No parent survives, so the place is held as in the first population.
-                cost = 1.0 / _UNFIT
-            if _is_too_alike(child[:count], cost, pool, filled, eta, field, rules):
-                continue
-            _put(child, count, cost, free, pool, filled)
-            filled += 1
+                _put(child, count, cost, free, pool, filled)
+                filled += 1
     return filled, tried, invalid
 
 
@@ -482,11 +490,13 @@ def _is_free_at_first_sight(x, y, occupied):
     """Whether the cells of all samples are free, and those whose corner a step between two of them may cut: then the walk over the cells
     can only find the same. Not told of curves with a sample on a grid line.
     """
+    rows, columns = occupied.shape
     touched = on_line = False
-    column, row = int(x[0]), int(y[0])
+    # Beyond the upper and the right border, on which start and target may lie, there is no cell.
+    column, row = min(int(x[0]), columns - 1), min(int(y[0]), rows - 1)
     for s in range(len(x)):
         before_column, before_row = column, row
-        column, row = int(x[s]), int(y[s])
+        column, row = min(int(x[s]), columns - 1), min(int(y[s]), rows - 1)
         touched |= occupied[row, column] | occupied[before_row, column] | occupied[row, before_column]
         right, above = x[s] - column, y[s] - row
         on_line |= (right <= _ON_LINE) | (right >= 1.0 - _ON_LINE) | (above <= _ON_LINE) | (above >= 1.0 - _ON_LINE)
