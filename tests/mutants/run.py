@@ -42,9 +42,9 @@ def load() -> list[Mutant]:
     return [Mutant(**each) for each in yaml.safe_load(FILE.read_text(encoding="utf-8"))]
 
 
-def planted(mutant: Mutant) -> str:
-    """The text of a mutant's file with the fault in it. Raises ValueError unless the old text stands there exactly once."""
-    text = (ROOT / mutant.file).read_text(encoding="utf-8")
+def planted(mutant: Mutant, tree: Path = ROOT) -> str:
+    """The text of a mutant's file in a tree with the fault in it. Raises ValueError unless the old text stands there exactly once."""
+    text = (tree / mutant.file).read_text(encoding="utf-8")
     if text.count(mutant.old) != 1:
         raise ValueError(f"{mutant.fault}: {mutant.file} has the old text {text.count(mutant.old)} times; expected once")
     return text.replace(mutant.old, mutant.new)
@@ -64,7 +64,7 @@ def outcome(mutant: Mutant, trees: queue.Queue) -> str:
     file = tree / mutant.file
     clean = file.read_text(encoding="utf-8")
     try:
-        file.write_text(planted(mutant), encoding="utf-8")
+        file.write_text(planted(mutant, tree), encoding="utf-8")
         status = run_tests(tree, [mutant.test]).returncode
         return {0: "survived", 1: "caught"}.get(status, f"pytest ended with {status}")
     except subprocess.TimeoutExpired:
