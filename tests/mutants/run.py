@@ -52,7 +52,7 @@ def planted(mutant: Mutant, tree: Path = ROOT) -> str:
 
 def run_tests(tree: Path, tests: list[str]) -> subprocess.CompletedProcess:
     """Run tests in a tree. Raises subprocess.TimeoutExpired after `TIME_LIMIT` seconds a test."""
-    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *tests]
+    command = [sys.executable, "-m", "pytest", "-q", "-x", *tests]
     # A file that changes twice within a second could be mistaken for its own byte code.
     environment = os.environ | {"PYTHONDONTWRITEBYTECODE": "1"}
     return subprocess.run(command, cwd=tree, env=environment, capture_output=True, text=True, check=False, timeout=TIME_LIMIT * len(tests))
@@ -87,7 +87,7 @@ def main() -> int:
             trees.put(Path(shutil.copytree(ROOT, Path(folder) / str(number), ignore=LEFT_OUT)))
         clean = run_tests(trees.queue[0], sorted({each.test for each in wanted}))
         if clean.returncode:
-            print(clean.stdout, "These tests fail without a planted fault.", sep="\n")
+            print(clean.stdout, clean.stderr, "These tests fail without a planted fault.", sep="\n")
             return 1
 
         def timed(mutant: Mutant) -> str:
