@@ -1,99 +1,57 @@
-"""A chunk of runs: which names a seed is made of, which runs are done, and in which order."""
+"""From a study to its jobs and results: every repeat is run, and read once; which experiments are compared pair by pair."""
 
-import hashlib
+from dataclasses import fields
+from pathlib import Path
 
 import numpy as np
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as parquet
 import pytest
 
-from bezierplan import running
+from bezierplan import problems, study
+from bezierplan.analysis import results
 from bezierplan.problem import Problem
 from bezierplan.workspaces.grid import from_lines
 
-JOB = {
-    "study": "paper",
-    "experiment": "first",
-    "method": "mine",
-    "planner": "straight_line",
-    "settings": {},
-    # The first two have one layout in common.
-    "problems": {name: {"workspace": "w", "layout": layout} for name, layout in (("p", 3), ("q", 3), ("r", 4))},
-    "vary": {"x": [1, 2]},
-    "levels": {},
-    "repeats": [0, 3],
-}
+
+def study_of(**experiment):
+    """A study of one experiment, and of nothing else."""
+    empty = {field.name: {} for field in fields(study.Study)} | {"key": "s", "folder": Path(), "title": "A study", "claims": []}
+    return study.Study(**empty | {"experiments": {"first": experiment}})
 
 
-def first_number(seeds, problem="p", x=1, repeat=0, **changes):
-    return running.generator(JOB | {"seeds": seeds} | changes, running.Condition(problem, {"x": x}), repeat).random()
-
-
-CHANGES = {
-    "study": {"study": "other"},
-    "experiment": {"experiment": "second"},
-    "method": {"method": "rival"},
-    "value": {"x": 2},
-    "problem": {"problem": "q"},
-    "problem and layout": {"problem": "r"},
-    "repeat": {"repeat": 1},
-}
+@pytest.mark.parametrize(("repeats", "chunk", "count"), [(10, 4, 3), (8, 4, 2), (1, 4, 1), (9, 3, 3), (100, 1, 100), (4, 5, 1)])
+def test_chunks_hold_all_repeats_and_no_chunk_more(repeats, chunk, count):
+    own = study_of(repeats={"full": repeats}, chunk={"full": chunk})
+    assert list(study.chunks(own, "first", "full")) == list(range(count))
 
 
 @pytest.mark.parametrize(
-    ("seeds", "without"), [("own", set()), ("shared", {"method"}), ("common", {"method", "value", "problem"})], ids=lambda each: str(each)
+    ("seeds", "paired"), [({}, False), ({"seeds": "own"}, False), ({"seeds": "shared"}, True), ({"seeds": "common"}, True)]
 )
-def test_a_seed_depends_on_what_its_rule_names_and_on_nothing_else(seeds, without):
-    same = {what for what, change in CHANGES.items() if first_number(seeds, **change) == first_number(seeds)}
-    assert same == without
+def test_runs_are_pairs_where_methods_share_their_random_numbers(seeds, paired):
+    """Runs of two methods with seeds of their own have nothing to do with each other."""
+    own = study_of(repeats={"full": 10}, **seeds)
+    claims = [{"id": "C1", "checks": [{"test": "lower", "experiment": "first"}]}]
+    assert study.claims_job(own, claims)["paired"] == {"first": paired}
 
 
-@pytest.mark.parametrize("repeat", [7, 999, 1000, 12345])
-def test_a_seed_is_the_sha256_of_the_name_of_its_run(repeat):
-    name = f"paper/first/p,x=1/mine/{repeat}"
-    assert running.run_id(JOB, running.Condition("p", {"x": 1}), repeat) == name
-    seed = int(hashlib.sha256(name.encode()).hexdigest(), 16)
-    assert first_number("own", repeat=repeat) == np.random.default_rng(seed).random()
-
-
-@pytest.mark.parametrize("seeds", ["own", "shared", "common"])
-def test_no_two_repeats_share_their_numbers(seeds):
-    assert len({first_number(seeds, repeat=repeat) for repeat in range(2500)}) == 2500
-
-
-PLANNER = """
-import numpy as np
-from bezierplan.problem import Path, Plan
-
-def plan(problem, rng):
-    middle = rng.uniform(0.5, 1.5, 2)
-    path = Path("polyline", np.array([problem.start, middle, problem.target]))
-    return Plan(path, float(middle[0]), True, 1, np.zeros(3), "tries", {})
-"""
-
-
-@pytest.fixture
-def job(tmp_path):
-    (tmp_path / "random_point.py").write_text(PLANNER)
-    return JOB | {"planner": str(tmp_path / "random_point.py"), "seeds": "own", "repeats": [4, 7]}
-
-
-PROBLEMS = {name: Problem(name, from_lines(["....", "...."], 1.0, "cell"), (0.5, 0.5), (3.5, 1.5)) for name in "pqr"}
-
-
-def test_a_chunk_is_every_condition_with_all_its_repeats(job):
-    runs, times = (table.to_pandas() for table in running.run_chunk(PROBLEMS, job))
-    expected = [f"paper/first/{problem},x={x}/mine/{repeat}" for problem in "pqr" for x in (1, 2) for repeat in (4, 5, 6)]
-    assert runs["id"].to_list() == times["id"].to_list() == expected
-    assert runs["repeat"].to_list() == [4, 5, 6] * 6
-    assert runs["generations"].to_list() == [2] * 18
-    assert (times["wall_s"] > 0).all()
-    # Each run has the numbers of its own generator, whatever ran before it.
-    for run in runs.itertuples():
-        assert run.objective == 0.5 + first_number("own", run.problem, run.x, run.repeat)
-
-
-def test_runs_that_repeat_exactly_are_done_once():
-    runs, times = (table.to_pandas() for table in running.run_chunk(PROBLEMS, JOB | {"seeds": "own"}))
-    assert runs["repeat"].to_list() == [0, 1, 2] * 6
-    assert runs["length"].to_numpy() == pytest.approx(np.hypot(3, 1))
-    assert runs["feasible"].all()
-    assert times.groupby(np.arange(18) // 3)["cpu_s"].nunique().to_list() == [1] * 6
+def test_results_are_cut_at_the_number_of_repeats(tmp_path):
+    """Two chunks of four repeats; six are asked for, and whole chunks were run."""
+    grid = from_lines(["..", ".."], 1.0, "m")
+    described = {"across": Problem("across", grid, (0.5, 0.5), (1.5, 1.5))}
+    problems.write(described, {"across": "square"}, str(tmp_path / "problems.parquet"))
+    parquet.write_table(problems.bounds_of(described), tmp_path / "bounds.parquet")
+    files = []
+    for chunk in range(2):
+        repeats = np.arange(4 * chunk, 4 * chunk + 4)
+        runs = pd.DataFrame({"id": [f"r{n}" for n in repeats], "problem": "across", "repeat": repeats, "length": 2.0, "feasible": True})
+        times = pd.DataFrame({"id": runs["id"], "cpu_s": repeats / 100, "wall_s": repeats / 50})
+        files.append(str(tmp_path / f"{chunk}.parquet"))
+        parquet.write_table(pa.Table.from_pandas(runs), files[-1])
+        parquet.write_table(pa.Table.from_pandas(times[::-1]), tmp_path / f"{chunk}.times.parquet")
+    found = results.read(files, 6, str(tmp_path / "problems.parquet"), str(tmp_path / "bounds.parquet")).runs
+    assert found["repeat"].to_list() == [0, 1, 2, 3, 4, 5]
+    assert found["cpu_s"].to_list() == [0.0, 0.01, 0.02, 0.03, 0.04, 0.05]
+    assert found["bound"].to_numpy() == pytest.approx(np.sqrt(2))

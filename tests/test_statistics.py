@@ -274,3 +274,10 @@ def test_chance_is_what_the_yardstick_accepts():
             if np.isfinite(published):
                 assert statistics.yardstick(name, values, published, 10, None, statistics.generator(name))[1] == within, (name, published)
     assert np.isnan(statistics.chance("mean", np.array([]), 10, statistics.generator("empty"))).all()
+
+
+def test_holm_against_a_worked_example():
+    """Times 4, 3, 2 and 1 from the least p on, never below the one before, and at most 1 (Holm 1979)."""
+    assert statistics.holm(np.array([0.01, 0.04, 0.03, 0.005])) == pytest.approx([0.03, 0.06, 0.06, 0.02])
+    assert statistics.holm(np.array([0.9, 0.8])) == pytest.approx([1, 1])
+    assert len(statistics.holm(np.array([]))) == 0

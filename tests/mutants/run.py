@@ -42,9 +42,9 @@ def load() -> list[Mutant]:
     return [Mutant(**each) for each in yaml.safe_load(FILE.read_text(encoding="utf-8"))]
 
 
-def planted(mutant: Mutant) -> str:
-    """The text of a mutant's file with the fault in it. Raises ValueError unless the old text stands there exactly once."""
-    text = (ROOT / mutant.file).read_text(encoding="utf-8")
+def planted(mutant: Mutant, tree: Path = ROOT) -> str:
+    """The text of a mutant's file in a tree with the fault in it. Raises ValueError unless the old text stands there exactly once."""
+    text = (tree / mutant.file).read_text(encoding="utf-8")
     if text.count(mutant.old) != 1:
         raise ValueError(f"{mutant.fault}: {mutant.file} has the old text {text.count(mutant.old)} times; expected once")
     return text.replace(mutant.old, mutant.new)
@@ -52,7 +52,7 @@ def planted(mutant: Mutant) -> str:
 
 def run_tests(tree: Path, tests: list[str]) -> subprocess.CompletedProcess:
     """Run tests in a tree. Raises subprocess.TimeoutExpired after `TIME_LIMIT` seconds a test."""
-    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *tests]
+    command = [sys.executable, "-m", "pytest", "-q", "-x", *tests]
     # A file that changes twice within a second could be mistaken for its own byte code.
     environment = os.environ | {"PYTHONDONTWRITEBYTECODE": "1"}
     return subprocess.run(command, cwd=tree, env=environment, capture_output=True, text=True, check=False, timeout=TIME_LIMIT * len(tests))
@@ -64,7 +64,7 @@ def outcome(mutant: Mutant, trees: queue.Queue) -> str:
     file = tree / mutant.file
     clean = file.read_text(encoding="utf-8")
     try:
-        file.write_text(planted(mutant), encoding="utf-8")
+        file.write_text(planted(mutant, tree), encoding="utf-8")
         status = run_tests(tree, [mutant.test]).returncode
         return {0: "survived", 1: "caught"}.get(status, f"pytest ended with {status}")
     except subprocess.TimeoutExpired:
@@ -87,7 +87,7 @@ def main() -> int:
             trees.put(Path(shutil.copytree(ROOT, Path(folder) / str(number), ignore=LEFT_OUT)))
         clean = run_tests(trees.queue[0], sorted({each.test for each in wanted}))
         if clean.returncode:
-            print(clean.stdout, "These tests fail without a planted fault.", sep="\n")
+            print(clean.stdout, clean.stderr, "These tests fail without a planted fault.", sep="\n")
             return 1
 
         def timed(mutant: Mutant) -> str:
