@@ -63,6 +63,28 @@ def test_alternatives_run_only_what_their_claims_compare(claim, experiment, meth
     assert methods_of_claims(study, claims(study, claim), experiment) == (every if methods is None else methods)
 
 
-def test_every_setting_that_tharwat2018_leaves_open_is_tried():
-    study = STUDIES["tharwat2018"]
-    assert tried(study) == list(alternatives(study))
+@pytest.mark.parametrize("key", STUDIES)
+def test_every_setting_that_a_paper_leaves_open_is_tried(key):
+    assert tried(STUDIES[key]) == list(alternatives(STUDIES[key]))
+
+
+@pytest.mark.parametrize("key", STUDIES)
+def test_defaults_are_the_values_in_force(key):
+    """Of the methods that a default names, or of the study."""
+    study = STUDIES[key]
+    for assumption in study.assumptions:
+        if "setting" in assumption:
+            setting, default = assumption["setting"], assumption["default"]
+            if isinstance(default, dict):
+                assert {method: study.resolved(method)[setting] for method in default} == default, assumption["id"]
+            else:
+                assert study.settings[setting] == default, assumption["id"]
+
+
+@pytest.mark.parametrize("key", STUDIES)
+def test_what_goes_along_with_an_alternative_is_for_methods_that_it_changes(key):
+    study = STUDIES[key]
+    for assumption in study.assumptions:
+        if "with" in assumption:
+            changed = methods_changed(study, f"{assumption['id']}_{assumption['alternatives'][0]}")
+            assert set(assumption["with"]) <= set(changed), assumption["id"]
