@@ -1,5 +1,6 @@
 """Claims and assumptions of the five studies: they fit their schemas, are complete, and name what exists."""
 
+import string
 from collections import Counter
 from functools import cache
 from itertools import chain
@@ -104,7 +105,7 @@ def test_names_of_song2016():
 def test_assumptions_are_numbered_and_name_claims(key):
     ids = [assumption["id"] for assumption in assumptions(key)]
     assert len(set(ids)) == len(ids)
-    numbers = [int(name[1:].rstrip("abcdefgh")) for name in ids]
+    numbers = [int(name[1:].rstrip(string.ascii_lowercase)) for name in ids]
     assert sorted(set(numbers)) == list(range(1, max(numbers) + 1))
     assert numbers == sorted(numbers)
     known = {claim["id"] for claim in claims(key)}
