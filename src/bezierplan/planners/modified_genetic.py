@@ -4,8 +4,12 @@ A chromosome has one gene for each point of a lattice of cells: 1 makes the poin
 cell, which is never set. It is kept as the ascending list of the genes that are 1. A chromosome whose points are too near to each other or
 whose curve touches an occupied cell is deleted, and a random one drawn in its place (Section 3.2.2). Beside the plain algorithm the paper
 watches the Q statistic of the pool (Section 3.3). In the kernels coordinates and lengths are in cells.
+
+In a maze the algorithm as printed finds no path. So that it can, a first population can come from small road maps, control points can be
+joined in the order in which a walk from the start reaches them, and a mutation can shift a control point; none of this is in the paper.
 """
 
+import heapq
 import math
 from typing import Annotated, Literal, NamedTuple
 
@@ -13,10 +17,12 @@ import numpy as np
 from numba import njit
 
 from bezierplan.cell_length import cells4, cells8, occupied_cells, parts, polyline_length, sample, touched_cells
+from bezierplan.planners.prm import road_map
 from bezierplan.problem import Path, Plan, Problem, Range
 from bezierplan.search.diversity import q_statistic, shared
 from bezierplan.search.genetic import check_pairs
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.lattice import STEPS
 
 workspaces = ("grid",)
 
@@ -38,8 +44,12 @@ _ON_LINE = 1e-9
 
 _LENGTHS = ("length", "cells4", "cells8")
 _LENGTH, _CELLS4, _CELLS8 = range(3)
-_MUTATIONS = ("gene", "chromosome", "one_flip")
-_EACH_GENE, _CHROMOSOME, _ONE_FLIP = range(3)
+_MUTATIONS = ("gene", "chromosome", "one_flip", "shift")
+_EACH_GENE, _CHROMOSOME, _ONE_FLIP, _SHIFT = range(4)
+
+# A shift moves a control point by at most this share of the places of a side.
+_SHIFT_REACH = 0.1
+
 _DIVERSITIES = ("none", "more_offspring", "relaxing", "unique")
 _NO_DIVERSITY, _MORE_OFFSPRING, _RELAXING, _UNIQUE = range(4)
 
@@ -48,7 +58,8 @@ class Field(NamedTuple):
     """Where the curves lie; lengths in cells from the grid's corner.
 
     occupied: bool (rows, columns). points: (genes, 2) centre of each gene's cell. rank: (genes,) its place in the order in which control
-    points are joined. settable: (genes,) whether it may be 1; choices: the genes that may. start, target: (2,).
+    points are joined. settable: (genes,) whether it may be 1; choices: the genes that may. places: how many the longer side has, columns
+    and rows of the lattice that lie on the map. start, target: (2,).
     """
 
     occupied: np.ndarray
@@ -56,6 +67,7 @@ class Field(NamedTuple):
     rank: np.ndarray
     settable: np.ndarray
     choices: np.ndarray
+    places: tuple[int, int, int]
     start: np.ndarray
     target: np.ndarray
 
@@ -118,6 +130,8 @@ def check(settings: dict) -> None:
     check_pairs(settings["population"])
     if settings["first_points"] > MOST_POINTS:
         raise ValueError(f"first_points: {settings['first_points']}; a curve has at most {MOST_POINTS} control points between its ends")
+    if settings["first_population"] == "roadmaps" and settings["gene_lattice"] != "cell":
+        raise ValueError(f"gene_lattice: {settings['gene_lattice']}; a first population from roadmaps needs cell: their nodes lie anywhere")
 
 
 def plan(
@@ -127,14 +141,18 @@ def plan(
     population: Annotated[int, Range(2)],
     iterations: Annotated[int, Range(1)],
     crossover_probability: Annotated[float, Range(0, 1)],
-    mutation: Literal["gene", "chromosome", "one_flip"],
+    mutation: Literal["gene", "chromosome", "one_flip", "shift"],
     mutation_rate: Annotated[float, Range(0, 1)],
     diversity: Literal["none", "more_offspring", "relaxing", "unique"],
     eta: Annotated[float, Range(-1, 1)],
     eta_decay: Annotated[float, Range(0, 1)],
     most_batches: Annotated[int, Range(0)],
     gene_lattice: Literal["coarse", "cell"],
-    point_order: Literal["projection", "index"],
+    point_order: Literal["projection", "index", "geodesic"],
+    first_population: Literal["random", "roadmaps"],
+    most_roadmaps: Annotated[int, Range(0)],
+    roadmap_nodes: Annotated[int, Range(1, 2000)],
+    roadmap_neighbours: Annotated[int, Range(1)],
     first_points: Annotated[int, Range(1)],
     first_draws: Annotated[int, Range(1)],
     replacements: Annotated[int, Range(0)],
@@ -148,12 +166,15 @@ def plan(
 ) -> Plan:
     """Shortest curve through control points on a lattice of cells (elhoseny2017, Algorithms 1 and 2).
 
-    mutation: every gene changes with the probability mutation_rate, one gene of a chromosome does, or one gene always does (one_flip).
+    mutation: every gene changes with the probability mutation_rate, one gene of a chromosome does, or one gene always does (one_flip); or a
+    chromosome, with that probability, loses a control point, gets another one, or has one shifted (shift).
     diversity: no rule at all (the plain algorithm); more offspring as long as the mean Q of the pool is above eta, at most most_batches
     times an iteration (Algorithm 2); only children whose mean Q to the pool is at most 1 - eta (relaxing); no child equal to another
     chromosome of the pool (unique). eta changes by the factor eta_decay from one iteration to the next. gene_lattice: 21 x 21 points, or
     every cell. point_order: control points are joined in the order of their projection on the line from start to target, ties from its left
-    to its right, or in the order of the genes. first_points: the most control points of a random chromosome. first_draws: for each of the
+    to its right, in the order of the genes, or in that of their distance from the start over free cells (geodesic). first_population: random
+    chromosomes, or the inner nodes of ways along random road maps (`prm`) of roadmap_nodes and roadmap_neighbours, of which there are at
+    most most_roadmaps; random chromosomes stand in for those that are missing. first_points: the most control points of a random chromosome. first_draws: for each of the
     first population. replacements: draws for an invalid child. least_distance: between two control points, in cells. curve: a single Bezier
     curve, or quadratic pieces that meet half-way between the points (composite). fitness_length: what the fitness is the inverse of, the
     length of the sampled curve or a length that counts cells (`cell_length`). invalid: what becomes of a curve that touches occupied cells;
@@ -190,7 +211,8 @@ def plan(
         survival == "generational",
         offspring == "both",
     )
-    found = search(rng, field, rules)
+    most_first = most_roadmaps if first_population == "roadmaps" else 0
+    found = search(rng, field, rules, *_from_roadmaps(problem, rng, field, population, most_first, roadmap_nodes, roadmap_neighbours))
     solved = len(found.ones) > 0
     return Plan(
         path=Path(PATH_KINDS[curve], grid.in_units(polygon(found.ones, field))) if solved else None,
@@ -231,12 +253,62 @@ def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: str) 
         along = ends[1] - ends[0]
         left = along[0] * (points[:, 1] - ends[0, 1]) - along[1] * (points[:, 0] - ends[0, 0])
         rank[np.lexsort((-left, (points - ends[0]) @ along))] = np.arange(len(points))
-    return Field(grid.occupied, points, rank, settable, choices, ends[0], ends[1])
+    elif point_order == "geodesic":
+        far = np.full(2 * (longer,), np.inf)
+        far[:columns, :rows] = _distances(np.pad(grid.occupied, 1, constant_values=True), *np.floor(ends[0, ::-1]).astype(int), STEPS).T
+        rank[np.argsort(far[column, row], kind="stable")] = np.arange(len(points))
+    places = len(steps), int((steps < columns).sum()), int((steps < rows).sum())
+    return Field(grid.occupied, points, rank, settable, choices, places, ends[0], ends[1])
 
 
 @njit(cache=True)
-def search(rng: np.random.Generator, field: Field, rules: Rules) -> Found:
-    """Algorithm 2; without a rule for diversity the plain algorithm."""
+def _distances(walled, row, column, steps):
+    """Distance (rows, columns) from a cell to each cell over free cells and their eight neighbours, infinite where there is no way.
+
+    walled: the cells with a frame of occupied ones around.
+    """
+    far = np.full(walled.shape, np.inf)
+    far[row + 1, column + 1] = 0.0
+    heap = [(0.0, row + 1, column + 1)]
+    while len(heap) > 0:
+        length, row, column = heapq.heappop(heap)
+        if length > far[row, column]:
+            continue
+        for k in range(len(steps)):
+            up, right = row + steps[k, 0], column + steps[k, 1]
+            ahead = length + math.sqrt(steps[k, 0] ** 2 + steps[k, 1] ** 2)
+            if not walled[up, right] and ahead < far[up, right]:
+                far[up, right] = ahead
+                heapq.heappush(heap, (ahead, up, right))
+    return far[1:-1, 1:-1]
+
+
+def _from_roadmaps(
+    problem: Problem, rng: np.random.Generator, field: Field, wanted: int, most: int, nodes: int, neighbours: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Chromosomes of the inner nodes of ways along road maps, at most as many as wanted, and their numbers of ones; straight ways and those
+    of too many nodes left out. The genes are all cells.
+    """
+    ones, counts = np.zeros((wanted, _ROOM), dtype=np.int64), []
+    for _ in range(most):
+        if len(counts) == wanted:
+            break
+        _, way, _ = road_map(problem, rng, nodes, neighbours)
+        column, row = np.floor(problem.workspace.in_cells(way[1:-1])).astype(int).T
+        genes = np.unique(column * field.places[0] + row)
+        genes = genes[field.settable[genes]]
+        if 0 < len(genes) <= MOST_POINTS:
+            ones[len(counts), : len(genes)] = genes
+            counts.append(len(genes))
+    return ones[: len(counts)], np.array(counts, dtype=np.int64)
+
+
+@njit(cache=True)
+def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarray, counts: np.ndarray) -> Found:
+    """Algorithm 2; without a rule for diversity the plain algorithm.
+
+    first: (n, `_ROOM`) chromosomes that the first population begins with, and counts: (n,) of their ones.
+    """
     batches = 1 + (rules.most_batches if rules.diversity == _MORE_OFFSPRING else 0)
     size = rules.population
     pairs_crossed = size if rules.generational else size // 2
@@ -249,6 +321,13 @@ def search(rng: np.random.Generator, field: Field, rules: Rules) -> Found:
     further = evaluations = bred = lost = 0
 
     for place in range(size):
+        if place < len(first):
+            count = counts[place]
+            child[:count] = first[place, :count]
+            cost, free = validate(child[:count], field, rules)
+            evaluations += 1
+            _put(child, count, min(cost, 1.0 / _UNFIT), free, pool, place)
+            continue
         for _ in range(rules.first_draws):
             count = _random_chromosome(rng, child, field, rules)
             cost, free = validate(child[:count], field, rules)
@@ -369,10 +448,36 @@ def _mutate(rng, child, count, field, rules):
             if field.settable[gene]:
                 count = _flip(child, count, gene)
             gene += 1 + _gap(rng, rules.mutation_rate)
+    elif rules.mutation == _SHIFT:
+        if rng.random() < rules.mutation_rate:
+            count = _change_point(rng, child, count, field)
     elif rules.mutation == _ONE_FLIP or rng.random() < rules.mutation_rate:
         gene = rng.integers(0, genes)
         if field.settable[gene]:
             count = _flip(child, count, gene)
+    return count
+
+
+@njit(cache=True)
+def _change_point(rng, child, count, field):
+    """Take a control point away, but for the only one, add one, or shift one, each as likely; returns how many there are."""
+    change = rng.integers(0, 3)
+    if change == 1:
+        gene = field.choices[rng.integers(0, len(field.choices))]
+        return _flip(child, count, gene) if _position(child, count, gene) == count else count
+    if count == 0:
+        return count
+    gene = child[rng.integers(0, count)]
+    if change == 0:
+        return _flip(child, count, gene) if count > 1 else count
+    side, columns, rows = field.places
+    reach = int(_SHIFT_REACH * side)
+    column = min(max(gene // side + rng.integers(-reach, reach + 1), 0), columns - 1)
+    row = min(max(gene % side + rng.integers(-reach, reach + 1), 0), rows - 1)
+    shifted = column * side + row
+    if field.settable[shifted] and _position(child, count, shifted) == count:
+        count = _flip(child, count, gene)
+        count = _flip(child, count, shifted)
     return count
 
 
