@@ -141,6 +141,15 @@ def test_curvature_of_a_parabola_at_its_apex():
     assert abs(kappa[50]) == pytest.approx(4)
 
 
+@pytest.mark.parametrize("side", [1, -1])
+def test_curvature_is_positive_where_a_curve_turns_left(side):
+    """The parabola y = x^2 from left to right turns left, with the curvature 2 / (1 + 4 x^2)^1.5; its mirror image turns right."""
+    kappa, speed = curves.curvature(Path("bezier", np.array([[-1, 1], [0, -1], [1, 1]]) * [1, side]), 101)
+    x = np.linspace(-1, 1, 101)
+    assert kappa == pytest.approx(side * 2 / (1 + 4 * x**2) ** 1.5)
+    assert speed == pytest.approx(2 * np.sqrt(1 + 4 * x**2))
+
+
 def test_curvature_is_left_out_where_the_curve_stands_still():
     kappa, speed = curves.curvature(Path("bezier", np.array([[0, 0], [0, 0], [0, 0], [1, 2.0]])), 101)
     assert np.isnan(kappa[0])
@@ -154,6 +163,12 @@ def test_curvature_is_left_out_where_the_curve_stands_still():
 def test_only_cubic_splines_and_a_single_bezier_have_continuous_curvature(curve, continuous):
     points = np.random.default_rng(1).normal(size=(8, 2))
     assert (curves.curvature_jump(Path(curve, points)) < 1e-6) == continuous
+
+
+def test_curvature_jumps_by_the_difference_where_an_s_changes_sides():
+    """Two quadratic pieces, point-symmetric about their joint: the curvature there is -3 / (4 sqrt 2) before it, and the opposite behind."""
+    points = np.array([[-3, 0], [-1, 1], [1, -1], [3, 0.0]])
+    assert curves.curvature_jump(Path("piecewise_quadratic", points)) == pytest.approx(3 / (2 * math.sqrt(2)))
 
 
 def test_curvature_jumps_without_limit_at_the_corner_of_a_polyline():

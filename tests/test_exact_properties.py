@@ -25,8 +25,8 @@ from bezierplan.workspaces.polygons import Polygons
 MAPS = File(__file__).parent / "data" / "maps"
 KINDS = ("circles", "cells", "polygons")
 
-# Curves of every degree; the other kinds of curves are cubic pieces as well.
-CURVES = ("polyline", "piecewise_quadratic", "piecewise_cubic", "bezier")
+# Curves of every degree, and the one whose control points are no points of the plane alone; `spline` is made of cubic pieces as well.
+CURVES = ("polyline", "piecewise_quadratic", "piecewise_cubic", "bezier", "ferguson")
 
 # Deeper than the first is never called free, not deeper than the second never colliding.
 CERTAINLY_DEEP = 4e-9

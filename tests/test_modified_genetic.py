@@ -338,6 +338,13 @@ def test_no_crossover_and_no_mutation_never_change_the_best_of_the_first_populat
     assert frozen.extra["valid_share"] == 1.0
 
 
+def test_children_that_are_not_crossed_mutate_as_well():
+    """Without crossover a child that does not mutate is a copy, so that nothing could be found that the first population does not have."""
+    found = run(problem(), 7, crossover_probability=0.0, mutation="one_flip", replacements=0)
+    assert found.objective < found.history[0]
+    assert found.extra["valid_share"] < 1.0
+
+
 @pytest.mark.parametrize("rate", [0.0, 0.006, 0.3, 1.0])
 def test_mutation_changes_each_gene_with_its_probability(rate):
     found = field(100, (50, 50, 20))

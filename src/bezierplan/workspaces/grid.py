@@ -15,6 +15,9 @@ from bezierplan.workspaces.polygons import Polygons
 # lines, where rounding alone would decide; with this margin every program gives the same cell: the one above or to the right.
 ON_LINE = 1e-9
 
+MOST_CELLS = 4_000_000
+"""Most cells of a map file."""
+
 
 @dataclass(frozen=True)
 class Grid:
@@ -80,17 +83,19 @@ def embed(occupied: np.ndarray) -> np.ndarray:
 def from_lines(lines: list[str], cell: float, unit: str) -> Grid:
     """A grid from text, top row first: `.` is a free cell, `#` an occupied one.
 
-    Raises ValueError, naming the line, for an empty or ragged map and for any other character.
+    Raises ValueError, naming the line, for an empty or ragged map, for any other character, and for more than `MOST_CELLS` cells.
     """
-    if not lines:
+    if not lines or not lines[0]:
         raise ValueError("the map is empty; expected lines of . (free) and # (occupied)")
     for number, line in enumerate(lines, start=1):
-        for character in line:
-            if character not in ".#":
-                raise ValueError(f"line {number}: unknown character {character!r}; a cell is . (free) or # (occupied)")
+        unknown = line.replace(".", "").replace("#", "")
+        if unknown:
+            raise ValueError(f"line {number}: unknown character {unknown[0]!r}; a cell is . (free) or # (occupied)")
         if len(line) != len(lines[0]):
             raise ValueError(f"line {number} has {len(line)} cells, the first line has {len(lines[0])}; all lines need the same number")
-    occupied = np.array([[character == "#" for character in line] for line in reversed(lines)])
+    if len(lines) * len(lines[0]) > MOST_CELLS:
+        raise ValueError(f"{len(lines):,} x {len(lines[0]):,} cells; expected at most {MOST_CELLS:,} cells")
+    occupied = np.array([np.frombuffer(line.encode(), dtype=np.uint8) == ord("#") for line in reversed(lines)])
     return Grid(occupied, cell, unit)
 
 
