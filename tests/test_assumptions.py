@@ -25,7 +25,7 @@ def found(study, experiment, method):
     for condition in list(running.conditions([name], described["vary"]))[:1]:
         for repeat in range(REPEATS):
             plan = running.run(described, condition, repeat, made[name])
-            row = running.row(described, condition, repeat, plan, blocked)
+            row = running.row(described, condition, repeat, plan, made[name], blocked)
             rows.append({key: row[key] for key in (*FOUND, *plan.extra)})
     return json.dumps(rows)
 

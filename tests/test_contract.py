@@ -73,7 +73,7 @@ BAD = {
     "starts elsewhere": ("np.array([start,", "np.array([np.add(start, 1e-9),", "path"),
     "ends elsewhere": ("target])", "np.add(target, 1e-9)])", "path"),
     "its history rises": ("np.minimum.accumulate(lengths)", "np.sort(lengths)", "history"),
-    "its history has a gap": (RETURN, f"    history[0] = np.nan\n{RETURN}", "history"),
+    "its history has a gap": (RETURN, f"    history[0] = np.nan\n{RETURN}", "plan"),
     "its history ends with something else": ("history[-1],", "history[-1] + 1,", "history"),
     "claims wrongly and to be exact": ("KEPT =", "exact = True\nKEPT =", "claims"),
     "uses too many evaluations": ("evaluations=evaluations", "evaluations=evaluations + 1", "budget"),

@@ -194,6 +194,30 @@ def test_crossover_joins_at_an_inner_cell_of_both():
     assert grid_genetic._join(rng, head, np.array([0, 9, 8, 5]), place, common, walk) == 0
 
 
+@pytest.mark.filterwarnings("ignore::numba.NumbaPendingDeprecationWarning")
+def test_parents_are_drawn_in_proportion_to_the_inverse_of_their_cost(monkeypatch):
+    """The search in plain Python: what the wheel is given, beside the costs of the paths that it draws from."""
+    given, costs = [], []
+    best, wheel = grid_genetic._best, grid_genetic.roulette
+
+    def sorted_paths(*arguments):
+        found = best(*arguments)
+        costs.append(found[1][:6].copy())
+        return found
+
+    def drawn_parents(rng, weights, count):
+        given.append(weights.copy())
+        return wheel(rng, weights, count)
+
+    for name, changed in (("_best", sorted_paths), ("roulette", drawn_parents), ("_search", grid_genetic._search.py_func)):
+        monkeypatch.setattr(grid_genetic, name, changed)
+    plan(drawn(3), population=6, generations=4)
+    assert len(given) == 4
+    for weights, own in zip(given, costs):
+        assert weights * own == pytest.approx(weights[0] * own[0])
+    assert np.ptp(costs[0]) > 0
+
+
 def test_mutation_replaces_what_lies_between_two_cells():
     rng = np.random.default_rng(0)
     grid = np.zeros((20, 20), dtype=bool)
@@ -208,11 +232,13 @@ def test_mutation_replaces_what_lies_between_two_cells():
         count = grid_genetic._walk_anew(rng, given, walk, len(path), last_visit)
         assert (walk[0], walk[count - 1]) == (path[0], path[-1])
         assert is_path(walk[:count], given.walled, columns)
-        kept = 0
-        while kept < count and walk[kept] == path[kept]:
-            kept += 1
-        # What is not new is the path's own tail.
-        assert path[-1] == walk[count - 1]
+        # Head and tail are the path's own, in their places from its two ends; a free field is crossed straight between them.
+        after, both = walk[:count], min(count, len(path))
+        head = int((after[:both] == path[:both]).cumprod().sum())
+        tail = int((after[-both:] == path[-both:])[::-1].cumprod().sum())
+        row, column = np.divmod(after[max(head, 1) - 1 : count - max(tail, 1) + 1], columns)
+        assert head + tail >= 2
+        assert len(row) <= 2 or len(row) - 1 == max(abs(np.ptp(row)), abs(np.ptp(column)))
         shorter += count < len(path)
         assert grid_genetic._cost(walk, count, columns, 1.5) <= 38
     assert 60 < shorter < 140

@@ -32,6 +32,10 @@ SETTINGS = {
     "gene_lattice": "coarse",
     "gene_order": "columns",
     "point_order": "projection",
+    "first_population": "random",
+    "most_roadmaps": 0,
+    "roadmap_nodes": 250,
+    "roadmap_neighbours": 8,
     "first_points": 5,
     "first_draws": 400,
     "replacements": 1,
@@ -68,7 +72,7 @@ def rules(**changed):
     """The settings as `plan` hands them to the search."""
     seen = []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(planner, "search", lambda rng, field, rules: seen.append(rules) or nothing_found())
+        patch.setattr(planner, "search", lambda rng, field, rules, first, counts: seen.append(rules) or nothing_found())
         planner.plan(BARE, np.random.default_rng(0), **(SETTINGS | changed))
     return seen[0]
 
@@ -344,6 +348,13 @@ def test_no_crossover_and_no_mutation_never_change_the_best_of_the_first_populat
     # All children are copies, which are valid: nothing is drawn in their place.
     assert np.all(frozen.history == frozen.history[0])
     assert frozen.extra["valid_share"] == 1.0
+
+
+def test_children_that_are_not_crossed_mutate_as_well():
+    """Without crossover a child that does not mutate is a copy, so that nothing could be found that the first population does not have."""
+    found = run(problem(), 7, crossover_probability=0.0, mutation="one_flip", replacements=0)
+    assert found.objective < found.history[0]
+    assert found.extra["valid_share"] < 1.0
 
 
 @pytest.mark.parametrize("rate", [0.0, 0.006, 0.3, 1.0])

@@ -1,11 +1,15 @@
 """Workspaces from descriptions and files: every fault in one line, and back from text bit by bit."""
 
 import json
+import os
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+from fields import BENCHMARK_MAPS
 
+from bezierplan import problems
 from bezierplan.workspaces import files, random_circles
 
 MAPS = Path(__file__).parent / "data" / "maps"
@@ -23,16 +27,58 @@ def moved(x, y):
     return [[a + x, b + y] for a, b in SQUARE]
 
 
+def feature(properties, geometry):
+    """A GeoJSON file with a border and one further feature."""
+    border = {"properties": {"role": "border"}, "geometry": {"type": "Polygon", "coordinates": [BORDER]}}
+    return json.dumps({"features": [border, {"properties": properties, "geometry": geometry}]})
+
+
+def polygon(rings, role="obstacle"):
+    return feature({"role": role}, {"type": "Polygon", "coordinates": rings})
+
+
 POLYGON_FAULTS = {
     "not JSON": ("{", "not a GeoJSON feature collection"),
+    "a list": ("[]", "not a GeoJSON feature collection"),
     "no features": ("{}", "not a GeoJSON feature collection"),
-    "no role": (json.dumps({"features": [{"properties": {}, "geometry": {"coordinates": []}}]}), "not a GeoJSON feature collection"),
+    "features no list": ('{"features": 1}', "not a GeoJSON feature collection"),
+    "nested too deeply": ('{"features": ' + "[" * 100_000, "nested too deeply"),
+    "long number": ('{"features": [' + "1" * 5000 + "]}", "not a GeoJSON feature collection"),
+    "feature no object": (json.dumps({"features": [1]}), "feature 0: properties: role: missing; expected border or obstacle"),
+    "no properties": (json.dumps({"features": [{"geometry": {"coordinates": []}}]}), "feature 0: properties: role: missing"),
+    "no role": (json.dumps({"features": [{"properties": {}}]}), "feature 0: properties: role: missing; expected border or obstacle"),
+    "role misspelt": (polygon([SQUARE], "obstacel"), "feature 1: properties: role: 'obstacel': unknown; did you mean obstacle?"),
+    "role no word": (polygon([SQUARE], ["obstacle"]), "feature 1: properties: role: .* unknown"),
     "no border": (json.dumps({"features": []}), "0 features with role border"),
+    "two borders": (polygon([BORDER], "border"), "2 features with role border; expected one"),
     "border no rectangle": (geojson(border=[[0, 0], [10, 0], [5, 10], [0, 0]]), "expected a rectangle"),
+    "border with a hole": (json.dumps({"features": [json.loads(polygon([BORDER, SQUARE], "border"))["features"][1]]}), "without a hole"),
     "crossing itself": (geojson([[[1, 1], [3, 3], [3, 1], [1, 3], [1, 1]]]), "Self-intersection"),
+    "hole outside": (polygon([SQUARE, moved(3, 3)]), "Hole lies outside shell"),
+    "holes in each other": (
+        polygon([SQUARE, *[[[a, a], [b, a], [b, b], [a, b], [a, a]] for a, b in ((4.2, 5.8), (4.5, 5))]]),
+        "Holes are nested",
+    ),
     "over the border": (geojson([moved(5, 0)]), "reaches over the border"),
+    "not closed": (polygon([SQUARE[:-1]]), r"feature 1 \(obstacle\): ring 0: is not closed: begins at \[4, 4\], ends at \[4, 6\]"),
+    "hole not closed": (polygon([SQUARE, [[4.5, 4.5], [5, 5], [5, 4.5], [4.5, 4.6]]]), "ring 1: is not closed"),
+    "too few positions": (polygon([[[1, 1], [2, 2], [1, 1]]]), "ring 0: expected at least four positions"),
+    "rings missing": (polygon([SQUARE[0]]), "ring 0: expected at least four positions"),
+    "no ring": (polygon([]), "coordinates: expected a list of rings"),
+    "in space": (polygon([[[*position, 0] for position in SQUARE]]), r"ring 0: position \[4, 4, 0\]; expected \[x, y\]"),
+    "on a line": (polygon([[[position[0]] for position in SQUARE]]), r"ring 0: position \[4\]; expected \[x, y\]"),
+    "text": (polygon([[[str(x), str(y)] for x, y in SQUARE]]), r"expected \[x, y\]"),
+    "truths": (polygon([[[True, False]] * 4]), r"expected \[x, y\]"),
+    "null": (polygon([[[None, None]] * 4]), r"expected \[x, y\]"),
+    "many parts": (
+        feature({"role": "obstacle"}, {"type": "MultiPolygon", "coordinates": [[SQUARE]]}),
+        "geometry: MultiPolygon; expected a Poly",
+    ),
+    "no geometry": (feature({"role": "obstacle"}, None), "geometry: None; expected a Polygon"),
     "not finite": (geojson([[[1, 1], [3, 1], [float("nan"), 3], [1, 1]]]), "is not a coordinate"),
+    "beyond floats": (polygon([[[1, 1], [3, 1], [10**400, 3], [1, 1]]]), "too large"),
     "too large": (geojson(border=[[0, 0], [2e5, 0], [2e5, 10], [0, 10], [0, 0]]), "is not a coordinate"),
+    "too many": (polygon([[[1, 1], *[[2, 1]] * 100_000, [2, 2], [1, 1]]]), "more than 100,000 positions"),
     "gap between obstacles": (geojson([SQUARE], [moved(2 + 5e-8, 0)]), "a gap below 1e-07"),
     "gap to the border": (geojson([moved(4 - 5e-8, 0)]), "a gap below 1e-07"),
 }
@@ -46,6 +92,64 @@ def test_polygon_fault_is_told(fault):
     assert "\n" not in str(caught.value)
 
 
+def test_no_obstacle_vanishes():
+    """Neither one that shares its id with another, nor the last corner of one."""
+    same = [
+        {"properties": {"role": "obstacle", "id": 1}, "geometry": {"type": "Polygon", "coordinates": [moved(x, 0)]}} for x in (-3, 0, 3)
+    ]
+    border = json.loads(geojson())["features"]
+    found = files.polygons_from_geojson(json.dumps({"features": border + same}), "m")
+    assert [ring.tolist() for (ring,) in found.obstacles] == [moved(x, 0)[:-1] for x in (-3, 0, 3)]
+
+
+def test_start_and_target_features_are_left_out():
+    place = {"type": "Point", "coordinates": [1, 1]}
+    assert files.polygons_from_geojson(feature({"role": "start"}, place), "m").obstacles == ()
+
+
+def fifo(file):
+    os.mkfifo(file)
+
+
+GRID_FAULTS = {
+    "empty": (lambda file: file.write_text(""), "the map is empty"),
+    "first line empty": (lambda file: file.write_text("\n..\n"), "the map is empty"),
+    "ragged": (lambda file: file.write_text("..\n...\n"), "line 2 has 3 cells"),
+    "unknown character": (lambda file: file.write_text("..\n.x\n"), "line 2: unknown character 'x'"),
+    "too many cells": (lambda file: file.write_text(f"{'.' * 2001}\n" * 2000), "2,000 x 2,001 cells; expected at most 4,000,000 cells"),
+}
+FILE_FAULTS = {
+    "NUL": (lambda file: file.write_text("..\n.\0\n"), "has a NUL character in line 2"),
+    "not UTF-8": (lambda file: file.write_bytes(b"..\n\xff.\n"), "byte 3 is not UTF-8"),
+    "too large": (lambda file: file.write_text("." * (2**24 + 1)), "has 16,777,217 bytes; expected at most 16,777,216"),
+    "a folder": (lambda file: file.mkdir(), "is not a regular file"),
+    "a pipe": (fifo, "is not a regular file"),
+    "a device": (lambda file: file.symlink_to("/dev/zero"), "is not a regular file"),
+    "missing": (lambda file: None, "cannot be read .No such file or directory."),
+}
+
+
+@pytest.mark.parametrize(
+    ("kind", "fault"), [*(("grid", fault) for fault in GRID_FAULTS | FILE_FAULTS), *(("polygons", fault) for fault in FILE_FAULTS)]
+)
+def test_map_fault_is_told_at_once(kind, fault, tmp_path):
+    make, told = (GRID_FAULTS | FILE_FAULTS)[fault]
+    make(tmp_path / "map")
+    begun = time.monotonic()
+    with pytest.raises(ValueError, match=told) as caught:
+        files.load({"kind": kind, "unit": "m", "file": "map", "cell": 1.0}, tmp_path)
+    assert time.monotonic() - begun < 5
+    assert "map: " in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("cell", [float("inf"), float("nan"), 1e5])
+def test_cell_beyond_all_coordinates_is_told(cell, tmp_path):
+    (tmp_path / "map").write_text("..\n")
+    with pytest.raises(ValueError, match=r"map: cell: .*: the border: .* is not a coordinate"):
+        files.load({"kind": "grid", "unit": "m", "file": "map", "cell": cell}, tmp_path)
+
+
 @pytest.mark.parametrize(
     "obstacles", [([SQUARE],), ([SQUARE], [moved(2, 0)]), ([moved(4, 0)],), ([SQUARE, [[4.5, 4.5], [5, 5], [5, 4.5], [4.5, 4.5]]],)]
 )
@@ -57,6 +161,7 @@ CIRCLE_FAULTS = {
     "radius of 0": ([-5, 5, -5, 5], [[0, 0, 0]], "circle 0: radius 0; expected above 0"),
     "bounds exchanged": ([5, -5, -5, 5], [], "low below high"),
     "not finite": ([-5, 5, -5, 5], [[0, float("inf"), 1]], "is not a coordinate"),
+    "too many": ([-5, 5, -5, 5], [[0, 0, 1]] * 10_001, "10,001; expected at most 10,000"),
     "gap between circles": ([-5, 5, -5, 5], [[0, 0, 1], [2 + 5e-8, 0, 1]], "circle 0: a gap below 1e-07"),
     "gap to the border": ([-5, 5, -5, 5], [[4 - 5e-8, 0, 1]], "circle 0: a gap below 1e-07"),
 }
@@ -72,11 +177,12 @@ def test_circle_fault_is_told(fault):
 def descriptions():
     yield {"kind": "circles", "unit": "m", "bounds": [-1, 1, -1, 1], "circles": [[0.1, 0.2, 0.3], [1 / 3, 0, 0.1]]}
     yield {"kind": "grid", "unit": "cell", "file": "song2016.txt", "cell": 10}
-    for file in sorted((MAPS / "imr").glob("*.geojson")):
-        yield {"kind": "polygons", "unit": "m", "file": f"imr/{file.name}"}
+    for file in sorted(BENCHMARK_MAPS.glob("*.geojson")):
+        yield {"kind": "polygons", "unit": "m", "file": str(file)}
+        yield {"kind": "raster", "unit": "m", "file": str(file), "cell": 0.4, "rule": "overlap"}
 
 
-@pytest.mark.parametrize("description", list(descriptions()), ids=lambda each: each.get("file", each["kind"]))
+@pytest.mark.parametrize("description", list(descriptions()), ids=lambda each: f"{each['kind']} {Path(each.get('file', '')).stem}")
 def test_text_gives_a_workspace_back_bit_by_bit(description):
     text = files.to_json(files.load(description, MAPS))
     assert files.to_json(files.from_json(text)) == text
@@ -96,6 +202,22 @@ def test_layouts_leave_the_ends_free():
     for number in range(200):
         centres = random_circles.layout(RANDOM, "study/random", number, [(0, 0), (4, 6)]).centres
         assert min(np.hypot(*(centres - end).T).min() for end in [(0, 0), (4, 6)]) > 2.0
+
+
+def test_problems_in_random_circles_have_free_ends():
+    """Circles so large and many that one would cover the other end if only one were kept free."""
+    described = {"workspace": "close", "start": [-6, 0], "target": [4, 6], "obstacles": 10}
+    job = {
+        "study": "study",
+        "workspaces": {"close": RANDOM | {"kind": "random_circles", "radius": 5.0}},
+        "problems": {f"p{number}": described | {"layout": number} for number in range(20)},
+    }
+    drawn, _ = problems.build_all(job, Path())
+    assert len(drawn) == 20
+    for problem in drawn.values():
+        assert len(problem.workspace.radii) == 10
+        for end in (problem.start, problem.target):
+            assert np.hypot(*(problem.workspace.centres - end).T).min() > 5.0
 
 
 def test_layout_that_cannot_be_drawn_is_given_up():

@@ -7,7 +7,6 @@ import copy
 import inspect
 import itertools
 import math
-import numbers
 import random
 import typing
 from collections.abc import Iterator
@@ -17,20 +16,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numba import njit
 
-from bezierplan import curves
+from bezierplan import answer, curves
 from bezierplan.checked import Fault, closest
 from bezierplan.exact import checker
 from bezierplan.exact.region import Region, region
-from bezierplan.problem import Path, Plan, Problem, Range, Workspace, known_planners, planner_module, planner_settings, setting_fault
-from bezierplan.running import RUN_COLUMNS
-from bezierplan.study import PLACE
+from bezierplan.problem import Plan, Problem, Range, Workspace, known_planners, planner_module, planner_settings, setting_fault
+from bezierplan.running import TAKEN
 from bezierplan.workspaces import grid
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import to_json
 from bezierplan.workspaces.polygons import Polygons
-
-# Names that an extra column cannot have: columns of a runs table, those of drawn workspaces, and those that are joined to it.
-_TAKEN = {*RUN_COLUMNS, *PLACE, "straight_line", "bound", "bound8", "cpu_s", "wall_s"}
 
 # A plan is made for each of so many generators.
 _GENERATORS = 3
@@ -262,7 +257,7 @@ def _findings(module: ModuleType, settings: dict[str, Any]) -> Iterator[Finding]
     for kind in getattr(module, "workspaces", PROBLEMS):
         for problem in PROBLEMS[kind]():
             blocked = region(problem.workspace)
-            runs, fault = _runs(module, problem, settings, blocked)
+            runs, fault = _runs(module, problem, settings)
             yield Finding(problem.name, "plan", not fault, fault)
             if fault:
                 continue
@@ -276,7 +271,7 @@ def _findings(module: ModuleType, settings: dict[str, Any]) -> Iterator[Finding]
                 yield Finding(problem.name, "no way", *_finds_no_way(case))
 
 
-def _runs(module: ModuleType, problem: Problem, settings: dict[str, Any], blocked: Region) -> tuple[list[_Run], str]:
+def _runs(module: ModuleType, problem: Problem, settings: dict[str, Any]) -> tuple[list[_Run], str]:
     """Runs in the order that `_findings` takes them, or the fault for which there are none to look at."""
     runs = []
     for seed, surroundings in [(0, 0), (0, 0), (0, 1), *((seed, 0) for seed in range(1, _GENERATORS))]:
@@ -284,7 +279,7 @@ def _runs(module: ModuleType, problem: Problem, settings: dict[str, Any], blocke
             runs.append(_run(module, problem, settings, seed, surroundings))
         except Exception as error:  # a planner can fail in any way
             return [], f"raises {_told(error)}"
-        fault = _plan_fault(runs[-1].plan, blocked)
+        fault = answer.plan_fault(runs[-1].plan)
         if fault:
             return [], fault
     return runs, ""
@@ -324,66 +319,14 @@ def _content(problem: Problem) -> tuple:
 
 
 # ---------------------------------------------------------------------------------------------------------------------
-# Whether a plan is one: types, and a path that can be drawn and checked
-
-
-def _plan_fault(plan: Any, blocked: Region) -> str:
-    """The first field of a plan that is not as it should be, or nothing."""
-    if not isinstance(plan, Plan):
-        return f"is a {type(plan).__name__}; expected a Plan"
-    fit = {
-        "objective: expected a number, and not nan": _is_number(plan.objective) and not math.isnan(plan.objective),
-        "claimed_feasible: expected true or false": isinstance(plan.claimed_feasible, bool | np.bool_),
-        "evaluations: expected a whole number, at least 1": _is_whole(plan.evaluations) and plan.evaluations >= 1,
-        "history: expected an array of numbers, (generations + 1,)": _is_array(plan.history, 1) and len(plan.history) > 0,
-        "stop: expected a word": isinstance(plan.stop, str),
-        "extra: expected names with numbers or truths": isinstance(plan.extra, dict)
-        and all(isinstance(name, str) and (_is_number(value) or isinstance(value, bool)) for name, value in plan.extra.items()),
-        "path: expected None or a Path": plan.path is None or isinstance(plan.path, Path),
-    }
-    fault = next((what for what, right in fit.items() if not right), "")
-    if fault or plan.path is not None:
-        return fault or _path_fault(plan.path, blocked)
-    return "claimed_feasible: true without a path" if plan.claimed_feasible else ""
-
-
-def _path_fault(path: Path, blocked: Region) -> str:
-    if not _is_array(path.points, 2) or path.points.shape[1] != 2:
-        return "path: points: expected an array of numbers, (n, 2)"
-    if not np.isfinite(path.points).all():
-        return "path: points: expected finite numbers"
-    try:
-        # What the checker refuses would end a study: a coordinate that is too large, a degree that is too high.
-        checker.check(curves.bezier_pieces(path), blocked)
-    except ValueError as error:
-        return f"path: {error}"
-    return ""
-
-
-def _is_number(value: Any) -> bool:
-    return isinstance(value, numbers.Real) and not isinstance(value, bool)
-
-
-def _is_whole(value: Any) -> bool:
-    return isinstance(value, numbers.Integral) and not isinstance(value, bool)
-
-
-def _is_array(value: Any, dimensions: int) -> bool:
-    return isinstance(value, np.ndarray) and value.ndim == dimensions and value.dtype.kind in "fiu"
-
-
-# ---------------------------------------------------------------------------------------------------------------------
 # Facts: each tells whether it holds for a case, and a detail
 
 
 def _has_its_ends(case: _Case) -> tuple[bool, str]:
     for plan in case.plans:
-        if plan.path is None:
-            continue
-        for end, place in zip(("start", "target"), curves.ends(plan.path.curve)):
-            wanted, point = getattr(case.problem, end), tuple(plan.path.points[place].tolist())
-            if point != wanted:
-                return False, f"{end}: {point}; expected exactly {wanted}"
+        fault = answer.ends_fault(plan, case.problem)
+        if fault:
+            return False, fault
     found = sum(plan.path is not None for plan in case.plans)
     return True, f"{found} paths of {len(case.plans)} plans"
 
@@ -400,12 +343,11 @@ def _history_falls(case: _Case) -> tuple[bool, str]:
 
 def _extra_is_free(case: _Case) -> tuple[bool, str]:
     for plan in case.plans:
-        names = set(plan.extra)
-        taken = names & (_TAKEN | set(case.settings))
-        if taken:
-            return False, f"{min(taken)}: a column or setting has this name already"
-        if names != case.columns:
-            return False, f"{min(names ^ case.columns)}: not in every plan; a table needs the same columns in each row"
+        fault = answer.names_fault(plan, {*TAKEN, *case.settings})
+        if fault:
+            return False, fault
+        if plan.extra.keys() != case.columns:
+            return False, f"{min(plan.extra.keys() ^ case.columns)}: not in every plan; a table needs the same columns in each row"
     return True, ""
 
 

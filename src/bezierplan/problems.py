@@ -47,6 +47,8 @@ def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, floa
         )
     if blocks(region(workspace), point):
         raise ValueError(f"{key}: {value}: in an obstacle; expected a free place of the workspace")
+    if isinstance(workspace, Grid) and workspace.drawn and workspace.occupied[workspace.cell_of(*point)]:
+        raise ValueError(f"{key}: {value}: in an occupied cell; expected a free one, or a smaller cell")
     return point
 
 

@@ -36,7 +36,10 @@ def replay(name: str, studies: dict[str, Study]) -> results.Results:
     made, _ = problems.build_all(problems_job(study, experiment, "full"), study.folder)
     problem = {condition.problem: made[condition.problem]}
     plan = running.run(described, condition, int(repeat), made[condition.problem])
-    row = running.row(described, condition, int(repeat), plan, region(made[condition.problem].workspace))
+    try:
+        row = running.row(described, condition, int(repeat), plan, made[condition.problem], region(made[condition.problem].workspace))
+    except RuntimeError as error:
+        raise Fault(str(error)) from None
     return results.joined(pd.DataFrame([row]), problem, problems.bounds_of(problem).to_pandas())
 
 

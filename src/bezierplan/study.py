@@ -12,12 +12,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from bezierplan.problem import planner_module, planner_settings
+from bezierplan.problem import PLACE, planner_module, planner_settings
 
 SCALES = ("smoke", "full", "extended")
 
+TIME_LIMIT = 600
+"""Seconds after which a run is ended, where an experiment does not say."""
+
 DRAWN = {"random_circles": "circles", "random_field": "grid", "random_blocks": "grid"}
 """Kinds of workspace that are drawn at random -> the kind that planners meet."""
+
+CELLS = ("raster",)
+"""Kinds of workspace read from files that planners meet as grids."""
 
 
 @dataclass(frozen=True)
@@ -78,7 +84,7 @@ class Study:
     def kind_of(self, problem: str) -> str:
         """The kind of workspace that planners meet in a problem."""
         kind = self.workspaces[self.problems[problem]["workspace"]]["kind"]
-        return DRAWN.get(kind, kind)
+        return "grid" if kind in CELLS else DRAWN.get(kind, kind)
 
     def problems_of(self, experiment: str, scale: str) -> dict[str, dict]:
         """Descriptions of an experiment's problems, by name. One with layouts stands for a problem each layout and number of obstacles."""
@@ -152,12 +158,9 @@ def job(study: Study, experiment: str, method: str, scale: str, chunk: int) -> d
         "vary": content.get("vary", {}),
         "levels": {name: level for name, level in study.levels.items() if name in content.get("vary", {})},
         "seeds": content.get("seeds", "own"),
+        "time_limit": content.get("time_limit", TIME_LIMIT),
         "repeats": [chunk * size, (chunk + 1) * size],
     }
-
-
-PLACE = ("workspace", "reference", "route", "side", "layout", "obstacles")
-"""Keys of a problem that are columns of the runs table."""
 
 
 def _place(problem: dict) -> dict:
@@ -264,6 +267,7 @@ def claims_job(study: Study, claims: list[dict]) -> dict:
         "variant_of": {name: method["variant_of"] for name, method in study.methods.items() if "variant_of" in method},
         "paired": {name: experiment.get("seeds", "own") != "own" for name, experiment in experiments.items()},
         "paper_repeats": {name: experiment["repeats"]["full"] for name, experiment in experiments.items()},
+        "labels": study.labels,
     }
 
 
@@ -288,7 +292,7 @@ def methods_of_claims(study: Study, claims: list[dict], experiment: str) -> list
     named = set()
     for claim in claims:
         for check in claim["checks"]:
-            if check.get("experiment") == experiment:
+            if experiment in _as_list(check.get("experiment")):
                 named |= _compared(study, claim, check) or set(methods)
     return [name for name in methods if name in named]
 

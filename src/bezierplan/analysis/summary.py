@@ -2,7 +2,7 @@
 
 import pandas as pd
 
-VERDICTS = ("supported", "in part", "contradicted", "no effect", "undecided", "untestable")
+from bezierplan.analysis.claim_verdicts import VERDICTS
 
 
 def numbers(
@@ -35,7 +35,7 @@ def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
     numbers: as from `numbers`. claims: as from `claims.judge`. Of readings and variants only those count that decide.
     """
     judged = numbers[numbers["decides"] & numbers["reproduced"].notna()]
-    deciding = claims[claims["decides"]]
+    deciding = claims[claims["decides"] & ~claims["finding"].astype(bool)]
     verdicts = pd.crosstab(deciding["study"], deciding["verdict"]).reindex(columns=VERDICTS, fill_value=0)
     counts = judged.groupby("study")["reproduced"].agg(numbers="count", reproduced=lambda each: int(each.astype(bool).sum()))
     return counts.join(verdicts, how="outer").fillna(0).astype(int)

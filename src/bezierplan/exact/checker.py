@@ -88,7 +88,9 @@ def check(pieces: np.ndarray, region: Region, squeeze: Literal["open", "closed"]
     and for an unknown squeeze rule.
     """
     pieces = np.ascontiguousarray(pieces, dtype=float)
-    _refuse_unfit(pieces, squeeze)
+    if squeeze not in ("open", "closed"):
+        raise ValueError(f"unknown squeeze rule {squeeze!r}; known: open, closed")
+    refuse_unfit(pieces)
     pieces = from_origin(pieces, region)
     collision_at, intervals = first_collision(pieces, region)
     if squeeze == "closed" and isinstance(region, GridRegion):
@@ -105,9 +107,8 @@ def check(pieces: np.ndarray, region: Region, squeeze: Literal["open", "closed"]
     return Check(True, math.nan, 0.0, clearance, CLEARANCE_TOLERANCE, intervals)
 
 
-def _refuse_unfit(pieces: np.ndarray, squeeze: str) -> None:
-    if squeeze not in ("open", "closed"):
-        raise ValueError(f"unknown squeeze rule {squeeze!r}; known: open, closed")
+def refuse_unfit(pieces: np.ndarray) -> None:
+    """Raise ValueError for pieces that `check` cannot judge: of another shape, of too high a degree, too far out, or not finite."""
     if pieces.ndim != 3 or pieces.shape[2] != 2 or not 2 <= pieces.shape[1] <= _LARGEST_DEGREE + 1:
         raise ValueError(f"pieces have the shape {pieces.shape}; expected (pieces, degree + 1, 2) with a degree of 1 to {_LARGEST_DEGREE}")
     # Written so that a coordinate that is not a number fails as well.

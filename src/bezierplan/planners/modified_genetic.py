@@ -4,6 +4,9 @@ A chromosome has one gene for each point of a lattice of cells: 1 makes the poin
 cell, which is never set. It is kept as the ascending list of the genes that are 1. A chromosome whose points are too near to each other or
 whose curve touches an occupied cell is deleted, and a random one drawn in its place (Section 3.2.2). Beside the plain algorithm the paper
 watches the Q statistic of the pool (Section 3.3). In the kernels coordinates and lengths are in cells.
+
+In a maze the algorithm as printed finds no path. So that it can, a first population can come from small road maps, control points can be
+joined in the order in which a walk from the start reaches them, and a mutation can shift a control point; none of this is in the paper.
 """
 
 import math
@@ -13,11 +16,11 @@ import numpy as np
 from numba import njit
 
 from bezierplan.cell_length import cells4, cells8, occupied_cells, parts, polyline_length, sample, touched_cells
+from bezierplan.planners.prm import road_map
 from bezierplan.problem import Path, Plan, Problem, Range
 from bezierplan.search import gene_lists
 from bezierplan.search.genetic import check_pairs
-from bezierplan.search.sorting import ascending
-from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.gene_lattice import Field, field_of, polygon
 
 workspaces = ("grid",)
 
@@ -38,27 +41,14 @@ _FIRST_SAMPLES = 30
 _ON_LINE = 1e-9
 
 FitnessLength = Literal["length", "cells4", "cells8"]
-Mutation = Literal["gene", "chromosome", "one_flip"]
+Mutation = Literal["gene", "chromosome", "one_flip", "shift"]
 Diversity = Literal["none", "more_offspring", "relaxing", "unique"]
 _LENGTH, _CELLS4, _CELLS8 = range(3)
-_EACH_GENE, _CHROMOSOME, _ONE_FLIP = range(3)
+_EACH_GENE, _CHROMOSOME, _ONE_FLIP, _SHIFT = range(4)
 _NO_DIVERSITY, _MORE_OFFSPRING, _RELAXING, _UNIQUE = range(4)
 
-
-class Field(NamedTuple):
-    """Where the curves lie; lengths in cells from the grid's corner.
-
-    occupied: bool (rows, columns). points: (genes, 2) centre of each gene's cell. rank: (genes,) its place in the order in which control
-    points are joined. settable: (genes,) whether it may be 1; choices: the genes that may. start, target: (2,).
-    """
-
-    occupied: np.ndarray
-    points: np.ndarray
-    rank: np.ndarray
-    settable: np.ndarray
-    choices: np.ndarray
-    start: np.ndarray
-    target: np.ndarray
+# A shift moves a control point by at most this share of the places of a side.
+_SHIFT_REACH = 0.1
 
 
 class Rules(NamedTuple):
@@ -109,6 +99,8 @@ def check(settings: dict) -> None:
     check_pairs(settings["population"])
     if settings["first_points"] > MOST_POINTS:
         raise ValueError(f"first_points: {settings['first_points']}; a curve has at most {MOST_POINTS} control points between its ends")
+    if settings["first_population"] == "roadmaps" and settings["gene_lattice"] != "cell":
+        raise ValueError(f"gene_lattice: {settings['gene_lattice']}; a first population from roadmaps needs cell: their nodes lie anywhere")
 
 
 def plan(
@@ -126,7 +118,11 @@ def plan(
     most_batches: Annotated[int, Range(0)],
     gene_lattice: Literal["coarse", "cell"],
     gene_order: Literal["columns", "rows"],
-    point_order: Literal["projection", "index"],
+    point_order: Literal["projection", "index", "geodesic"],
+    first_population: Literal["random", "roadmaps"],
+    most_roadmaps: Annotated[int, Range(0)],
+    roadmap_nodes: Annotated[int, Range(1, 2000)],
+    roadmap_neighbours: Annotated[int, Range(1)],
     first_points: Annotated[int, Range(1)],
     first_draws: Annotated[int, Range(1)],
     replacements: Annotated[int, Range(0)],
@@ -141,19 +137,22 @@ def plan(
 ) -> Plan:
     """Shortest curve through control points on a lattice of cells (elhoseny2017, Algorithms 1 and 2).
 
-    mutation: every gene changes with the probability mutation_rate, one gene of a chromosome does, or one gene always does (one_flip).
-    diversity: no rule at all (the plain algorithm); more offspring as long as the mean Q of the pool is above eta, at most most_batches
-    times an iteration (Algorithm 2); only children whose mean Q to the pool is at most 1 - eta (relaxing); no child equal to another
-    chromosome of the pool (unique). eta changes by the factor eta_decay from one iteration to the next. gene_lattice: 21 x 21 points, or
-    every cell; gene_order: genes are numbered column by column from the left, or row by row from below. point_order: control points are
-    joined in the order of their projection on the line from start to target, ties from its left to its right, or in the order of the genes.
-    first_points: the most control points of a random chromosome. first_draws: for each of the first population. replacements: draws for an
-    invalid child. least_distance: between two control points, in cells. curve: a single Bezier curve, or quadratic pieces that meet
-    half-way between the points (composite). fitness_length: what the fitness is the inverse of, the length of the sampled curve or a length
-    that counts cells (`cell_length`). invalid: what becomes of a curve that touches occupied cells; with penalty cells each are added to
-    its length. survival: the best of parents and offspring, or of the offspring alone (generational). offspring: what joins the pool, the
-    children of a crossover and beside them their mutants (both), or the mutants alone; children_per_parent: how many children a batch has
-    for each chromosome of the population.
+    mutation: every gene changes with the probability mutation_rate, one gene of a chromosome does, or one gene always does (one_flip); or a
+    chromosome, with that probability, loses a control point, gets another one, or has one shifted (shift). diversity: no rule at all (the
+    plain algorithm); more offspring as long as the mean Q of the pool is above eta, at most most_batches times an iteration (Algorithm 2);
+    only children whose mean Q to the pool is at most 1 - eta (relaxing); no child equal to another chromosome of the pool (unique). eta
+    changes by the factor eta_decay from one iteration to the next. gene_lattice: 21 x 21 points, or every cell; gene_order: genes are
+    numbered column by column from the left, or row by row from below. point_order: control points are joined in the order of their
+    projection on the line from start to target, ties from its left to its right, in the order of the genes, or in that of their distance
+    from the start over free cells (geodesic). first_population: random chromosomes, or the inner nodes of ways along random road maps
+    (`prm`) of roadmap_nodes and roadmap_neighbours, of which there are at most most_roadmaps; random chromosomes stand in for those that
+    are missing. first_points: the most control points of a random chromosome. first_draws: for each of the first population. replacements:
+    draws for an invalid child. least_distance: between two control points, in cells. curve: a single Bezier curve, or quadratic pieces that
+    meet half-way between the points (composite). fitness_length: what the fitness is the inverse of, the length of the sampled curve or a
+    length that counts cells (`cell_length`). invalid: what becomes of a curve that touches occupied cells; with penalty cells each are
+    added to its length. survival: the best of parents and offspring, or of the offspring alone (generational). offspring: what joins the
+    pool, the children of a crossover and beside them their mutants (both), or the mutants alone; children_per_parent: how many children a
+    batch has for each chromosome of the population.
 
     The planner's own test: no cell that the sampled curve touches is occupied. Extra columns: distinct_chromosomes in the population and
     mean_q of the pool, means over the iterations; extra_batches of offspring; valid_share of the children.
@@ -186,7 +185,8 @@ def plan(
         unmutated=offspring == "both",
         pairs=population * children_per_parent // 2,
     )
-    found = search(rng, field, rules)
+    most_first = most_roadmaps if first_population == "roadmaps" else 0
+    found = search(rng, field, rules, *_from_roadmaps(problem, rng, field, population, most_first, roadmap_nodes, roadmap_neighbours))
     solved = len(found.ones) > 0
     return Plan(
         path=Path(PATH_KINDS[curve], grid.in_units(polygon(found.ones, field))) if solved else None,
@@ -204,35 +204,33 @@ def plan(
     )
 
 
-def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, gene_order: str, point_order: str) -> Field:
-    """The genes of a grid and the order in which they are joined; ends: (2, 2) start and target in cells.
-
-    Raises ValueError if no cell of the lattice is free.
+def _from_roadmaps(
+    problem: Problem, rng: np.random.Generator, field: Field, wanted: int, most: int, nodes: int, neighbours: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Chromosomes of the inner nodes of ways along road maps, at most as many as wanted, and their numbers of ones; straight ways and those
+    of too many nodes left out. The genes are all cells.
     """
-    rows, columns = grid.occupied.shape
-    longer = max(rows, columns)
-    # Whole places of 21 points along the longer side, the outer ones at its ends; or all places.
-    steps = np.floor(np.arange(21) * (longer - 1) / 20 + 0.5).astype(int) if gene_lattice == "coarse" else np.arange(longer)
-    column, row = (index.ravel() for index in np.meshgrid(steps, steps, indexing="ij" if gene_order == "columns" else "xy"))
-    points = np.column_stack([column, row]) + 0.5
-    settable = (column < columns) & (row < rows)
-    settable[settable] = ~grid.occupied[row[settable], column[settable]]
-    for end in np.floor(ends):
-        settable &= (column != end[0]) | (row != end[1])
-    choices = np.flatnonzero(settable)
-    if not len(choices):
-        raise ValueError("gene_lattice: no free gene; every cell of the lattice is occupied, or start or target")
-    rank = np.arange(len(points))
-    if point_order == "projection":
-        along = ends[1] - ends[0]
-        left = along[0] * (points[:, 1] - ends[0, 1]) - along[1] * (points[:, 0] - ends[0, 0])
-        rank[np.lexsort((-left, (points - ends[0]) @ along))] = np.arange(len(points))
-    return Field(grid.occupied, points, rank, settable, choices, ends[0], ends[1])
+    ones, counts = np.zeros((wanted, _ROOM), dtype=np.int64), []
+    for _ in range(most):
+        if len(counts) == wanted:
+            break
+        _, way, _ = road_map(problem, rng, nodes, neighbours)
+        column, row = np.floor(problem.workspace.in_cells(way[1:-1])).astype(int).T
+        line, place = (row, column) if field.by_rows else (column, row)
+        genes = np.unique(line * field.places[0] + place)
+        genes = genes[field.settable[genes]]
+        if 0 < len(genes) <= MOST_POINTS:
+            ones[len(counts), : len(genes)] = genes
+            counts.append(len(genes))
+    return ones[: len(counts)], np.array(counts, dtype=np.int64)
 
 
 @njit(cache=True)
-def search(rng: np.random.Generator, field: Field, rules: Rules) -> Found:
-    """Algorithm 2; without a rule for diversity the plain algorithm."""
+def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarray, counts: np.ndarray) -> Found:
+    """Algorithm 2; without a rule for diversity the plain algorithm.
+
+    first: (n, `_ROOM`) chromosomes that the first population begins with, and counts: (n,) of their ones.
+    """
     batches = 1 + (rules.most_batches if rules.diversity == _MORE_OFFSPRING else 0)
     size = rules.population
     children = 2 * rules.pairs * (2 if rules.unmutated else 1)
@@ -244,6 +242,13 @@ def search(rng: np.random.Generator, field: Field, rules: Rules) -> Found:
     further = evaluations = bred = lost = 0
 
     for place in range(size):
+        if place < len(first):
+            count = counts[place]
+            child[:count] = first[place, :count]
+            cost, free = validate(child[:count], field, rules)
+            evaluations += 1
+            gene_lists.put(child, count, min(cost, 1.0 / _UNFIT), free, pool, place)
+            continue
         for _ in range(rules.first_draws):
             count = _random_chromosome(rng, child, field, rules)
             cost, free = validate(child[:count], field, rules)
@@ -349,10 +354,36 @@ def _mutate(rng, child, count, field, rules):
             if field.settable[gene]:
                 count = gene_lists.flip(child, count, gene)
             gene += 1 + gene_lists.gap(rng, rules.mutation_rate)
+    elif rules.mutation == _SHIFT:
+        if rng.random() < rules.mutation_rate:
+            count = _change_point(rng, child, count, field)
     elif rules.mutation == _ONE_FLIP or rng.random() < rules.mutation_rate:
         gene = rng.integers(0, genes)
         if field.settable[gene]:
             count = gene_lists.flip(child, count, gene)
+    return count
+
+
+@njit(cache=True)
+def _change_point(rng, child, count, field):
+    """Take a control point away, but for the only one, add one, or shift one, each as likely; returns how many there are."""
+    change = rng.integers(0, 3)
+    if change == 1:
+        gene = field.choices[rng.integers(0, len(field.choices))]
+        return gene_lists.flip(child, count, gene) if gene_lists.position(child, count, gene) == count else count
+    if count == 0:
+        return count
+    gene = child[rng.integers(0, count)]
+    if change == 0:
+        return gene_lists.flip(child, count, gene) if count > 1 else count
+    side, lines, places = field.places
+    reach = int(_SHIFT_REACH * side)
+    line = min(max(gene // side + rng.integers(-reach, reach + 1), 0), lines - 1)
+    place = min(max(gene % side + rng.integers(-reach, reach + 1), 0), places - 1)
+    shifted = line * side + place
+    if field.settable[shifted] and gene_lists.position(child, count, shifted) == count:
+        count = gene_lists.flip(child, count, gene)
+        count = gene_lists.flip(child, count, shifted)
     return count
 
 
@@ -396,18 +427,6 @@ def validate(ones: np.ndarray, field: Field, rules: Rules) -> tuple[float, bool]
     else:
         length = cells8(columns, rows)
     return length + rules.penalty * bad, bad == 0
-
-
-@njit(cache=True)
-def polygon(ones: np.ndarray, field: Field) -> np.ndarray:
-    """Start, the control points of a chromosome in their order, and target: (points, 2)."""
-    points = np.empty((len(ones) + 2, 2))
-    order = ones[ascending(field.rank[ones])]
-    for axis in range(2):
-        points[0, axis], points[-1, axis] = field.start[axis], field.target[axis]
-        for i in range(len(order)):
-            points[i + 1, axis] = field.points[order[i], axis]
-    return points
 
 
 @njit(cache=True)

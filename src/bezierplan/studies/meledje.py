@@ -11,7 +11,7 @@ import numpy as np
 import pandas as pd
 import shapely
 
-from bezierplan.analysis.claims import holm
+from bezierplan.analysis.statistics import holm
 from bezierplan.planners import node_genetic
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.ground import centres, ground_of, obstacles_met

@@ -9,10 +9,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.polygons import Polygons
 
 # A coordinate this close below a grid line, in cells, counts as on it. Centres of cells put many samples of a curve exactly on grid
 # lines, where rounding alone would decide; with this margin every program gives the same cell: the one above or to the right.
 ON_LINE = 1e-9
+
+MOST_CELLS = 4_000_000
+"""Most cells of a map file."""
 
 
 @dataclass(frozen=True)
@@ -20,7 +24,8 @@ class Grid:
     """Cells of a rectangle.
 
     occupied: bool (rows, columns), row 0 at the bottom. cell: side of a cell, in units. unit: name of the unit of length. origin: x, y of
-    the lower left corner, in units. drawn: the circles that the cells were drawn from, if they were; only pictures show them.
+    the lower left corner, in units. drawn: what the cells were drawn from, if they were: circles, which only pictures show, or polygons,
+    which then are the obstacles of the certified check and of the exact bounds (`raster`).
     heights: of the ground of each cell, in units (rows, columns), where it is not flat; only some planners look at them.
     """
 
@@ -28,7 +33,7 @@ class Grid:
     cell: float
     unit: str
     origin: tuple[float, float] = (0.0, 0.0)
-    drawn: Circles | None = None
+    drawn: Circles | Polygons | None = None
     heights: np.ndarray | None = None
 
     @property
@@ -78,17 +83,19 @@ def embed(occupied: np.ndarray) -> np.ndarray:
 def from_lines(lines: list[str], cell: float, unit: str) -> Grid:
     """A grid from text, top row first: `.` is a free cell, `#` an occupied one.
 
-    Raises ValueError, naming the line, for an empty or ragged map and for any other character.
+    Raises ValueError, naming the line, for an empty or ragged map, for any other character, and for more than `MOST_CELLS` cells.
     """
-    if not lines:
+    if not lines or not lines[0]:
         raise ValueError("the map is empty; expected lines of . (free) and # (occupied)")
     for number, line in enumerate(lines, start=1):
-        for character in line:
-            if character not in ".#":
-                raise ValueError(f"line {number}: unknown character {character!r}; a cell is . (free) or # (occupied)")
+        unknown = line.replace(".", "").replace("#", "")
+        if unknown:
+            raise ValueError(f"line {number}: unknown character {unknown[0]!r}; a cell is . (free) or # (occupied)")
         if len(line) != len(lines[0]):
             raise ValueError(f"line {number} has {len(line)} cells, the first line has {len(lines[0])}; all lines need the same number")
-    occupied = np.array([[character == "#" for character in line] for line in reversed(lines)])
+    if len(lines) * len(lines[0]) > MOST_CELLS:
+        raise ValueError(f"{len(lines):,} x {len(lines[0]):,} cells; expected at most {MOST_CELLS:,} cells")
+    occupied = np.array([np.frombuffer(line.encode(), dtype=np.uint8) == ord("#") for line in reversed(lines)])
     return Grid(occupied, cell, unit)
 
 

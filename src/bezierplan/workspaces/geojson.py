@@ -1,0 +1,112 @@
+"""Polygons from GeoJSON (RFC 7946), read strictly: what is not understood is refused by name, for an obstacle must not vanish.
+
+A feature is a Polygon with `properties.role` `border` (one, a rectangle) or `obstacle`. Features with the role
+`start` or `target` are left out: a study's problems say where they are.
+"""
+
+import json
+from typing import Any
+
+import numpy as np
+
+from bezierplan.workspaces.limits import SMALLEST_GAP, check_bounds, check_gaps, check_numbers
+from bezierplan.workspaces.polygons import Polygons
+
+ROLES = ("border", "obstacle", "start", "target")
+
+MOST_POSITIONS = 100_000
+"""Most positions in a file, which its text could exceed within its own limit."""
+
+Rings = tuple[np.ndarray, ...]
+
+
+def polygons_from_geojson(text: str, unit: str) -> Polygons:
+    """Polygons from the text of a GeoJSON file.
+
+    Raises ValueError, naming the feature, for text that is no feature collection, an unknown role, another geometry than a Polygon, a ring
+    that is not closed, positions that are not [x, y], coordinates out of range, a border that is no rectangle, an obstacle that is invalid
+    or reaches over the border, and gaps that are neither closed nor open.
+    """
+    shapes = [shape for number, feature in enumerate(_features(text)) if (shape := _shape(number, feature))]
+    borders = [rings for role, _, rings in shapes if role == "border"]
+    if len(borders) != 1:
+        raise ValueError(f"{len(borders)} features with role border; expected one")
+    if sum(len(ring) for _, _, rings in shapes for ring in rings) > MOST_POSITIONS:
+        raise ValueError(f"more than {MOST_POSITIONS:,} positions; expected at most so many")
+    outer, *holes = borders[0]
+    low, high = outer.min(axis=0).tolist(), outer.max(axis=0).tolist()
+    limits = (low[0], high[0], low[1], high[1])
+    check_bounds(limits)
+    obstacles = [(name, rings) for role, name, rings in shapes if role == "obstacle"]
+    _check_shapes(limits, (outer, *holes), obstacles)
+    return Polygons(limits, tuple(rings for _, rings in obstacles), unit)
+
+
+def _features(text: str) -> list:
+    try:
+        features = json.loads(text)["features"]
+    except (ValueError, KeyError, TypeError) as error:
+        raise ValueError(f"not a GeoJSON feature collection ({type(error).__name__}: {error})") from None
+    except RecursionError:
+        raise ValueError("not a GeoJSON feature collection: nested too deeply") from None
+    if not isinstance(features, list):
+        raise ValueError("not a GeoJSON feature collection: features is no list")
+    return features
+
+
+def _shape(number: int, feature: Any) -> tuple[str, str, Rings] | None:
+    """Role, name for messages, and rings of a feature, their last positions left out; None for a role that is no part of a workspace."""
+    properties, geometry = (feature.get(key) if isinstance(feature, dict) else None for key in ("properties", "geometry"))
+    if not isinstance(properties, dict) or "role" not in properties:
+        raise ValueError(f"feature {number}: properties: role: missing; expected border or obstacle")
+    role = properties["role"]
+    if role not in ROLES:
+        from bezierplan.checked import closest
+
+        raise ValueError(f"feature {number}: properties: role: {role!r}: unknown{closest(str(role), ROLES)}")
+    if role in ("start", "target"):
+        return None
+    name = f"feature {number} ({role})"
+    kind = geometry.get("type") if isinstance(geometry, dict) else None
+    if kind != "Polygon":
+        raise ValueError(f"{name}: geometry: {kind}; expected a Polygon, a feature for each")
+    rings = geometry.get("coordinates")
+    if not isinstance(rings, list) or not rings:
+        raise ValueError(f"{name}: geometry: coordinates: expected a list of rings")
+    return role, name, tuple(_ring(ring, f"{name}: ring {place}") for place, ring in enumerate(rings))
+
+
+def _ring(positions: Any, where: str) -> np.ndarray:
+    """A ring (n, 2) without its last position, which repeats the first."""
+    if not isinstance(positions, list) or len(positions) < 4:
+        raise ValueError(f"{where}: expected at least four positions, the last one the first again (RFC 7946, 3.1.6)")
+    for position in positions:
+        pair = isinstance(position, list) and len(position) == 2
+        if not (pair and all(isinstance(value, int | float) and not isinstance(value, bool) for value in position)):
+            raise ValueError(f"{where}: position {str(position)[:60]}; expected [x, y]")
+    try:
+        ring = np.array(positions, dtype=float)
+    except OverflowError:
+        raise ValueError(f"{where}: a number is too large for a coordinate") from None
+    check_numbers(ring, where)
+    if positions[0] != positions[-1]:
+        raise ValueError(f"{where}: is not closed: begins at {positions[0]}, ends at {positions[-1]}; expected the same (RFC 7946, 3.1.6)")
+    return ring[:-1]
+
+
+def _check_shapes(limits: tuple[float, float, float, float], border: Rings, obstacles: list[tuple[str, Rings]]) -> None:
+    import shapely
+
+    frame = shapely.box(limits[0], limits[2], limits[1], limits[3])
+    if not shapely.Polygon(border[0], border[1:]).equals(frame):
+        raise ValueError("border: expected a rectangle with sides along the axes, without a hole")
+    shapes = np.array([shapely.Polygon(rings[0], rings[1:]) for _, rings in obstacles], dtype=object)
+    for (name, _), shape in zip(obstacles, shapes):
+        if not shape.is_valid:
+            raise ValueError(f"{name}: {shapely.is_valid_reason(shape)}; expected a simple polygon")
+        if not frame.covers(shape):
+            raise ValueError(f"{name}: reaches over the border")
+    near = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=SMALLEST_GAP)
+    for i, ((name, _), shape) in enumerate(zip(obstacles, shapes)):
+        beside = shapes[near[1][(near[0] == i) & (near[1] > i)]]
+        check_gaps(np.append(shapely.distance(beside, shape), shape.distance(frame.exterior)), name)

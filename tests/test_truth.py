@@ -1,0 +1,108 @@
+"""The workflow itself refuses planners that lie or do not end, by run and field, in one line; no table shows them."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+PLANNER = """
+import numpy as np
+from numba import njit
+from bezierplan.problem import Path, Plan
+
+workspaces = ("circles",)
+
+
+@njit
+def never_ends(n):
+    while n > 0:
+        n = n % 7 + 1
+    return n
+
+
+def plan(problem, rng):
+    points = np.array([problem.start, problem.target])
+    answer = Plan(Path("polyline", points), 8.0, True, 1, np.array([8.0]), "one", {})
+    return ANSWER
+"""
+
+# A method: what it answers, and the line that is told of it.
+TOLD = {
+    "ends_short": (
+        'answer._replace(path=Path("polyline", points * 0.5))',
+        "path: start: (-2.0, 2.0); expected exactly (-4.0, 4.0)",
+    ),
+    "claims_feasible": ('answer._replace(extra={"feasible": True})', "extra: feasible: a column or setting has this name already"),
+    "claims_length": ('answer._replace(extra={"length": 1.0})', "extra: length: a column or setting has this name already"),
+    "hides_points": ('answer._replace(path=Path("polyline", points * np.nan))', "path: points: expected finite numbers"),
+    "says_nothing": ("None", "is a NoneType; expected a Plan"),
+    "flat": ('answer._replace(path=Path("polyline", points.ravel()))', "path: points: expected an array of floats, (n, 2)"),
+}
+RUN = "run liars/roads/across/{method}/0: "
+LOOPS = RUN.format(method="loops") + "planner {folder}/loops.py: not done within the time limit of 20 s; the job is ended"
+
+EXPERIMENTS = """
+title: Planners that lie
+methods: {{{methods}}}
+settings: {{}}
+workspaces:
+  disc: {{kind: circles, unit: m, bounds: [-5, 5, -5, 5], circles: [[0, 0, 1]]}}
+problems:
+  across: {{workspace: disc, start: [-4, 4], target: [4, 4]}}
+experiments:
+  roads:
+    problems: [across]
+    methods: [{names}]
+    time_limit: 20
+    repeats: {{smoke: 1, full: 1, extended: 1}}
+    chunk: {{smoke: 1, full: 1, extended: 1}}
+"""
+ARTEFACTS = """
+tables:
+  all: {title: All, kind: pivot, experiment: roads, index: [method], columns: [value], values: [
+    {metric: length, statistic: mean, label: length, decimals: 2}]}
+"""
+
+
+@pytest.fixture(scope="module")
+def ended(tmp_path_factory):
+    """The folder in which a study of liars was run as far as it goes, and what the workflow told."""
+    folder = tmp_path_factory.mktemp("truth")
+    study = folder / "liars"
+    study.mkdir()
+    answers = {"honest": "answer", "loops": "never_ends(1)"} | {name: answer for name, (answer, _) in TOLD.items()}
+    for name, answer in answers.items():
+        (study / f"{name}.py").write_text(PLANNER.replace("ANSWER", answer))
+    methods = ", ".join(f"{name}: {{planner: {name}.py}}" for name in answers)
+    (study / "experiments.yaml").write_text(EXPERIMENTS.format(methods=methods, names=", ".join(answers)))
+    (study / "artefacts.yaml").write_text(ARTEFACTS)
+    command = [sys.executable, "-m", "snakemake", "-s", str(ROOT / "Snakefile"), "--workflow-profile", "none", "--cores", "2"]
+    target = ["results/smoke/liars/tables/all.csv", "--keep-going", "--config", f"studies=[{study}]"]
+    done = subprocess.run([*command, *target], cwd=folder, capture_output=True, text=True, check=False, timeout=300)
+    return folder, done
+
+
+@pytest.mark.parametrize("method", TOLD)
+def test_liar_is_refused_by_name_in_one_line(ended, method):
+    folder, done = ended
+    told = f"{RUN.format(method=method)}the answer of planner liars/{method}.py: {TOLD[method][1]}"
+    assert sum(told in line for line in done.stderr.splitlines()) == 1
+    assert told in (folder / f"results/smoke/liars/logs/runs/roads/{method}/0.log").read_text()
+
+
+def test_kernel_that_never_ends_is_ended_by_name(ended):
+    folder, done = ended
+    told = LOOPS.format(folder="liars")
+    assert done.stderr.splitlines().count(told) == 1
+    assert told in (folder / "results/smoke/liars/logs/runs/roads/loops/0.log").read_text()
+
+
+def test_no_table_shows_them_and_the_honest_one_ran(ended):
+    folder, done = ended
+    assert done.returncode != 0
+    assert [file.parent.name for file in folder.glob("results/**/runs/roads/*/0.parquet")] == ["honest"]
+    assert not list(folder.glob("results/**/tables/*"))
+    assert "Traceback" not in done.stderr
