@@ -32,8 +32,8 @@ def benchmark(name):
     return Problem(name, polygons_from_geojson(text, "m"), tuple(properties["start"]), tuple(properties["target"]))
 
 
-def rounded(problem, turning_radius, clearance=0.0):
-    return rounded_shortest_path.plan(problem, np.random.default_rng(0), turning_radius=turning_radius, clearance=clearance)
+def rounded(problem, turning_radius, offset=0.0):
+    return rounded_shortest_path.plan(problem, np.random.default_rng(0), turning_radius=turning_radius, offset=offset)
 
 
 def most_curved(path):
@@ -61,14 +61,14 @@ def assert_sound(problem, plan, turning_radius):
 
 
 @pytest.mark.parametrize("name", MAPS)
-@pytest.mark.parametrize(("turning_radius", "clearance"), [(0.3, 0.0), (0.5, 0.2), (3.0, 0.0), (0.0, 0.4)])
-def test_benchmark_maps(name, turning_radius, clearance):
+@pytest.mark.parametrize(("turning_radius", "offset"), [(0.3, 0.0), (0.5, 0.2), (3.0, 0.0), (0.0, 0.4)])
+def test_benchmark_maps(name, turning_radius, offset):
     problem = benchmark(name)
-    plan = rounded(problem, turning_radius, clearance)
+    plan = rounded(problem, turning_radius, offset)
     found, bound = assert_sound(problem, plan, turning_radius)
     if turning_radius < 1:
         assert plan.extra["tight_turns"] == 0
-        assert found.clearance >= 0.15 if clearance else plan.objective < 1.04 * bound.length
+        assert found.clearance >= 0.15 if offset else plan.objective < 1.04 * bound.length
 
 
 def test_without_a_radius_it_is_the_shortest_path():
@@ -112,12 +112,12 @@ def test_one_circle_is_gone_round_by_its_own_arc():
 
 @settings(max_examples=40)
 @given(st.integers(0, 10_000), st.sampled_from([0.2, 1.0, 4.0]), st.sampled_from([0.0, 0.5]))
-def test_random_circles(seed, turning_radius, clearance):
+def test_random_circles(seed, turning_radius, offset):
     rng = np.random.default_rng(seed)
     centres, radii = rng.uniform(-9, 9, (12, 2)), rng.uniform(0.3, 2.5, 12)
     start, target = (-9.5, -9.5), (9.5, 9.5)
     problem = Problem("", Circles((-10.0, 10.0, -10.0, 10.0), centres, radii, "m"), start, target)
-    plan = rounded(problem, turning_radius, clearance)
+    plan = rounded(problem, turning_radius, offset)
     if plan.path is None:
         assert math.isinf(shortest_path(problem).length)
     else:
@@ -126,12 +126,12 @@ def test_random_circles(seed, turning_radius, clearance):
 
 @settings(max_examples=40)
 @given(st.integers(0, 10_000), st.sampled_from([0.1, 0.5, 3.0]), st.sampled_from([0.0, 0.3]))
-def test_random_cells(seed, turning_radius, clearance):
+def test_random_cells(seed, turning_radius, offset):
     rng = np.random.default_rng(seed)
     occupied = rng.random((14, 14)) < 0.25
     occupied[0, 0] = occupied[-1, -1] = False
     problem = Problem("", Grid(occupied, 0.5, "m"), (0.25, 0.25), (6.75, 6.75))
-    plan = rounded(problem, turning_radius, clearance)
+    plan = rounded(problem, turning_radius, offset)
     if plan.path is None:
         assert math.isinf(shortest_path(problem).length)
         assert not plan.claimed_feasible

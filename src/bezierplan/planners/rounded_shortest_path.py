@@ -56,11 +56,11 @@ def plan(
     rng: np.random.Generator,
     *,
     turning_radius: Annotated[float, Range(0)],
-    clearance: Annotated[float, Range(0)],
+    offset: Annotated[float, Range(0)],
 ) -> Plan:
     """The exact shortest path (`exact.bounds`), rounded; its objective is its length, in units, or infinite without a path.
 
-    turning_radius: the least that the path should have, in units; 0 leaves the corners. clearance: how far the path should keep from the
+    turning_radius: the least that the path should have, in units; 0 leaves the corners. offset: how far the path should keep from the
     corners that it turns round, in units. Where there is no room, both are less: how much is told by the extra columns.
 
     Extra columns: turns, the number of corners; tight_turns, those with less than the turning radius; least_radius, the smallest radius of
@@ -71,7 +71,7 @@ def plan(
         nothing = {"turns": 0, "tight_turns": 0, "least_radius": math.nan}
         return Plan(None, math.inf, claimed_feasible=False, evaluations=1, history=np.array([math.inf]), stop="no way", extra=nothing)
     turns = turns_of(bound.points, problem.workspace)
-    points, radii, tries = _rounded(problem, turns, turning_radius, clearance)
+    points, radii, tries = _rounded(problem, turns, turning_radius, offset)
     path = Path("cubic_chain", points)
     length = curves.length(path)
     return Plan(
@@ -117,7 +117,7 @@ def _unit(vectors: np.ndarray) -> np.ndarray:
     return vectors / np.maximum(np.hypot(*vectors.T), np.finfo(float).tiny)[:, None]
 
 
-def _rounded(problem: Problem, turns: Turns, turning_radius: float, clearance: float) -> tuple[np.ndarray, np.ndarray, int]:
+def _rounded(problem: Problem, turns: Turns, turning_radius: float, offset: float) -> tuple[np.ndarray, np.ndarray, int]:
     """Control points of the rounded path, radius (n,) of each turn, and how many paths were tried.
 
     Where two circles of the same sense get into each other's way, they become one turn: they are pulled inwards the same way. Where that
@@ -130,7 +130,7 @@ def _rounded(problem: Problem, turns: Turns, turning_radius: float, clearance: f
     tries = 0
     while True:
         tries += 1
-        radii, centres = _circles(turns, begins, share, pulled, turning_radius, clearance)
+        radii, centres = _circles(turns, begins, share, pulled, turning_radius, offset)
         legs, sweeps, bent_back, crowded = _string(problem, turns, centres, radii)
         if bent_back.any() and _join(begins, bent_back, turns):
             continue
@@ -177,10 +177,10 @@ def _beside(marked: np.ndarray) -> np.ndarray:
 
 
 def _circles(
-    turns: Turns, begins: np.ndarray, share: np.ndarray, pulled: np.ndarray, turning_radius: float, clearance: float
+    turns: Turns, begins: np.ndarray, share: np.ndarray, pulled: np.ndarray, turning_radius: float, offset: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Radii (n,) and centres (n, 2) of the circles that the path goes round; the corners lie inside, as deep as the clearance."""
-    margin = turns.radius + share * clearance
+    """Radii (n,) and centres (n, 2) of the circles that the path goes round; the corners lie inside, as deep as the offset."""
+    margin = turns.radius + share * offset
     radii = np.maximum(margin, share * turning_radius)
     first, last = _runs(begins)
     inward = _unit(turns.after[last] - turns.before[first])[np.cumsum(begins) - 1]
