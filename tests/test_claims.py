@@ -314,6 +314,7 @@ VERDICTS = [
     ("+++00-", "in part", "supported"),
     ("+---", "seldom", "supported"),
     ("+0000?", "seldom", "supported"),
+    ("+-???", "undecided", "supported"),
     ("+?", "undecided", "supported"),
     ("-0", "contradicted", "no effect"),
     ("-?", "contradicted", "undecided"),

@@ -23,8 +23,8 @@ from bezierplan.analysis.claim_effects import Finding
 from bezierplan.analysis.claim_tests import ALPHA
 
 VERDICTS = ("supported", "mostly", "in part", "seldom", "contradicted", "no effect", "undecided", "untestable")
-# Of the comparisons that are decided at least this share makes it `mostly`, at most the rest `seldom`.
-MOSTLY = 0.75
+# Of the comparisons that are decided at least this share makes it `mostly`, at most the rest `seldom`; of all as many have to be decided.
+MOSTLY, DECIDED = 0.75, 0.5
 # So many names are listed; of more only the number is given. So many mixed groups are described one by one.
 MOST_LISTED, MOST_MIXED = 4, 3
 
@@ -61,6 +61,8 @@ def verdict(alone: Sequence[str], together: Sequence[str], holds: str) -> str:
 
 def _partly(marks: Sequence[str]) -> str:
     decided = [mark for mark in marks if mark != "?"]
+    if len(decided) < DECIDED * len(marks):
+        return "undecided"
     share = decided.count("+") / len(decided)
     return "mostly" if share >= MOSTLY else "seldom" if share <= 1 - MOSTLY else "in part"
 

@@ -21,7 +21,7 @@ procedure, and why). Where all have to hold, every mark by itself has to be + to
 | seldom | + in a quarter of them or less | |
 | contradicted | no +, and a - | every mark - by itself |
 | no effect | every mark 0 | no + and no ?, not all - |
-| undecided | otherwise: a ? stands in the way | likewise |
+| undecided | otherwise: a ? stands in the way, or more than half of the marks are ? | a ? stands in the way |
 | untestable | the reason is given | likewise |
 
 A sentence on seconds is judged on counted work where its check names one (`work`); the seconds stand beside it, and the reason says where
@@ -319,11 +319,16 @@ def _in_words(each: _Judged, deciding: list[_Judged]) -> claim_verdicts.Marked:
 
 
 def _disagreement(judged: list[_Judged]) -> str:
-    """Says so where seconds do not agree with the counted work that decides."""
-    seconds = {(each.number, each.condition, each.name): each.mark for each in judged if not each.decides and _is_timed(each.check)}
-    pairs = [(each.mark, seconds.get((each.number, each.condition, each.name))) for each in judged if "printed_metric" in each.check]
-    differing = sum(work != second for work, second in pairs if second is not None)
-    return f"judged on counted work; seconds disagree in {differing} of {len(pairs)}" if differing else ""
+    """Says so where seconds and counted work do not agree, one of which decides and the other is reported."""
+    others = {(each.condition, each.name, _is_timed(each.check)): each.mark for each in judged if not each.decides}
+    deciding = [each for each in judged if each.decides]
+    pairs = [(each, others.get((each.condition, each.name, not _is_timed(each.check)))) for each in deciding]
+    pairs = [(each, other) for each, other in pairs if other is not None and (_is_timed(each.check) or "printed_metric" in each.check)]
+    differing = sum(each.mark != other for each, other in pairs)
+    if not differing:
+        return ""
+    judged_on, other = ("seconds", "evaluations") if _is_timed(pairs[0][0].check) else ("counted work", "seconds")
+    return f"judged on {judged_on}; {other} disagree in {differing} of {len(pairs)}"
 
 
 def _shown(deciding: list[_Judged], holds: str) -> _Judged:
