@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.problem import PLACE, planner_module, planner_settings
+from bezierplan.workspaces import files
 
 SCALES = ("smoke", "full", "extended")
 
@@ -22,7 +23,7 @@ TIME_LIMIT = 600
 DRAWN = {"random_circles": "circles", "random_field": "grid", "random_blocks": "grid"}
 """Kinds of workspace that are drawn at random -> the kind that planners meet."""
 
-CELLS = ("raster",)
+CELLS = ("raster", "ros_map", "moving_ai")
 """Kinds of workspace read from files that planners meet as grids."""
 
 
@@ -101,8 +102,7 @@ class Study:
 
     def maps(self, workspaces: Iterable[str]) -> list[str]:
         """Map files of workspaces as seen from here, each once."""
-        described = [self.workspaces[name] for name in workspaces]
-        return sorted({relative(self.folder / each[key]) for each in described for key in ("file", "heights") if key in each})
+        return sorted({relative(file) for name in workspaces for file in files.sources(self.workspaces[name], self.folder)})
 
     def compared(self) -> dict[str, dict]:
         """The tables of runs, which are compared with published numbers; the others stand for themselves (`listing_job`)."""

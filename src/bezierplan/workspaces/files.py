@@ -6,6 +6,8 @@ A description is a mapping with `kind` and `unit` and, by kind,
     circles   bounds [x low, x high, y low, y high], circles [[x, y, radius], ...]
     polygons  file (`geojson`: features with properties.role `border`, one rectangle, and `obstacle`)
     raster    file as of polygons, cell (side of a cell), rule (`overlap` or `centre`: which cells are occupied)
+    ros_map   file (YAML of ROS's map_server, beside its image), perhaps robot_radius, most_pixels
+    moving_ai file (`.map`), perhaps scenarios (`.scen`)
 
 Coordinates are numbers of the unit, at most 1e5 in size.
 """
@@ -19,7 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from bezierplan.text_file import read_text
-from bezierplan.workspaces import grid, random_field, raster
+from bezierplan.workspaces import grid, moving_ai, random_field, raster, ros
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid
@@ -40,6 +42,10 @@ def load(description: dict, folder: Path) -> Workspace:
     kind, unit = description["kind"], description["unit"]
     if kind == "circles":
         return _circles(description["bounds"], description["circles"], unit)
+    if kind in ("ros_map", "moving_ai"):
+        with _naming(description["file"]):
+            options = {key: description[key] for key in ("robot_radius", "most_pixels") if key in description}
+            return (ros if kind == "ros_map" else moving_ai).read(folder / description["file"], unit, **options)
     text = _text(description, "file", folder)
     with _naming(description["file"]):
         if kind == "polygons":
@@ -53,6 +59,23 @@ def load(description: dict, folder: Path) -> Workspace:
     text = _text(description, "heights", folder)
     with _naming(description["heights"]):
         return replace(workspace, heights=grid.heights_from_lines(text.splitlines(), workspace.occupied.shape))
+
+
+def sources(description: dict, folder: Path) -> list[Path]:
+    """The files that a workspace is read from. Raises ValueError for a YAML file of `ros_map` that names no image."""
+    named = [folder / description[key] for key in ("file", "heights", "scenarios") if key in description]
+    if description["kind"] == "ros_map":
+        with _naming(description["file"]):
+            named.append(ros.image_of(named[0]))
+    return named
+
+
+def scenario(description: dict, number: int, workspace: Grid, folder: Path) -> moving_ai.Scenario:
+    """A numbered scenario of a workspace of kind `moving_ai`. Raises ValueError, naming the file and what would be right."""
+    if "scenarios" not in description:
+        raise ValueError(f"scenario: {number}: the workspace has no scenarios; expected a .scen file there")
+    with _naming(description["scenarios"]):
+        return moving_ai.scenario(folder / description["scenarios"], number, workspace, Path(description["file"]).name)
 
 
 def _text(description: dict, key: str, folder: Path) -> str:
@@ -97,6 +120,8 @@ def to_json(workspace: Workspace) -> str:
         content = _polygons_content(workspace.drawn) | cells | {"kind": "raster"}
     elif isinstance(workspace, Grid):
         content = {"kind": "grid", "cell": workspace.cell, "rows": grid.to_lines(workspace)}
+        if workspace.origin != (0.0, 0.0):
+            content["origin"] = workspace.origin
         if workspace.heights is not None:
             content["heights"] = workspace.heights.tolist()
     elif isinstance(workspace, Circles):
@@ -121,7 +146,7 @@ def from_json(text: str) -> Workspace:
     content = json.loads(text)
     unit = content["unit"]
     if content["kind"] == "grid":
-        flat = grid.from_lines(content["rows"], content["cell"], unit)
+        flat = replace(grid.from_lines(content["rows"], content["cell"], unit), origin=tuple(content.get("origin", (0.0, 0.0))))
         return replace(flat, heights=np.array(content["heights"])) if "heights" in content else flat
     bounds = tuple(content["bounds"])
     if content["kind"] in ("polygons", "raster"):
