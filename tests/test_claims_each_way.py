@@ -216,7 +216,7 @@ def made(key, claim, truth) -> dict[str, Results]:
         rows["feasible"] = rows["feasible"].astype(bool)
         for metric in {"length", "objective"}.difference(rows):
             rows[metric] = rng.random(len(rows))
-        results[name] = Results(rows, {problem: PROBLEM for problem in rows["problem"].unique()}, pd.DataFrame())
+        results[name] = Results(rows, dict.fromkeys(rows["problem"].unique(), PROBLEM), pd.DataFrame())
     return results
 
 
@@ -228,7 +228,7 @@ def verdict(key, claim, results, printed=None) -> pd.Series:
         *(results, printed or published(key), artefacts(key), key, vars(functions[key]) if key in functions else {}),
         variant_of={name: method["variant_of"] for name, method in own.methods.items() if "variant_of" in method},
         paired={name: own.experiments[name].get("seeds", "own") != "own" for name in results},
-        repeats={name: 10 for name in results},
+        repeats=dict.fromkeys(results, 10),
     )
     return judged.iloc[0]
 
