@@ -11,7 +11,7 @@ LOCK      = $(RUN) -m uv pip compile --quiet --universal --python-version 3.11 -
 # A killed run leaves its lock behind. A clone has one user, so these targets may break it; plain `snakemake` keeps it.
 UNLOCK = if [ -n "$$(ls .snakemake/locks 2>/dev/null)" ]; then $(SNAKEMAKE) --unlock >/dev/null 2>&1 || true; fi
 
-.PHONY: help reproduce smoke extended test lint benchmark compare outcome lock clean distclean anew
+.PHONY: help reproduce smoke extended test lint benchmark mutants compare outcome lock clean distclean anew
 
 help: ## list these targets
 	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1|\2/p' Makefile | awk -F '|' '{ printf "%-15s %s\n", $$1, $$2 }'
@@ -42,6 +42,9 @@ lint: .venv/ready ## style of Python and Snakemake files, and who may import who
 
 benchmark: .venv/ready ## speed of the inner loops, beside the bare minimum
 	$(RUN) tests/benchmark/run.py $(ARGS)
+
+mutants: .venv/ready ## plant each fault of tests/mutants, and see that its test catches it (ARGS: --jobs N, words of some faults)
+	$(RUN) tests/mutants/run.py $(ARGS)
 
 compare: .cache/comparison/ready ## the chaotic swarm of tharwat2018 beside pyswarms, pymoo and DEAP
 	cd $(<D) && bin/python $(CURDIR)/tests/benchmark/compare.py

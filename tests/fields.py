@@ -1,4 +1,6 @@
-"""Random fields of cells for tests of planners, and what holds for every path that is found in one."""
+"""Fields and maps for tests of planners, and what holds for every path that is found in a random field."""
+
+from pathlib import Path as File
 
 from bezierplan import cell_length, curves
 from bezierplan.exact import bounds
@@ -6,6 +8,9 @@ from bezierplan.exact.checker import check
 from bezierplan.exact.region import region
 from bezierplan.problem import Plan, Problem
 from bezierplan.workspaces import random_field
+
+# The six benchmark maps of elhoseny2017.
+BENCHMARK_MAPS = File(__file__).resolve().parents[1] / "config" / "studies" / "elhoseny2017" / "workspaces"
 
 
 def drawn(number: int, radius: float = 0.06, obstacles: int = 25, side: int = 100) -> Problem:

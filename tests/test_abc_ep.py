@@ -123,15 +123,39 @@ def test_start_equal_to_target_is_answered_without_a_search():
 
 
 def test_a_population_of_one_and_opponents_without_end():
+    """A parent and its child: each has the other as opponent 50 times, so that the better one survives."""
     found = plan(drawn(1), population=1, opponents=50)
-    assert found.claimed_feasible
+    assert_path_fits(drawn(1), found)
     assert found.objective < found.extra["first_length"]
+    assert (np.diff(found.history) <= 0).all()
+    assert found.evaluations == 1 + 150
 
 
 def test_reach_scales_with_the_smaller_side():
     """A field twice as large, all else to scale, is searched alike."""
-    one, other = (plan(field((s / 2, s / 2, s / 5), side=s), generations=0) for s in (100, 200))
-    assert len(other.path.points) == pytest.approx(len(one.path.points), abs=2)
+    fields = [field((s / 2, s / 2, s / 5), side=s) for s in (100, 200)]
+    lengths = [[plan(each, seed, generations=0).objective for seed in range(20)] for each in fields]
+    assert np.median(lengths[1]) == pytest.approx(2 * np.median(lengths[0]), rel=0.02)
+    # The next point of an empty field lies as far away as the colony may look, on the way to the target.
+    for side, reach in ((100, 0.1), (200, 0.1), (100, 0.3)):
+        colony = abc_ep._Colony(20, 50, 5, reach * side, step_weight=0.0, visited_weight=0.0, most_points=200)
+        grid, path = field(side=side).workspace, np.array([[0.5, 0.5], [0.0, 0.0]])
+        abc_ep._next_point(np.random.default_rng(0), grid.occupied, np.array([side + 0.5] * 2), path, 1, colony)
+        assert path[1] == pytest.approx(0.5 + reach * side, rel=0.02)
+
+
+def test_reach_is_a_share_of_the_smaller_side(monkeypatch):
+    colonies = []
+
+    def search(colony_rng, evolution_rng, occupied, start, target, colony, evolution):
+        colonies.append((colony.reach, evolution.spread))
+        return np.array([start, target]), np.zeros(1)
+
+    monkeypatch.setattr(abc_ep, "_search", search)
+    for rows, columns in ((101, 301), (301, 101), (101, 101)):
+        wide = Grid(np.zeros((rows, columns), dtype=bool), 1.0, "cell")
+        plan(Problem("test", wide, (0.5, 0.5), (50.5, 50.5)), reach=0.1, spread=0.025)
+    assert colonies == [(10.0, 2.5)] * 3
 
 
 def test_lengths_are_in_units():
@@ -162,6 +186,54 @@ def test_cost_is_the_way_there_and_on_and_the_cones_around_points_chosen():
     expected = 0.5 * math.dist((10.5, 10.5), point) + math.dist(point, target) + 2 * cones
     assert abc_ep._cost(occupied, target, path, 3, point, colony) == pytest.approx(expected, rel=1e-12)
     assert abc_ep._cost(occupied, target, path, 3, np.array([25.5, 10.5]), colony) == abc_ep._UNSEEN
+
+
+def colony_of(places, costs, monkeypatch, cycles):
+    """The points that a colony in plain Python tries, and the weights that its onlookers choose by; no try is ever better.
+
+    places: (sources, 2) the first sources, with their costs.
+    """
+    tried, weights, first = [], [], iter(places)
+
+    def placed(rng, low, high, point):
+        point[:] = next(first)
+
+    def priced(occupied, target, path, count, point, colony):
+        tried.append(point.copy())
+        return costs[len(tried) - 1] if len(tried) <= len(costs) else 1e6
+
+    def chosen(rng, given, count):
+        weights.append(given.copy())
+        return rng.integers(0, len(given), count)
+
+    for name, changed in (("_draw", placed), ("_cost", priced), ("roulette", chosen)):
+        monkeypatch.setattr(abc_ep, name, changed)
+    colony = abc_ep._Colony(len(places), cycles, 10**9, reach=40.0, step_weight=0.5, visited_weight=2.0, most_points=200)
+    path = np.array([[50.5, 50.5], [0.0, 0.0]])
+    occupied = np.zeros((101, 101), dtype=bool)
+    abc_ep._next_point.py_func(np.random.default_rng(5), occupied, np.array([90.0, 90.0]), path, 1, colony)
+    return np.array(tried[len(costs) :]), weights
+
+
+def test_onlookers_prefer_cheap_sources(monkeypatch):
+    """In proportion to the fitness 1 / (1 + cost) of an artificial bee colony."""
+    costs = [9.0, 1.0, 3.0, 0.0]
+    _, weights = colony_of([(40, 40), (60, 40), (60, 60), (40, 60)], costs, monkeypatch, cycles=3)
+    assert len(weights) == 3
+    for given in weights:
+        assert given / given.sum() == pytest.approx(np.array([0.1, 0.5, 0.25, 1.0]) / 1.85)
+
+
+def test_bees_move_one_coordinate_to_either_side(monkeypatch):
+    """By a share of the distance to another source, uniform between -1 and 1."""
+    places = np.array([(40.0, 45.0), (50.0, 65.0)])
+    tried, _ = colony_of(places, [1.0, 1.0], monkeypatch, cycles=500)
+    bee = np.abs(tried - places[:, None]).min(axis=2).argmin(axis=0)  # the source of which one coordinate is kept
+    share = (tried - places[bee]) / (places[bee] - places[1 - bee])
+    assert ((share == 0).sum(axis=1) == 1).all()
+    assert (share[:, 0] != 0).mean() == pytest.approx(0.5, abs=0.05)
+    moved = np.sort(share[share != 0])
+    assert moved == pytest.approx(np.linspace(-1, 1, len(moved)), abs=0.08)
 
 
 def test_children_keep_the_lengths_of_their_legs():

@@ -1,6 +1,7 @@
 """Every alternative of an assumption that governs a setting changes what a run finds: an option that nothing reads is a defect."""
 
 import json
+from functools import cache
 
 import pytest
 
@@ -34,13 +35,18 @@ def home(study, method):
     return next(name for name, experiment in study.experiments.items() if method in experiment["methods"])
 
 
+@cache
+def found_in_force(key, method):
+    """What the few runs of a method find with the values in force."""
+    return found(STUDIES[key], home(STUDIES[key], method), method)
+
+
 @pytest.mark.parametrize(("key", "name"), [(key, name) for key, study in STUDIES.items() for name in alternatives(study)])
 def test_alternative_changes_what_a_run_finds(key, name):
     """Of one method at least: a choice about chaotic sequences does not concern a swarm without one."""
     study = STUDIES[key]
     changed = with_alternative(study, name)
-    runs = ((home(study, method), method) for method in methods_changed(study, name))
-    assert any(found(changed, *run) != found(study, *run) for run in runs)
+    assert any(found(changed, home(study, method), method) != found_in_force(key, method) for method in methods_changed(study, name))
 
 
 def claims(study, *wanted):
@@ -63,6 +69,28 @@ def test_alternatives_run_only_what_their_claims_compare(claim, experiment, meth
     assert methods_of_claims(study, claims(study, claim), experiment) == (every if methods is None else methods)
 
 
-def test_every_setting_that_tharwat2018_leaves_open_is_tried():
-    study = STUDIES["tharwat2018"]
-    assert tried(study) == list(alternatives(study))
+@pytest.mark.parametrize("key", STUDIES)
+def test_every_setting_that_a_paper_leaves_open_is_tried(key):
+    assert tried(STUDIES[key]) == list(alternatives(STUDIES[key]))
+
+
+@pytest.mark.parametrize("key", STUDIES)
+def test_defaults_are_the_values_in_force(key):
+    """Of the methods that a default names, or of the study."""
+    study = STUDIES[key]
+    for assumption in study.assumptions:
+        if "setting" in assumption:
+            setting, default = assumption["setting"], assumption["default"]
+            if isinstance(default, dict):
+                assert {method: study.resolved(method)[setting] for method in default} == default, assumption["id"]
+            else:
+                assert study.settings[setting] == default, assumption["id"]
+
+
+@pytest.mark.parametrize("key", STUDIES)
+def test_what_goes_along_with_an_alternative_is_for_methods_that_it_changes(key):
+    study = STUDIES[key]
+    for assumption in study.assumptions:
+        if "with" in assumption:
+            changed = methods_changed(study, f"{assumption['id']}_{assumption['alternatives'][0]}")
+            assert set(assumption["with"]) <= set(changed), assumption["id"]

@@ -175,3 +175,40 @@ def test_occupied_control_points_cost_what_the_setting_says():
 def test_settings_that_do_not_fit_together_are_named(changes, named):
     with pytest.raises(ValueError, match=named):
         binary_genetic.check(SETTINGS | changes)
+
+
+BITS, GENES = 8, 6
+
+
+def flipped(mutation, probability, times):
+    """Which bits of a chromosome of zeros are complemented: (times, genes, bits)."""
+    rng = np.random.default_rng(4)
+    found = np.empty((times, GENES, BITS), dtype=int)
+    for each in found:
+        genes = np.zeros(GENES, dtype=np.int64)
+        binary_genetic._mutate(rng, genes, BITS, probability, mutation)
+        each[:] = genes[:, None] >> np.arange(BITS) & 1
+    return found
+
+
+def test_one_bit_of_any_gene_is_complemented():
+    """Each of the 48 bits with the same chance, within four standard errors."""
+    found = flipped(binary_genetic._ONE_BIT, 1.0, 4800)
+    assert (found.sum(axis=(1, 2)) == 1).all()
+    assert np.abs(found.sum(axis=0) - 100).max() < 4 * 10
+    assert flipped(binary_genetic._ONE_BIT, 0.25, 4000).sum() == pytest.approx(1000, abs=4 * math.sqrt(750))
+
+
+def test_one_bit_of_each_gene_is_complemented():
+    found = flipped(binary_genetic._EACH_GENE, 1.0, 800)
+    assert (found.sum(axis=2) == 1).all()
+    assert np.abs(found.sum(axis=0) - 100).max() < 4 * 10
+    share = flipped(binary_genetic._EACH_GENE, 0.25, 4000).sum(axis=(0, 2)) / 4000
+    assert share == pytest.approx(np.full(GENES, 0.25), abs=4 * math.sqrt(0.25 * 0.75 / 4000))
+
+
+def test_each_bit_is_complemented_by_itself():
+    assert (flipped(binary_genetic._EACH_BIT, 1.0, 1) == 1).all()
+    share = flipped(binary_genetic._EACH_BIT, 0.25, 4000).mean(axis=0)
+    assert np.abs(share - 0.25).max() < 4 * math.sqrt(0.25 * 0.75 / 4000)
+    assert (flipped(binary_genetic._EACH_BIT, 0.0, 1) == 0).all()

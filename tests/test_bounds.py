@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 import scipy
 import shapely
+from fields import BENCHMARK_MAPS
 
 from bezierplan.exact.bounds import Bound, centre_path, lattice_path, least_length, shortest_path
 from bezierplan.exact.checker import check
@@ -35,7 +36,7 @@ def reference(quantity):
 
 
 def imr_problem(name):
-    text = (MAPS / "imr" / f"{name}.geojson").read_text()
+    text = (BENCHMARK_MAPS / f"{name}.geojson").read_text()
     properties = json.loads(text)["properties"]
     return Problem(name, polygons_from_geojson(text, "m"), tuple(properties["start"]), tuple(properties["target"]))
 
@@ -303,10 +304,18 @@ def test_start_is_target(problem):
         ([[(4, 4), (5, 5), (4, 6)], [(5, 5), (6, 4), (6, 6)]], (5, 2), (5, 8), 6),
         ([[(4, 4), (5, 5), (4, 6)], [(5, 5), (6, 4), (6, 6)]], (4.9, 4), (4.9, 6), 2 * math.hypot(0.1, 1)),
         ([[(0, 5), (5, 5), (5, 6), (0, 6)], [(5, 5), (5, 4), (10, 4), (10, 5)]], (4, 4), (6, 6), 2 * ROOT2),
+        (
+            [[(0, 5), (5, 5), (5, 6), (0, 6)], [(5, 5), (5, 4), (10, 4), (10, 5)]],
+            *((4, 4.5), (5.5, 7)),
+            math.hypot(1, 0.5) + math.hypot(0.5, 2),
+        ),
         ([[(4, 4), (5, 4), (5, 6), (4, 6)], [(5, 4), (6, 4), (6, 6), (5, 6)]], (5, 3), (5, 7), 2 * ROOT2 + 2),
         ([[(4, 0), (5, 0), (5, 7), (4, 7)]], (3, 0), (6, 0), 1 + 2 * math.hypot(1, 7)),
     ],
-    ids=["corner to corner", "wall to wall", "between tips", "turning between tips", "between regions", "shared edge", "on the border"],
+    ids=[
+        *("corner to corner", "wall to wall", "between tips", "turning between tips", "between regions", "turning between regions"),
+        *("shared edge", "on the border"),
+    ],
 )
 def test_paths_among_polygons(obstacles, start, target, length):
     problem = among(obstacles, start, target)

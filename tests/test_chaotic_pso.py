@@ -200,7 +200,7 @@ UNUSED = np.random.default_rng(0)
 def swarm(where, x):
     """The swarm of no iterations that starts at x (particles, 6)."""
     field, rules = np.full(6, 10.0), chaotic_pso._Rules(10, 1.5, 1.5, 1.0, 1.0, 0, 0, False, 0, True)
-    objective = chaotic_pso._objective(where, SETTINGS)
+    objective = chaotic_pso._objective(where, chaotic_pso.Settings(**SETTINGS))
     return chaotic_pso.Swarm(*chaotic_pso._swarm(UNUSED, x, np.empty((0, 1, 1)), -field, field, field, objective, rules), 0, 0)
 
 
@@ -287,9 +287,21 @@ def test_psos_own_random_numbers_are_those_of_cpso():
 
 
 def test_a_larger_swarm_begins_with_the_smaller():
-    small, large = (np.random.default_rng(0).spawn(3)[0].random((size, 6)) for size in (20, 40))
-    assert np.array_equal(large[:20], small)
-    assert plan(particles=40, iterations=0).objective <= plan(iterations=0).objective
+    first = {}
+
+    def positions(moves, x, *_):
+        first[len(x)] = x.copy()
+        return x[:1], np.zeros(1), 0.0, 0, 0, 0, 0
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(chaotic_pso, "_swarm", positions)
+        for particles in (20, 40):
+            plan(particles=particles)
+    assert np.array_equal(first[40][:20], first[20])
+    assert len(np.unique(first[40])) == 40 * 6
+    assert np.abs(first[40]).max() <= 10
+    for seed in range(10):
+        assert plan(seed=seed, particles=40, iterations=0).objective <= plan(seed=seed, iterations=0).objective
 
 
 @pytest.mark.parametrize("chaotic_term", ["cognitive", "social"])

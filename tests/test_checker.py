@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fields import BENCHMARK_MAPS
 
 from bezierplan.curves import bernstein
 from bezierplan.exact.checker import check
@@ -265,7 +266,7 @@ def test_an_obstacle_between_two_samples_is_found(kind):
     assert not check(pieces, thin).feasible
 
 
-@pytest.mark.parametrize("file", sorted((MAPS / "imr").glob("*.geojson")), ids=lambda file: file.stem)
+@pytest.mark.parametrize("file", sorted(BENCHMARK_MAPS.glob("*.geojson")), ids=lambda file: file.stem)
 def test_a_stored_shortest_path_is_free(file):
     text = file.read_text()
     path = re.search(r'"shortest_path": (\[.*?\]\s*\])', text, re.DOTALL)

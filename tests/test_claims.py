@@ -9,8 +9,9 @@ import pandas as pd
 import pytest
 
 from bezierplan import metrics
-from bezierplan.analysis import claim_tests, claims, statistics
-from bezierplan.analysis.claim_tests import Finding
+from bezierplan.analysis import claim_tests, claim_verdicts, claims, statistics
+from bezierplan.analysis.claim_effects import Finding
+from bezierplan.analysis.claim_verdicts import Marked
 from bezierplan.analysis.results import Results
 from bezierplan.checked import Fault
 from bezierplan.metrics import Metric
@@ -70,7 +71,7 @@ def over_x(slope: float, std: float = 1.0) -> pd.DataFrame:
     )
 
 
-LOWER = {"test": "lower", "experiment": "tried", "metric": "objective", "groups": ["a"], "than": ["b"], "direction": "lower", "margin": 1.5}
+LOWER = {"test": "lower", "experiment": "tried", "metric": "objective", "groups": ["a"], "than": ["b"], "direction": "lower", "margin": 0.3}
 TREND = {"test": "trend", "experiment": "tried", "metric": "objective", "x": "particles", "direction": "up", "margin": 5}
 SHARE = {"test": "share", "experiment": "tried", "metric": "objective", "event": {"below": 0}, "threshold": 0.5, "direction": "at_least"}
 SHARE |= {"where": {"method": "a"}}
@@ -79,7 +80,7 @@ WITHIN = {"test": "equal_within", "experiment": "tried", "metric": "objective", 
 WITHIN |= {"margin": 1}
 DIFFERENCE = {"test": "difference", "experiment": "tried", "metric": "objective", "groups": ["a", "b"], "margin": 1}
 ORDERED = {"test": "ordered", "experiment": "tried", "metric": "objective", "order": [["a"], ["b", "c"], ["d"]], "direction": "lower"}
-ORDERED |= {"margin": 2}
+ORDERED |= {"margin": 0.3}
 TIERS = {"a": sample("a"), "b": sample("b", 1), "c": sample("c", 1.2), "d": sample("d", 2.5)}
 APART, ALIKE = table({"a": sample("a"), "b": sample("b", 1)}), table({"a": sample("a"), "b": sample("b", 0.1)})
 MOSTLY = table({"a": np.r_[np.full(35, -1.0), np.full(5, 1.0)]})
@@ -281,6 +282,15 @@ def test_many_units_by_normal_approximation(statistic, paired, monkeypatch):
     assert approximate["verdict"] == resampled["verdict"] == "supported"
 
 
+@pytest.mark.parametrize("n", [100, 300])
+def test_both_ends_of_an_interval_of_an_effect(n):
+    """Of two means of n normal values with the standard deviations 1 and 2: 1.96 standard errors away, resampled or not."""
+    row = judged(LOWER | {"statistic": "mean"}, table({"a": sample("a", 0, n=n), "b": sample("b", 1, n=n, std=2)}))
+    ends = (row[["low95", "high95"]].to_numpy(dtype=float) + 1) / math.sqrt(5 / n)
+    assert row["effect"] == pytest.approx(-1)
+    assert ends == pytest.approx([-1.96, 1.96], rel=0.1 if n == 100 else 0.01)
+
+
 def test_extremes_need_the_size_of_the_papers_experiment():
     check, runs = CASES["lower, extremes"][0]
     row = judged(check, runs)
@@ -299,6 +309,12 @@ VERDICTS = [
     ("+-", "in part", "supported"),
     ("+0", "in part", "supported"),
     ("+-?", "in part", "supported"),
+    ("++++-", "mostly", "supported"),
+    ("+++0", "mostly", "supported"),
+    ("+++00-", "in part", "supported"),
+    ("+---", "seldom", "supported"),
+    ("+0000?", "seldom", "supported"),
+    ("+-???", "undecided", "supported"),
     ("+?", "undecided", "supported"),
     ("-0", "contradicted", "no effect"),
     ("-?", "contradicted", "undecided"),
@@ -311,38 +327,132 @@ VERDICTS = [
 
 @pytest.mark.parametrize(("found", "all_hold", "any_holds"), VERDICTS)
 def test_verdict(found, all_hold, any_holds):
-    for order in set(itertools.permutations(found)):
-        assert (claims.verdict(order, "all"), claims.verdict(order, "any")) == (all_hold, any_holds)
-
-
-def test_holm_against_a_worked_example():
-    assert claims.holm(np.array([0.01, 0.04, 0.03, 0.005])) == pytest.approx([0.03, 0.06, 0.06, 0.02])
-    assert claims.holm(np.array([0.9, 0.8])) == pytest.approx([1, 1])
-    assert len(claims.holm(np.array([]))) == 0
+    for order in {found, found[::-1], found[1:] + found[:1]}:
+        assert (claim_verdicts.verdict(order, order, "all"), claim_verdicts.verdict(order, order, "any")) == (all_hold, any_holds)
 
 
 @pytest.mark.parametrize(
-    ("toward", "p", "p_holm", "least_detectable", "holds", "expected"),
+    ("alone", "together", "all_hold", "any_holds"),
     [
-        (1, 0.04, 0.4, 1, "all", "+"),
-        (1, 0.04, 0.4, 1, "any", "0"),
-        (1, 0.04, 0.4, 3, "any", "?"),
-        (1, 0.01, 0.04, 3, "any", "+"),
-        (-1, 0.04, 0.4, 1, "all", "0"),
-        (-1, 0.04, 0.4, 3, "all", "?"),
-        (-1, 0.01, 0.04, 1, "all", "-"),
-        (-1, 0.04, 0.4, 1, "any", "-"),
-        (0, 0.01, 0.01, 1, "all", "0"),
-        (1, math.nan, math.nan, math.nan, "all", "?"),
+        ("+++", "+??", "supported", "supported"),
+        ("++-", "???", "undecided", "undecided"),
+        ("--+", "-0?", "contradicted", "undecided"),
+        ("---", "-??", "contradicted", "contradicted"),
+        ("+00", "000", "no effect", "no effect"),
     ],
 )
-def test_mark(toward, p, p_holm, least_detectable, holds, expected):
-    assert claims.mark(Finding(p=p, toward=toward, least_detectable=least_detectable, margin=2), p_holm, holds) == expected
+def test_verdict_by_marks_alone_and_in_the_family(alone, together, all_hold, any_holds):
+    assert (claim_verdicts.verdict(alone, together, "all"), claim_verdicts.verdict(alone, together, "any")) == (all_hold, any_holds)
+
+
+def test_family_against_a_worked_example():
+    """The fifteen p of Benjamini and Hochberg (1995, Section 3.2): four are rejected at 0.05, by Holm three."""
+    p = np.array([0.0001, 0.0004, 0.0019, 0.0095, 0.0201, 0.0278, 0.0298, 0.0344, 0.0459, 0.3240, 0.4262, 0.5719, 0.6528, 0.7590, 1.0])
+    assert (claim_verdicts.family(p) < 0.05).sum() == 4
+    assert (statistics.holm(p) < 0.05).sum() == 3
+    assert len(claim_verdicts.family(np.array([]))) == 0
+
+
+def test_a_large_family_of_ten_fields_can_be_contradicted():
+    """Ten pairs give no p below 0.002: in 60 comparisons of one sentence its contrary still comes out."""
+    runs = pd.concat(table({"a": sample(f"a{k}", 9, n=10), "b": sample(f"b{k}", n=10)}, obstacles=k, condition=str(k)) for k in range(60))
+    row = judged(LOWER | {"every": ["obstacles"], "paired": True}, runs)
+    assert (row["verdict"], row["holds"]) == ("contradicted", "0 of 60")
+    assert row["p_family"] < 0.05
+
+
+@pytest.mark.parametrize(
+    ("apart", "wrong"), [(0.0, {"supported", "contradicted", "mostly", "in part", "seldom"}), (1.0, {"contradicted", "no effect"})]
+)
+def test_at_most_one_sentence_in_twenty_is_judged_wrongly(apart, wrong):
+    """Of sentences of twenty comparisons without an effect few get another verdict than undecided or no effect; true ones are never refused."""
+    verdicts = []
+    for number in range(100):
+        rng = statistics.generator(f"sentence {number}")
+        found = []
+        for p, mean in ((stats_of(rng.normal(apart, 1, 20))) for _ in range(20)):
+            found.append(Finding(effect=mean, p=p, toward=int(np.sign(mean)), margin=0.3))
+        together = claim_verdicts.family(np.array([each.p for each in found]))
+        alone = [claim_verdicts.mark(each, each.p) for each in found]
+        verdicts.append(claim_verdicts.verdict(alone, [claim_verdicts.mark(each, p) for each, p in zip(found, together)], "all"))
+    assert sum(verdict in wrong for verdict in verdicts) <= 10
+
+
+def stats_of(values: np.ndarray) -> tuple[float, float]:
+    from scipy import stats
+
+    return float(stats.ttest_1samp(values, 0).pvalue), float(values.mean())
+
+
+@pytest.mark.parametrize(
+    ("toward", "p", "negligible", "expected"),
+    [
+        (1, 0.04, False, "+"),
+        (1, 0.4, True, "0"),
+        (1, 0.4, False, "?"),
+        (-1, 0.04, False, "-"),
+        (-1, 0.4, False, "?"),
+        (0, 0.01, True, "0"),
+        (0, 0.01, False, "?"),
+        (1, math.nan, False, "?"),
+    ],
+)
+def test_mark(toward, p, negligible, expected):
+    assert claim_verdicts.mark(Finding(p=p, toward=toward, negligible=negligible), p) == expected
+    assert claim_verdicts.mark(Finding(p=p, toward=toward, mark="-"), p) == "-"
+
+
+def test_an_effect_below_the_margin_is_no_support():
+    runs = table({"a": sample("a", n=2000), "b": sample("b", 0.2, n=2000)})
+    row = judged(LOWER, runs)
+    assert (row["verdict"], row["p"] < 1e-6) == ("no effect", True)
+    assert judged(LOWER | {"margin": 0.1}, runs)["verdict"] == "supported"
+
+
+# Words.
+
+RIVALS = {"against": ["prm", "abc", "ga"], "workspace": ["small", "large"]}
+
+
+def marked(holds) -> list[Marked]:
+    """Six comparisons, of which those hold of which a function of rival and workspace says so."""
+    return [
+        Marked({"against": rival, "group": "mga", "workspace": workspace}, "+" if holds(rival, workspace) else "-")
+        for rival in RIVALS["against"]
+        for workspace in RIVALS["workspace"]
+    ]
+
+
+@pytest.mark.parametrize(
+    ("holds", "words"),
+    [
+        (lambda rival, workspace: True, ""),
+        (lambda rival, workspace: rival == "prm", "against roadmap"),
+        (lambda rival, workspace: rival != "ga", "against roadmap and abc"),
+        (lambda rival, workspace: workspace == "large", "in large"),
+        (lambda rival, workspace: rival == "prm" or (rival == "ga" and workspace == "small"), "against roadmap; against ga in small"),
+    ],
+)
+def test_words_for_where_a_claim_holds(holds, words):
+    assert claim_verdicts.where_it_holds(marked(holds), {"prm": "roadmap"}) == words
+
+
+def test_words_for_many_rivals_name_the_exceptions():
+    maps = [
+        Marked({"against": name}, "-" if name in ("circle", "sinusoidal") else "+")
+        for name in ("gauss", "tent", "circle", "logistic", "sine", "piecewise", "sinusoidal")
+    ]
+    labels = {"circle": "Circle", "sinusoidal": "Sinusoidal"}
+    assert claim_verdicts.where_it_holds(maps, labels) == "against 5 of 7: all but Circle and Sinusoidal"
+    unknown = [each._replace(mark="?") if each.mark == "-" else each for each in maps]
+    assert claim_verdicts.where_it_holds(unknown, labels).endswith("; undecided in 2 of 7")
+    contrary = [each._replace(mark="0" if each.mark == "+" else "-") for each in maps]
+    assert claim_verdicts.where_it_holds(contrary, labels) == "the contrary against Circle and Sinusoidal"
 
 
 def test_precise_and_nothing_there_is_no_effect():
     alike = table({"a": sample("a"), "b": sample("b")})
-    assert judged(LOWER, alike)["verdict"] == "no effect"
+    assert judged(LOWER | {"margin": 0.6}, alike)["verdict"] == "no effect"
     assert judged(LOWER | {"margin": 0.1}, alike)["verdict"] == "undecided"
 
 
@@ -360,7 +470,7 @@ def test_every_makes_one_comparison_a_combination_and_pool_averages():
     pooled = judged(pool, places(2, -1))
     assert (pooled["verdict"], pooled["holds"], pooled["n"]) == ("supported", "1 of 1", 2 * UNITS)
     assert pooled["effect"] == pytest.approx(-0.5)
-    assert judged(pool, places(1, -1))["verdict"] == "no effect"
+    assert judged(pool | {"margin": 0.6}, places(1, -1))["verdict"] == "no effect"
     assert judged(WITHIN | {"pool": ["problem"]}, places(1.2, -1.2))["verdict"] == "supported"
     assert judged(WITHIN | {"every": ["problem"]}, places(4, -4))["verdict"] == "contradicted"
 
@@ -396,7 +506,8 @@ def test_the_family_is_that_of_the_deciding_checks():
     assert (summary.iloc[0]["verdict"], summary.iloc[0]["holds"]) == ("supported", "1 of 1")
     assert details["mark"].to_list() == ["+", "-"]
     assert details["decides"].to_list() == [True, False]
-    assert details["p_holm"].isna().to_list() == [False, True]
+    assert details["mark_family"].to_list() == ["+", ""]
+    assert details["p_family"].isna().to_list() == [False, True]
 
 
 def test_the_worst_comparison_is_shown():
@@ -463,7 +574,11 @@ def test_failures():
     lengths.loc[(lengths["method"] == "a") & (lengths["repeat"] < 30), "feasible"] = False
     check = LOWER | {"metric": "length"}
     dropped = judged(check, lengths)
-    assert (dropped["verdict"], dropped["n"], dropped["reason"]) == ("supported", 10, "compared on common successes")
+    assert (dropped["verdict"], dropped["n"], dropped["reason"]) == (
+        "supported",
+        10,
+        "compared on successes alone, which are of different number",
+    )
     last = judged(check | {"failures": "last"}, lengths)
     assert (last["verdict"], last["n"]) == ("contradicted", UNITS)
     share = SHARE | {"metric": "length"}
@@ -584,11 +699,13 @@ def test_conditions_that_the_paper_does_not_tell_apart_are_not_printed():
     assert row["published"] == "not printed"
 
 
-def test_margin_is_the_printed_difference_where_it_points_as_claimed():
+def test_margin_is_a_share_or_the_printed_difference_where_that_is_smaller():
     _, details = with_printed(LOWER | {"than": ["b", "c", "d"], "margin": {"published": 0.01}})
-    assert details["margin"].to_list() == pytest.approx([1, 0.01 * 1.2, 0.01 * 2.5])
-    _, details = with_printed(LOWER | {"than": ["b", "c"], "margin": {"published": 0.01}, "scale": "relative"})
-    assert details["margin"].to_list() == pytest.approx([1 / 6, 0.01])
+    assert details["margin"].to_list() == pytest.approx([0.01, 0.01 * 1.2, 0.01 * 2.5])
+    _, details = with_printed(LOWER | {"than": ["b", "c"], "margin": {"published": 0.5}, "scale": "relative"})
+    assert details["margin"].to_list() == pytest.approx([1 / 6, 0.5])  # the printed difference of a and c points the other way
+    truths = judge({"checks": [LOWER | {"metric": "claimed_feasible", "margin": {"published": 0.01}}]}, TRUTHS)[1]
+    assert truths["margin"].to_list() == [0.01]
 
 
 @pytest.mark.parametrize(
@@ -687,8 +804,24 @@ def test_times_are_compared_by_ratio_only(monkeypatch):
 
 @pytest.mark.parametrize("check", [LOWER, LOWER | {"paired": True}, LOWER | {"statistic": "median"}, LOWER | {"scale": "relative"}])
 def test_no_difference_in_any_unit(check):
-    row = judged(check, table({"a": np.full(9, 3.0), "b": np.full(9, 3.0)}))
-    assert (row["verdict"], row["p"], row["effect"], row["low95"], row["high95"]) == ("no effect", 1, 0, 0, 0)
+    """Units that do not differ at all say nothing of those that may, unless there are enough of them."""
+    for n, verdict in ((9, "undecided"), (58, "undecided"), (59, "no effect")):
+        summary, details = judge({"checks": [check]}, table({"a": np.full(n, 3.0), "b": np.full(n, 3.0)}))
+        row = summary.iloc[0]
+        assert (row["verdict"], row["p"], row["effect"], row["low95"], row["high95"]) == (verdict, 1, 0, 0, 0)
+        assert details["least_detectable"].isna().all()
+
+
+@pytest.mark.parametrize("paired", [True, False])
+def test_what_never_happened_may_happen(paired):
+    """No success of 100 against none of 100: by rule of three either may have up to 3 %."""
+    check = LOWER | {"metric": "claimed_feasible", "paired": paired, "margin": 0.01}
+    never = table({"a": np.zeros(100, dtype=bool), "b": np.zeros(100, dtype=bool)}, metric="claimed_feasible")
+    summary, details = judge({"checks": [check]}, never)
+    assert summary.iloc[0]["verdict"] == "undecided"
+    assert 0.01 < details.iloc[0]["high95"] < 0.04
+    assert details.iloc[0]["least_detectable"] > 0.01
+    assert judged(check | {"margin": 0.04}, never)["verdict"] == "no effect"
 
 
 ANY_KIND = {
@@ -801,4 +934,4 @@ def test_columns():
     assert details.columns.to_list() == claims.CHECK_COLUMNS
     described = set(re.findall(r"\w+", claims.__doc__))
     assert described.issuperset(claims.CLAIM_COLUMNS + claims.CHECK_COLUMNS)
-    assert set(summary["verdict"]) <= set(claims.VERDICTS)
+    assert set(summary["verdict"]) <= set(claim_verdicts.VERDICTS)

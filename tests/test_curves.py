@@ -22,6 +22,8 @@ def paths(draw, kinds=curves.CURVES):
     count = draw(st.integers(curves.least_points(curve), 9))
     if curve == "ferguson":
         count -= count % 2
+    if curve == "cubic_chain":
+        count -= (count - 1) % 3
     return Path(curve, draw(hnp.arrays(float, (count, 2), elements=coordinates)))
 
 
@@ -139,6 +141,15 @@ def test_curvature_of_a_parabola_at_its_apex():
     assert abs(kappa[50]) == pytest.approx(4)
 
 
+@pytest.mark.parametrize("side", [1, -1])
+def test_curvature_is_positive_where_a_curve_turns_left(side):
+    """The parabola y = x^2 from left to right turns left, with the curvature 2 / (1 + 4 x^2)^1.5; its mirror image turns right."""
+    kappa, speed = curves.curvature(Path("bezier", np.array([[-1, 1], [0, -1], [1, 1]]) * [1, side]), 101)
+    x = np.linspace(-1, 1, 101)
+    assert kappa == pytest.approx(side * 2 / (1 + 4 * x**2) ** 1.5)
+    assert speed == pytest.approx(2 * np.sqrt(1 + 4 * x**2))
+
+
 def test_curvature_is_left_out_where_the_curve_stands_still():
     kappa, speed = curves.curvature(Path("bezier", np.array([[0, 0], [0, 0], [0, 0], [1, 2.0]])), 101)
     assert np.isnan(kappa[0])
@@ -154,6 +165,12 @@ def test_only_cubic_splines_and_a_single_bezier_have_continuous_curvature(curve,
     assert (curves.curvature_jump(Path(curve, points)) < 1e-6) == continuous
 
 
+def test_curvature_jumps_by_the_difference_where_an_s_changes_sides():
+    """Two quadratic pieces, point-symmetric about their joint: the curvature before it is -3 / (4 sqrt 2), behind it the opposite."""
+    points = np.array([[-3, 0], [-1, 1], [1, -1], [3, 0.0]])
+    assert curves.curvature_jump(Path("piecewise_quadratic", points)) == pytest.approx(3 / (2 * math.sqrt(2)))
+
+
 def test_curvature_jumps_without_limit_at_the_corner_of_a_polyline():
     assert curves.curvature_jump(Path("polyline", np.array([[0, 0], [1, 0], [1, 1.0]]))) == math.inf
 
@@ -162,6 +179,20 @@ def test_curvature_jumps_without_limit_at_the_corner_of_a_polyline():
 def test_too_few_control_points_are_refused(curve):
     with pytest.raises(ValueError, match="at least"):
         curves.piece_matrix(curve, curves.least_points(curve) - 1)
+
+
+def test_a_cubic_chain_is_its_pieces():
+    points = np.random.default_rng(0).normal(size=(7, 2))
+    path = Path("cubic_chain", points)
+    assert np.array_equal(curves.bezier_pieces(path), np.stack([points[:4], points[3:]]))
+    assert np.array_equal(curves.piece_matrix("cubic_chain", 7) @ points, curves.bezier_pieces(path))
+    assert curves.length(path) == pytest.approx(sum(curves.length(Path("bezier", each)) for each in (points[:4], points[3:])), rel=1e-12)
+
+
+@pytest.mark.parametrize("count", [5, 6])
+def test_a_cubic_chain_needs_3_k_and_1_control_points(count):
+    with pytest.raises(ValueError, match=r"3 k \+ 1"):
+        curves.piece_matrix("cubic_chain", count)
 
 
 def test_a_ferguson_curve_needs_pairs_of_a_point_and_a_tangent():

@@ -70,6 +70,30 @@ def test_own_planner_counts_with_what_it_imports(tree, tmp_path):
     assert len({before, after, digest(tree, str(planner))}) == 3
 
 
+def test_modules_beside_an_own_planner_count(tree, tmp_path):
+    planner = tmp_path / "mine.py"
+    planner.write_text("import near\nfrom parts import step\n")
+    (tmp_path / "parts").mkdir()
+    files = [tmp_path / name for name in ("near.py", "parts/__init__.py", "parts/step.py", "parts/far.py")]
+    for file in files:
+        file.write_text("")
+    (tmp_path / "parts" / "step.py").write_text("from . import far\n")
+    found = [digest(tree, str(planner))]
+    for file in files:
+        append(file, "# a comment\n")
+        assert digest(tree, str(planner)) == found[-1]
+        append(file, "NEW = 1\n")
+        found.append(digest(tree, str(planner)))
+    assert len(set(found)) == 5
+
+
+def test_how_a_job_is_logged_does_not_count(tree):
+    before = digest(tree, "bezierplan.running")
+    for name in ("log", "digest", "kernel_cache"):
+        append(tree / "bezierplan" / f"{name}.py", "\nNEW = 1\n")
+    assert digest(tree, "bezierplan.running") == before
+
+
 KERNELS = """
 import numpy as np
 from bezierplan.search import genetic

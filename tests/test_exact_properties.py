@@ -7,6 +7,7 @@ from pathlib import Path as File
 import numpy as np
 import pytest
 import shapely
+from fields import BENCHMARK_MAPS
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
@@ -24,8 +25,8 @@ from bezierplan.workspaces.polygons import Polygons
 MAPS = File(__file__).parent / "data" / "maps"
 KINDS = ("circles", "cells", "polygons")
 
-# Curves of every degree; the other kinds of curves are cubic pieces as well.
-CURVES = ("polyline", "piecewise_quadratic", "piecewise_cubic", "bezier")
+# Curves of every degree, and the one whose control points are no points of the plane alone; `spline` is made of cubic pieces as well.
+CURVES = ("polyline", "piecewise_quadratic", "piecewise_cubic", "bezier", "ferguson")
 
 # Deeper than the first is never called free, not deeper than the second never colliding.
 CERTAINLY_DEEP = 4e-9
@@ -131,9 +132,9 @@ def random_workspaces(kind, rng):
     if kind == "cells":
         song = from_lines((MAPS / "song2016.txt").read_text().splitlines(), 10.0, "m")
         return [song, Grid(rng.random((12, 12)) < 0.25, 1.0, "m"), Grid(rng.random((20, 20)) < 0.1, 0.1, "m")]
-    complex2 = polygons_from_geojson((MAPS / "imr" / "complex2.geojson").read_text(), "m")
+    complex2 = polygons_from_geojson((BENCHMARK_MAPS / "complex2.geojson").read_text(), "m")
     triangles = tuple((rng.uniform(1, 19, 2) + rng.uniform(-3, 3, (3, 2)),) for _ in range(8))
-    spiral = polygons_from_geojson((MAPS / "imr" / "square_spiral.geojson").read_text(), "m")
+    spiral = polygons_from_geojson((BENCHMARK_MAPS / "square_spiral.geojson").read_text(), "m")
     return [complex2, Polygons((0.0, 20.0, 0.0, 20.0), triangles, "m"), spiral]
 
 

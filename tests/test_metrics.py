@@ -69,6 +69,14 @@ def test_improvement_by_generation_30():
     assert math.isnan(history_values("improvement_30", [7.0, 7.0])[0])
 
 
+@pytest.mark.parametrize(("late", "share"), [(29, 1.0), (30, 1.0), (31, 0.5)])
+def test_improvement_by_generation_30_counts_that_generation_and_none_after_it(late, share):
+    """From 100 to 80 at once, and to 60 in one generation, the first one being number 0."""
+    history = [100.0] + [80.0] * (late - 1) + [60.0] * (40 - late)
+    assert history[late - 1 : late + 1] == [80.0, 60.0]
+    assert history_values("improvement_30", history) == [share]
+
+
 @given(histories)
 def test_generations_agree_with_their_definition(drawn):
     history = [np.minimum.accumulate(values) for values in drawn]
@@ -190,3 +198,20 @@ def test_clearance_in_an_empty_grid_is_infinite():
 def test_excess_over_the_reference():
     table = runs(length=[31.0, 30.5], reference=[30.25, np.nan])
     assert metrics.values(table, "excess_reference", PROBLEMS).to_list() == pytest.approx([0.75, math.nan], nan_ok=True)
+
+
+def test_equal_objectives_share_the_mean_of_their_ranks():
+    """Two methods that tie for the first rank get rank 1.5 each (tharwat2018, Section 5.1), in every repeat for itself."""
+    table = runs(objective=[4.0, 1.0, 1.0, 2.0, 5.0, 5.0, 5.0, 1.0], repeat=[0] * 4 + [1] * 4, feasible=[True, False] * 4)
+    assert metrics.values(table, "rank", PROBLEMS).to_list() == [4, 1.5, 1.5, 3, 3, 3, 3, 1]
+
+
+@pytest.mark.parametrize("end", ["low", "high"])
+@pytest.mark.parametrize(("beyond", "outlier"), [(0.0, 0.0), (0.01, 1.0)])
+def test_an_outlier_lies_more_than_one_and_a_half_ranges_beyond_a_quartile(end, beyond, outlier):
+    """Of nine values with 1 to 7 in the middle the quartiles are 2 and 6, so the fences stand at -4 and 12."""
+    values = [-4.0 - beyond if end == "low" else 0.0, *map(float, range(1, 8)), 12.0 + beyond if end == "high" else 8.0]
+    table = runs(objective=values + [1000.0] * 9, condition=["a"] * 18, method=["m"] * 9 + ["other"] * 9)
+    expected = [0.0] * 18
+    expected[0 if end == "low" else 8] = outlier
+    assert metrics.values(table, "outlier", PROBLEMS).to_list() == expected

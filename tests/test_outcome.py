@@ -5,8 +5,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from bezierplan import outcome
 from bezierplan.analysis import summary
+from bezierplan.commands import outcome
 
 ROOT = Path(__file__).parents[1]
 
@@ -27,6 +27,7 @@ def test_readings_that_do_not_decide_are_not_counted():
     numbers = summary.numbers({("one", "table1"): comparison([1.0, 9.0], [1.2, 1.2])}, {"one": ["other"]})
     claims = pd.DataFrame(
         {"study": "one", "id": ["C1", "C1", "C2"], "decides": [True, False, True], "verdict": ["supported", "in part", "no effect"]}
+        | {"finding": False}
     )
     found = summary.outcome(numbers, claims).loc["one"]
     assert (found["numbers"], found["reproduced"]) == (1, 1)
@@ -35,7 +36,7 @@ def test_readings_that_do_not_decide_are_not_counted():
 
 def test_published_number_that_is_wrong_is_counted_as_not_reproduced():
     numbers = summary.numbers({("one", "table1"): comparison([1.0, 9.0], [1.2, 1.2])}, {"one": []})
-    claims = pd.DataFrame({"study": ["one"], "id": ["C1"], "decides": [True], "verdict": ["supported"]})
+    claims = pd.DataFrame({"study": ["one"], "id": ["C1"], "decides": [True], "finding": [False], "verdict": ["supported"]})
     found = summary.outcome(numbers, claims).loc["one"]
     assert (found["numbers"], found["reproduced"]) == (2, 1)
 

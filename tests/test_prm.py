@@ -80,7 +80,15 @@ def test_paths_are_free_by_the_certified_check_and_as_long_as_said(seed):
 
 
 def test_more_nodes_keep_those_of_fewer():
-    assert plan(nodes=200).objective <= plan(nodes=50).objective <= plan(nodes=10).objective
+    low, high, is_free, _ = prm._among_circles(PUBLIC.workspace, 0.0)
+    for seed in range(5):
+        few, some, many = (prm._free_points(np.random.default_rng(seed), nodes, low, high, is_free) for nodes in (10, 50, 200))
+        assert list(map(len, (few, some, many))) == [10, 50, 200]
+        assert np.array_equal(few, some[:10])
+        assert np.array_equal(some, many[:50])
+        # With links to all that is seen, every way over few nodes is one over more.
+        lengths = [plan(seed=seed, nodes=nodes).objective for nodes in (10, 50, 200)]
+        assert lengths[2] <= lengths[1] <= lengths[0]
 
 
 def test_as_many_neighbours_as_nodes_are_all():

@@ -2,8 +2,9 @@
 
 import pytest
 
-from bezierplan import problems, replay, running, study_file
+from bezierplan import problems, running, study_file
 from bezierplan.checked import Fault
+from bezierplan.commands import replay
 from bezierplan.study import job, problems_job
 
 STUDIES = study_file.load(study_file.read_config({"studies": ["song2016"]}))

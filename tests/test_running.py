@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from bezierplan import running, watchdog
+from bezierplan.commands.digest import row_text
 from bezierplan.problem import Problem
-from bezierplan.run_digest import row_text
 from bezierplan.workspaces.circles import Circles
 
 PROBLEM = Problem("disc", Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 8.0]]), np.array([1.0]), "m"), (1.0, 5.0), (9.0, 5.0))

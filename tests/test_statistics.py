@@ -94,6 +94,14 @@ def test_interval_covers_the_truth_about_95_times_in_100(name):
     assert 0.88 <= hits / 150 <= 0.99
 
 
+@pytest.mark.parametrize(("count", "tolerance"), [(100, 0.1), (1000, 0.01)])
+def test_both_ends_of_the_interval_of_a_mean_are_1_96_standard_errors_away(count, tolerance):
+    values = np.random.default_rng(9).normal(5, 2, count)
+    ends = np.array(interval("mean", values, generator("both ends"))) - values.mean()
+    error = values.std(ddof=1) / math.sqrt(count)
+    assert ends / error == pytest.approx([-1.96, 1.96], rel=tolerance)
+
+
 @pytest.mark.parametrize("name", sorted(set(STATISTICS) - set(statistics.WITHOUT_INTERVAL)))
 def test_interval_of_many_values_is_nearly_that_of_the_bootstrap(name, monkeypatch):
     values = np.random.default_rng(7).gamma(4, size=400)
@@ -266,3 +274,10 @@ def test_chance_is_what_the_yardstick_accepts():
             if np.isfinite(published):
                 assert statistics.yardstick(name, values, published, 10, None, statistics.generator(name))[1] == within, (name, published)
     assert np.isnan(statistics.chance("mean", np.array([]), 10, statistics.generator("empty"))).all()
+
+
+def test_holm_against_a_worked_example():
+    """Times 4, 3, 2 and 1 from the least p on, never below the one before, and at most 1 (Holm 1979)."""
+    assert statistics.holm(np.array([0.01, 0.04, 0.03, 0.005])) == pytest.approx([0.03, 0.06, 0.06, 0.02])
+    assert statistics.holm(np.array([0.9, 0.8])) == pytest.approx([1, 1])
+    assert len(statistics.holm(np.array([]))) == 0

@@ -11,7 +11,6 @@ from bezierplan import checked, metrics, problems
 from bezierplan.analysis import audit
 from bezierplan.analysis.results import Results
 from bezierplan.planners import chaotic_pso
-from bezierplan.problem import planner_module, planner_settings, setting_fault
 from bezierplan.search import chaotic_maps
 from bezierplan.studies import song2016, tharwat2018
 from bezierplan.workspaces import files
@@ -287,18 +286,3 @@ def test_methods_of_tharwat2018():
     plan = chaotic_pso.plan(problem("equal"), np.random.default_rng(0), **frozen)
     assert plan.extra["zeta_collapsed_at"] == 1
     assert set(plan.history.tolist()) == {plan.objective}
-
-
-def test_assumptions_of_tharwat2018():
-    """With a setting, the default is the value in force, and every alternative is legal."""
-    assumptions = checked.read(STUDIES / "tharwat2018" / "assumptions.yaml", "assumptions")["assumptions"]
-    governed = [assumption for assumption in assumptions if "setting" in assumption]
-    assert len(governed) >= 15
-    for assumption in governed:
-        setting, default = assumption["setting"], assumption["default"]
-        for method, value in default.items() if isinstance(default, dict) else [("pso", default)]:
-            described = THARWAT["methods"][method]
-            annotation = planner_settings(planner_module(described["planner"]))[setting]
-            assert (THARWAT["settings"] | described["settings"])[setting] == value, assumption["id"]
-            for alternative in assumption["alternatives"]:
-                assert setting_fault(annotation, alternative) is None, assumption["id"]

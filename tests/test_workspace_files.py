@@ -7,7 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fields import BENCHMARK_MAPS
 
+from bezierplan import problems
 from bezierplan.workspaces import files, random_circles
 
 MAPS = Path(__file__).parent / "data" / "maps"
@@ -175,11 +177,12 @@ def test_circle_fault_is_told(fault):
 def descriptions():
     yield {"kind": "circles", "unit": "m", "bounds": [-1, 1, -1, 1], "circles": [[0.1, 0.2, 0.3], [1 / 3, 0, 0.1]]}
     yield {"kind": "grid", "unit": "cell", "file": "song2016.txt", "cell": 10}
-    for file in sorted((MAPS / "imr").glob("*.geojson")):
-        yield {"kind": "polygons", "unit": "m", "file": f"imr/{file.name}"}
+    for file in sorted(BENCHMARK_MAPS.glob("*.geojson")):
+        yield {"kind": "polygons", "unit": "m", "file": str(file)}
+        yield {"kind": "raster", "unit": "m", "file": str(file), "cell": 0.4, "rule": "overlap"}
 
 
-@pytest.mark.parametrize("description", list(descriptions()), ids=lambda each: each.get("file", each["kind"]))
+@pytest.mark.parametrize("description", list(descriptions()), ids=lambda each: f"{each['kind']} {Path(each.get('file', '')).stem}")
 def test_text_gives_a_workspace_back_bit_by_bit(description):
     text = files.to_json(files.load(description, MAPS))
     assert files.to_json(files.from_json(text)) == text
@@ -199,6 +202,22 @@ def test_layouts_leave_the_ends_free():
     for number in range(200):
         centres = random_circles.layout(RANDOM, "study/random", number, [(0, 0), (4, 6)]).centres
         assert min(np.hypot(*(centres - end).T).min() for end in [(0, 0), (4, 6)]) > 2.0
+
+
+def test_problems_in_random_circles_have_free_ends():
+    """Circles so large and many that one would cover the other end if only one were kept free."""
+    described = {"workspace": "close", "start": [-6, 0], "target": [4, 6], "obstacles": 10}
+    job = {
+        "study": "study",
+        "workspaces": {"close": RANDOM | {"kind": "random_circles", "radius": 5.0}},
+        "problems": {f"p{number}": described | {"layout": number} for number in range(20)},
+    }
+    drawn, _ = problems.build_all(job, Path())
+    assert len(drawn) == 20
+    for problem in drawn.values():
+        assert len(problem.workspace.radii) == 10
+        for end in (problem.start, problem.target):
+            assert np.hypot(*(problem.workspace.centres - end).T).min() > 5.0
 
 
 def test_layout_that_cannot_be_drawn_is_given_up():

@@ -7,6 +7,8 @@ the spline's blossom (its polar form).
 Two kinds pass through their points. `spline` is the cubic spline through all of them at uniform parameters, with not-a-knot ends.
 `ferguson` is a chain of cubic Hermite pieces (tharwat2018's reference 33); its control points are pairs of a point and the tangent in it,
 the derivative by a piece's own parameter: P0, T0, V, TV, ..., P1, T1.
+
+A `cubic_chain` is any chain of cubic Bezier pieces, each beginning where the last one ends: 3 k + 1 control points for k pieces.
 """
 
 import math
@@ -19,7 +21,7 @@ from bezierplan.problem import Path
 
 _DEGREE = {"polyline": 1, "piecewise_quadratic": 2, "piecewise_cubic": 3, "bezier": None}
 B_SPLINES = tuple(_DEGREE)
-CURVES = (*B_SPLINES, "spline", "ferguson")
+CURVES = (*B_SPLINES, "spline", "ferguson", "cubic_chain")
 
 # Below this share of the curve's highest speed a point counts as standing still: repeated control points do that, and curvature is not
 # defined there.
@@ -31,7 +33,7 @@ _NODES_16, _WEIGHTS_16 = np.polynomial.legendre.leggauss(16)
 
 def least_points(curve: str) -> int:
     """Fewest control points that a curve kind can have, start and target included."""
-    if curve == "ferguson":
+    if curve in ("ferguson", "cubic_chain"):
         return 4
     return max(2, (_DEGREE.get(curve) or 1) + 1)
 
@@ -58,7 +60,8 @@ def _blossom(knots: np.ndarray, span: int, arguments: np.ndarray) -> np.ndarray:
 def piece_matrix(curve: str, points: int) -> np.ndarray:
     """The linear map from control points to Bezier pieces: (pieces, degree + 1, points). Read-only.
 
-    Raises ValueError for an unknown kind, for too few control points, and for an odd number of those of a `ferguson` curve.
+    Raises ValueError for an unknown kind, for too few control points, for an odd number of those of a `ferguson` curve, and for a number of
+    those of a `cubic_chain` that is not 3 k + 1.
     """
     if curve not in CURVES:
         raise ValueError(f"unknown curve {curve!r}; known: {', '.join(CURVES)}")
@@ -66,6 +69,8 @@ def piece_matrix(curve: str, points: int) -> np.ndarray:
         raise ValueError(f"a curve of kind {curve} needs at least {least_points(curve)} control points, not {points}")
     if curve == "ferguson":
         matrix = _ferguson_pieces(points)
+    elif curve == "cubic_chain":
+        matrix = np.eye(points)[_chained(points)]
     elif curve == "spline":
         matrix = _spline_pieces(points)
     else:
@@ -94,6 +99,13 @@ def _spline_pieces(points: int) -> np.ndarray:
     return _hermite_pieces(np.eye(points), slopes)
 
 
+def _chained(points: int) -> np.ndarray:
+    """Which of the control points of a `cubic_chain` each of its pieces has: (pieces, 4)."""
+    if points % 3 != 1:
+        raise ValueError(f"a curve of kind cubic_chain needs 3 k + 1 control points, not {points}")
+    return np.arange(0, points - 1, 3)[:, None] + np.arange(4)
+
+
 def _ferguson_pieces(points: int) -> np.ndarray:
     if points % 2:
         raise ValueError(f"a curve of kind ferguson needs an even number of control points, not {points}")
@@ -108,6 +120,8 @@ def _hermite_pieces(values: np.ndarray, slopes: np.ndarray) -> np.ndarray:
 
 def bezier_pieces(path: Path) -> np.ndarray:
     """The path as Bezier pieces (pieces, degree + 1, 2), in its unit, each piece beginning where the last one ends."""
+    if path.curve == "cubic_chain":
+        return path.points[_chained(len(path.points))]  # without a matrix that grows with the square of the pieces
     return piece_matrix(path.curve, len(path.points)) @ path.points
 
 

@@ -30,6 +30,9 @@ FINE_SAMPLES = 4001
 CLASS_SAMPLES = 2001
 # Samples of a curved piece between which its heading is compared (ma2020: 2,000 chords).
 HEADING_SAMPLES = 2001
+# Parts of about this length, in units, by which a path's bending is measured, and samples of a curved piece that they are cut from.
+BENDING_PART = 0.1
+BENDING_SAMPLES = 64
 # A smaller change of heading, in radians, is no corner.
 CORNER = 1e-6
 
@@ -275,6 +278,29 @@ def _turning(path: Path) -> float:
     return float(_path_headings(path).sum())
 
 
+def _equal_parts(path: Path) -> tuple[np.ndarray, float]:
+    """A path as steps (n, 2) between points that lie apart by equal lengths of arc, and that length; both next to `BENDING_PART`."""
+    from bezierplan import curves
+
+    points = path.points
+    if path.curve != "polyline":
+        count = BENDING_SAMPLES * len(curves.bezier_pieces(path)) + 1
+        points = curves.sample_matrix(path.curve, len(path.points), count) @ path.points
+    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    parts = max(2, round(at[-1] / BENDING_PART))
+    wanted = np.linspace(0.0, at[-1], parts + 1)
+    return np.diff(np.column_stack([np.interp(wanted, at, points[:, axis]) for axis in range(2)]), axis=0), at[-1] / parts
+
+
+def _bending(path: Path) -> float:
+    steps, length = _equal_parts(path)
+    return float((_headings(steps) ** 2).sum() / length) if length else 0.0
+
+
+def _max_turn(path: Path) -> float:
+    return float(np.degrees(_headings(_equal_parts(path)[0]).max(initial=0.0)))
+
+
 def _corners(path: Path) -> int:
     """Joints of a path's pieces at which its heading changes."""
     from bezierplan import curves
@@ -423,6 +449,13 @@ METRICS: dict[str, Metric] = {
     ),
     "heading_max": Metric("rad", "largest change of heading between neighbouring chords", True, partial(_of_path, _heading_max)),
     "turning": Metric("rad", "changes of heading, all added", True, partial(_of_path, _turning)),
+    "bending": Metric(
+        "rad^2/u",
+        f"squared changes of heading between parts of {BENDING_PART:g} u over their length, all added: the integral of squared curvature",
+        True,
+        partial(_of_path, _bending),
+    ),
+    "max_turn": Metric("degrees", f"largest change of heading between parts of {BENDING_PART:g} u", True, partial(_of_path, _max_turn)),
     "corners": Metric("-", "joints of a path's pieces at which its heading changes", True, partial(_of_path, _corners)),
     "length_over_polygon": Metric("-", "length / length of the control polygon", True, partial(_of_path, _length_over_polygon)),
     "distinct_points": Metric("-", "control points that differ from each other", False, partial(_of_path, _distinct_points)),

@@ -17,6 +17,7 @@ import importlib
 import importlib.util
 import inspect
 import math
+import sys
 import typing
 from functools import cache
 from pathlib import Path as File
@@ -79,7 +80,8 @@ PLACE = ("workspace", "reference", "route", "side", "layout", "obstacles")
 
 @cache
 def planner_module(planner: str) -> ModuleType:
-    """The module of a planner: `name` is planners/name.py of this package, `folder/name.py` a file of the reader's own.
+    """The module of a planner: `name` is planners/name.py of this package, `folder/name.py` a file of the reader's own, which can import
+    the modules beside it, at its top.
 
     Raises ModuleNotFoundError or FileNotFoundError if there is none.
     """
@@ -87,7 +89,17 @@ def planner_module(planner: str) -> ModuleType:
         return importlib.import_module(f"bezierplan.planners.{planner}")
     spec = importlib.util.spec_from_file_location(File(planner).stem, planner)
     module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    folder = File(planner).resolve().parent
+    known = set(sys.modules)
+    sys.path.append(str(folder))  # last, so that no file of a reader hides a library
+    try:
+        spec.loader.exec_module(module)
+    finally:
+        sys.path.remove(str(folder))
+        # Modules of the same name may lie beside the planners of another study.
+        beside = {file.stem for file in folder.iterdir()}
+        for name in [name for name in sys.modules.keys() - known if name.split(".")[0] in beside]:
+            del sys.modules[name]
     return module
 
 

@@ -47,6 +47,8 @@ def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, floa
         )
     if blocks(region(workspace), point):
         raise ValueError(f"{key}: {value}: in an obstacle; expected a free place of the workspace")
+    if isinstance(workspace, Grid) and workspace.drawn and workspace.occupied[workspace.cell_of(*point)]:
+        raise ValueError(f"{key}: {value}: in an occupied cell; expected a free one, or a smaller cell")
     return point
 
 
@@ -72,8 +74,27 @@ def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, st
                 ends = [tuple(map(float, description[end])) for end in ("start", "target")]
                 layouts[key] = random_circles.layout(job["workspaces"][home], f"{job['study']}/{home}", description["layout"], ends)
             workspace = random_circles.first(layouts[key], description["obstacles"])
+        if "scenario" in description:
+            description = description | _scenario(job["workspaces"][home], description["scenario"], workspace, folder)
         problems[name] = build(name, description, workspace)
     return problems, {name: description["workspace"] for name, description in job["problems"].items()}
+
+
+# How near to the printed optimal length of a scenario ours must be, in cells.
+_SAME_OPTIMUM = 1e-3
+
+
+def _scenario(description: dict, number: int, workspace: Grid, folder: Path) -> dict:
+    """Start and target of a scenario. Raises ValueError if it does not fit the map, or its optimal length is not that of our lattice path."""
+    from bezierplan.exact import bounds
+
+    found = files.scenario(description, number, workspace, folder)
+    cells = (workspace.cell_of(*end) for end in (found.start, found.target))
+    length = bounds.lattice_path(workspace.occupied, *cells, math.sqrt(2), "none").length
+    if not abs(length - found.optimal) <= _SAME_OPTIMUM:
+        place = f"{description['scenarios']}: line {number + 1}"
+        raise ValueError(f"{place}: optimal length {found.optimal:g}; on {description['file']} it is {length:.8g}")
+    return {"start": found.start, "target": found.target}
 
 
 # How near to the wanted length that of the shortest lattice path must be, in cells.

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.problem import PLACE, planner_module, planner_settings
+from bezierplan.workspaces import files
 
 SCALES = ("smoke", "full", "extended")
 
@@ -21,6 +22,9 @@ TIME_LIMIT = 600
 
 DRAWN = {"random_circles": "circles", "random_field": "grid", "random_blocks": "grid"}
 """Kinds of workspace that are drawn at random -> the kind that planners meet."""
+
+CELLS = ("raster", "ros_map", "moving_ai")
+"""Kinds of workspace read from files that planners meet as grids."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +85,7 @@ class Study:
     def kind_of(self, problem: str) -> str:
         """The kind of workspace that planners meet in a problem."""
         kind = self.workspaces[self.problems[problem]["workspace"]]["kind"]
-        return DRAWN.get(kind, kind)
+        return "grid" if kind in CELLS else DRAWN.get(kind, kind)
 
     def problems_of(self, experiment: str, scale: str) -> dict[str, dict]:
         """Descriptions of an experiment's problems, by name. One with layouts stands for a problem each layout and number of obstacles."""
@@ -98,8 +102,7 @@ class Study:
 
     def maps(self, workspaces: Iterable[str]) -> list[str]:
         """Map files of workspaces as seen from here, each once."""
-        described = [self.workspaces[name] for name in workspaces]
-        return sorted({relative(self.folder / each[key]) for each in described for key in ("file", "heights") if key in each})
+        return sorted({relative(file) for name in workspaces for file in files.sources(self.workspaces[name], self.folder)})
 
     def compared(self) -> dict[str, dict]:
         """The tables of runs, which are compared with published numbers; the others stand for themselves (`listing_job`)."""
@@ -264,6 +267,7 @@ def claims_job(study: Study, claims: list[dict]) -> dict:
         "variant_of": {name: method["variant_of"] for name, method in study.methods.items() if "variant_of" in method},
         "paired": {name: experiment.get("seeds", "own") != "own" for name, experiment in experiments.items()},
         "paper_repeats": {name: experiment["repeats"]["full"] for name, experiment in experiments.items()},
+        "labels": study.labels,
     }
 
 
@@ -288,7 +292,7 @@ def methods_of_claims(study: Study, claims: list[dict], experiment: str) -> list
     named = set()
     for claim in claims:
         for check in claim["checks"]:
-            if check.get("experiment") == experiment:
+            if experiment in _as_list(check.get("experiment")):
                 named |= _compared(study, claim, check) or set(methods)
     return [name for name in methods if name in named]
 

@@ -144,7 +144,11 @@ def _check_claim(study: Study, claim: dict, place: str) -> None:
 def _check_check(study: Study, experiment: str, check: dict, place: str) -> None:
     if "metric" in check:
         _known(check["metric"], metrics.METRICS, f"{place}: metric")
-    _check_where(study, experiment, check.get("where", {}), f"{place}: where")
+    if "work" in check:
+        _known(check["work"], metrics.METRICS, f"{place}: work")
+    # A condition may also be on an outcome, which some planners alone report.
+    conditions = {column: wanted for column, wanted in check.get("where", {}).items() if column not in metrics.METRICS}
+    _check_where(study, experiment, conditions, f"{place}: where")
     columns = {"experiment", *_columns(study, experiment)}
     for key in ("every", "pool"):
         for column in check.get(key, []):

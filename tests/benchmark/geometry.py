@@ -40,7 +40,7 @@ def workspaces() -> Iterator[tuple[str, Workspace]]:
         yield f"circles {count}", random_discs(count, rng)
     for side in (16, 20, 100, 200):
         yield f"cells {side} x {side}", random_grid(side, rng)
-    for file in sorted((Path(__file__).parents[1] / "data" / "maps" / "imr").glob("*.geojson")):
+    for file in sorted((Path(__file__).parents[2] / "config/studies/elhoseny2017/workspaces").glob("*.geojson")):
         yield f"polygons {file.stem}", files.polygons_from_geojson(file.read_text(), "m")
 
 

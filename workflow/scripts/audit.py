@@ -2,7 +2,7 @@
 
 from bezierplan import log
 
-with log.job(snakemake.log[0]):
+with log.job(snakemake) as output:
     import importlib
     from pathlib import Path
 
@@ -17,4 +17,4 @@ with log.job(snakemake.log[0]):
     rows = audit.below_bound({table: published[table] for table in of_tables}, of_tables, job["decides"])
     if job["module"]:
         rows += importlib.import_module(job["module"]).audit(published)
-    audit.table(job["study"], rows).to_csv(snakemake.output[0], index=False, float_format="%.10g", lineterminator="\n")
+    audit.table(job["study"], rows).to_csv(output[0], index=False, float_format="%.10g", lineterminator="\n")

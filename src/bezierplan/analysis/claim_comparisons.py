@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 
 from bezierplan import metrics
-from bezierplan.analysis import claim_tests, comparison
+from bezierplan.analysis import claim_effects, claim_tests, comparison
+from bezierplan.analysis.claim_effects import Comparison
 from bezierplan.analysis.claim_published import listed, printed, rows_of_cell
-from bezierplan.analysis.claim_tests import Comparison
 from bezierplan.analysis.results import Results, pick, select
 from bezierplan.checked import Fault
 
@@ -26,7 +26,7 @@ class Material(NamedTuple):
     results: of each experiment that was run. published: files of published numbers, named without `.csv`. artefacts: descriptions of tables
     and figures as in artefacts.yaml. variant_of: method -> the method whose published numbers count.
     paired: of each experiment, do runs of equal repeats share a start or a drawn workspace? repeats: how many repeats the paper has of
-    each, which counts where the printed numbers do not say.
+    each, which counts where the printed numbers do not say. labels: name -> how readers see it.
     """
 
     results: dict[str, Results]
@@ -35,6 +35,7 @@ class Material(NamedTuple):
     variant_of: dict[str, str]
     paired: dict[str, bool]
     repeats: dict[str, int]
+    labels: dict[str, str]
 
 
 class Untestable(Exception):
@@ -99,7 +100,7 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
         raise Untestable("no run is of the conditions that the claim names")
     column, unit = _cell_column(check), check.get("unit", "repeat")
     every, pool = check.get("every", []), check.get("pool", [])
-    tables = _published_tables(check, claim, material)
+    tables, printed_metric = _published_tables(check, claim, material), check.get("printed_metric", check["metric"])
     keys = ["experiment", *every, *pool, *([column] if column else []), *(key for _, table in tables for key in table if key in runs)]
     keys = list(dict.fromkeys(key for key in keys if key != "value"))
     runs = runs[list(dict.fromkeys([*keys, *_FACTORS, unit, "value"]))]
@@ -113,13 +114,13 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
         compared = list(_cells(check, rows))
         printed_rows = {
             cell: [
-                rows_of_cell(part if column is None else part[part[column] == cell], check["metric"], tables, material.variant_of)
+                rows_of_cell(part if column is None else part[part[column] == cell], printed_metric, tables, material.variant_of)
                 for part in conditions
             ]
             for cell in dict.fromkeys(cell for _, cells in compared for cell in cells)
         }
         for name, cells in compared:
-            strata = {key: claim_tests.event(check, table.reindex(columns=cells).to_numpy()) for key, table in unit_tables.items()}
+            strata = {key: claim_effects.event(check, table.reindex(columns=cells).to_numpy()) for key, table in unit_tables.items()}
             numbers, number_of_runs = printed(check, list(zip(*(printed_rows[cell] for cell in cells))))
             found.append(
                 Comparison(
@@ -132,6 +133,7 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
                     boolean=_is_boolean(check, material),
                     paired=check.get("paired", _shares_draws(check, material)),
                     note=_note(check, rows, column, cells),
+                    factors=tuple((key, rows[key].iloc[0]) for key in every),
                 )
             )
     return found
@@ -140,7 +142,8 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
 def _measured_runs(check: dict, claim: dict, material: Material) -> pd.DataFrame:
     """The runs of a check's conditions with the column `value`: not a number where a run does not count.
 
-    A condition on an outcome, such as `feasible: true`, leaves the other runs in, without a value: a place where none satisfies it stays.
+    A condition on an outcome, such as `feasible: true`, leaves the other runs in, without a value (where failures are last, as failed): a
+    place where none satisfies it stays.
     """
     where = check.get("where", {})
     conditions = {column: wanted for column, wanted in where.items() if column not in metrics.METRICS}
@@ -161,6 +164,8 @@ def _measured_runs(check: dict, claim: dict, material: Material) -> pd.DataFrame
         counting = _picked(runs, check["pick"]) if "pick" in check else runs
         values = metrics.values(counting, check["metric"], problems).fillna(_failure(check))
         values = values.loc[select(counting, outcomes).index].reindex(runs.index)
+        if check.get("failures") == "last":
+            values = values.fillna(np.inf)
         measured.append(select(runs.assign(value=values), conditions))
     return pd.concat(measured, ignore_index=True)
 
@@ -257,7 +262,7 @@ def _note(check: dict, rows: pd.DataFrame, column: str | None, cells: list) -> s
 
     values = [rows.loc[rows[column] == cell, "value"] for cell in cells]
     counts = [[int(each.notna().sum()), int(each.isna().sum())] for each in values]
-    return "compared on common successes" if stats.fisher_exact(counts).pvalue < claim_tests.ALPHA else ""
+    return "compared on successes alone, which are of different number" if stats.fisher_exact(counts).pvalue < claim_tests.ALPHA else ""
 
 
 def _published_tables(check: dict, claim: dict, material: Material) -> list[tuple[str, pd.DataFrame]]:

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import claim_tests
-from bezierplan.analysis.claim_tests import Finding
+from bezierplan.analysis import claim_effects
+from bezierplan.analysis.claim_effects import Finding
 
 # Statistics that may stand for a check which names none, the first that is printed of every cell.
 _ANY_STATISTIC = ("mean", "median", "unstated", "share", "count", "min", "max")
@@ -50,7 +50,7 @@ def printed(check: dict, found: Sequence[Sequence[Printed | None]]) -> tuple[np.
         if all(statistic in each.statistics for each in found):
             values, runs = np.array([each.statistics[statistic][1:] for each in found]).T
             numbers = (values / runs if statistic == "count" else values).reshape(-1, cells).mean(axis=0)
-            return claim_tests.event(check, numbers), None if np.isnan(runs).all() else int(np.nanmin(runs))
+            return claim_effects.event(check, numbers), None if np.isnan(runs).all() else int(np.nanmin(runs))
     return nothing
 
 

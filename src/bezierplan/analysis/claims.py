@@ -5,23 +5,27 @@ several comparisons, every comparison a mark:
 
 | mark | meaning |
 | --- | --- |
-| + | the sentence holds here: p < 0.05, and the effect points as claimed |
+| + | the sentence holds here: p < 0.05, and the effect points as claimed and is as large as the margin |
 | - | the contrary does |
-| 0 | neither, and an effect as large as the margin would have been found with a power of 0.8 or more |
-| ? | neither, and it would not; or there is too little to test |
+| 0 | neither, and the interval of the effect lies within the margin |
+| ? | neither of these; or there is too little to test |
 
-All comparisons of the deciding checks of a claim, in one variant, are a family for Holm's correction. Where all comparisons have to hold, a
-+ needs p alone (an intersection-union test needs no correction) and a - the corrected p; where any may hold it is the other way round. The
-marks give the verdict:
+A comparison has one mark by itself and one in the family of all comparisons of the claim's deciding checks (`claim_verdicts` says which
+procedure, and why). Where all have to hold, every mark by itself has to be + to support the claim; all else follows from the family's:
 
 | verdict | all have to hold | any may hold |
 | --- | --- | --- |
-| supported | every mark + | at least one + |
-| in part | a +, and a - or 0 | |
-| contradicted | no +, and a - | every mark - |
+| supported | every mark + by itself | at least one + |
+| mostly | + in three quarters or more of the decided ones (+, -, 0), yet not all | |
+| in part | + in more than a quarter and less than three quarters of them | |
+| seldom | + in a quarter of them or less | |
+| contradicted | no +, and a - | every mark - by itself |
 | no effect | every mark 0 | no + and no ?, not all - |
-| undecided | otherwise: a ? stands in the way | likewise |
+| undecided | otherwise: a ? stands in the way, or more than half of the marks are ? | a ? stands in the way |
 | untestable | the reason is given | likewise |
+
+A sentence on seconds is judged on counted work where its check names one (`work`); the seconds stand beside it, and the reason says where
+they disagree.
 
 Columns of claims.csv, one row a claim and variant:
 
@@ -30,10 +34,12 @@ Columns of claims.csv, one row a claim and variant:
 | study, id, place, statement | of the claim |
 | variant | values that take the place of the deciding ones; of the deciding row, those themselves |
 | decides | is this the deciding variant? |
+| finding | is it our own finding, and no sentence of the paper? |
 | verdict | as above |
 | holds | how many comparisons of the deciding checks are + |
+| where_it_holds | which of them, in words; if none is +, where the contrary holds |
 | published | how many of them hold in the printed numbers, by value alone, of those that are printed |
-| effect ... p_holm | of the comparison that decides: the worst -, else that with the largest p; the columns as below |
+| effect ... p_family | of the comparison that decides: the worst -, else that with the largest p; the columns as below |
 | chance | share of experiments of the paper's size, drawn from our runs, in which the claim holds by values alone |
 | size | our effect beside the printed one: alike (that lies in our interval), smaller, larger, opposite |
 | artefact | what shows it |
@@ -49,12 +55,13 @@ Columns of claim_checks.csv, one row a comparison:
 | decides | false for checks that are only reported |
 | test, metric, statistic, unit | of the check; unit of the metric |
 | condition, comparison | where, and what is compared |
-| mark | as above |
+| mark, mark_family | by itself; in the family, empty for reported checks |
 | effect, effect_size_name, effect_size | of means, or of the statistic; what is computed from both groups (`claim_tests`) |
 | low95, high95 | interval of the effect |
-| p, p_holm | two-sided; corrected, empty for reported checks and where no p decides |
+| p, p_family | two-sided; corrected, empty for reported checks and where no p decides |
 | n | units: pairs, or those of the smallest group |
-| margin, least_detectable | the smallest effect that matters; that which a power of 0.8 goes with |
+| counted | how many units of each group have a value, of how many: means, minima and maxima leave failed runs out |
+| margin, least_detectable | the smallest effect that matters; that which a power of 0.8 goes with, empty where the units do not differ |
 | rho, r_squared | of trends: Spearman's rho and R squared of the conditions' means over x |
 | effect_published, published | the effect in the printed numbers, and does the sentence hold in them? |
 """
@@ -68,25 +75,24 @@ import numpy as np
 import pandas as pd
 
 from bezierplan import metrics
-from bezierplan.analysis import claim_comparisons, claim_published, claim_tests
+from bezierplan.analysis import claim_comparisons, claim_effects, claim_published, claim_tests, claim_verdicts
 from bezierplan.analysis.claim_comparisons import Material, Untestable
+from bezierplan.analysis.claim_effects import Comparison, Finding
 from bezierplan.analysis.claim_published import listed
-from bezierplan.analysis.claim_tests import ALPHA, Comparison, Finding
 from bezierplan.analysis.results import Results
 from bezierplan.checked import Fault, closest
 
 CLAIM_COLUMNS = [
-    *("study", "id", "variant", "decides", "place", "statement", "verdict", "holds", "published"),
-    *("effect", "effect_size_name", "effect_size", "low95", "high95", "n", "p", "p_holm"),
+    *("study", "id", "variant", "decides", "finding", "place", "statement", "verdict", "holds", "where_it_holds", "published"),
+    *("effect", "effect_size_name", "effect_size", "low95", "high95", "n", "counted", "p", "p_family"),
     *("chance", "size", "artefact", "timed", "reason"),
 ]
 CHECK_COLUMNS = [
-    *("study", "id", "variant", "check", "decides", "test", "metric", "statistic", "unit", "condition", "comparison", "mark"),
-    *("effect", "effect_size_name", "effect_size", "low95", "high95", "n", "p", "p_holm", "margin", "least_detectable"),
+    *("study", "id", "variant", "check", "decides", "test", "metric", "statistic", "unit", "condition", "comparison"),
+    *("mark", "mark_family", "effect", "effect_size_name", "effect_size", "low95", "high95", "n", "counted", "p", "p_family"),
+    *("margin", "least_detectable"),
     *("rho", "r_squared", "effect_published", "published", "timed", "reason"),
 ]
-VERDICTS = ("supported", "in part", "contradicted", "no effect", "undecided", "untestable")
-
 # What a function in `studies/` answers: a mark, the effect, its 95 % interval or None, and how many units it saw.
 Answer = tuple[str, float, tuple[float, float] | None, int]
 # It gets the check, the results by experiment, and the published numbers by file.
@@ -104,7 +110,8 @@ class _Judged(NamedTuple):
     comparison: Comparison | None
     finding: Finding
     mark: str = "?"
-    p_holm: float = math.nan
+    mark_family: str = ""
+    p_family: float = math.nan
 
 
 def judge(
@@ -118,6 +125,7 @@ def judge(
     variant_of: dict[str, str],
     paired: dict[str, bool],
     repeats: dict[str, int],
+    labels: dict[str, str] | None = None,
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """The claims of a study as tables with `CLAIM_COLUMNS` and `CHECK_COLUMNS`, described above.
 
@@ -125,7 +133,7 @@ def judge(
     The others as in `claim_comparisons.Material`. Nothing depends on the order of the runs. Raises Fault for a claim that mixes runs of
     several conditions, or names an unknown function.
     """
-    material = Material(results, published, artefacts, variant_of, paired, repeats)
+    material = Material(results, published, artefacts, variant_of, paired, repeats, labels or {})
     claim_rows, check_rows = [], []
     for claim in claims:
         first, *_ = assignments = variants(claim)
@@ -190,36 +198,12 @@ def _replaced(values: Any, pairs: dict) -> Any:
 # From comparisons to a verdict.
 
 
-def holm(p: np.ndarray) -> np.ndarray:
-    """p (n,) of a family, corrected by Holm's step-down procedure: (n,)."""
-    order = np.argsort(p)
-    corrected = np.empty(len(p))
-    corrected[order] = np.minimum(np.maximum.accumulate(np.sort(p) * np.arange(len(p), 0, -1)), 1)
-    return corrected
-
-
-def mark(finding: Finding, p_holm: float, holds: str) -> str:
-    """The mark of a comparison in a claim that holds if `all` or `any` comparisons do."""
-    if finding.mark:
-        return finding.mark
-    p_for, p_against = (finding.p, p_holm) if holds == "all" else (p_holm, finding.p)
-    if finding.toward > 0 and p_for < ALPHA:
-        return "+"
-    if finding.toward < 0 and p_against < ALPHA:
-        return "-"
-    return "0" if finding.least_detectable <= finding.margin else "?"
-
-
-def verdict(marks: Sequence[str], holds: str) -> str:
-    """The verdict on a claim with the given marks (at least one), which holds if `all` or `any` comparisons do."""
-    found = set(marks)
-    if found == {"+"} or (holds == "any" and "+" in found):
-        return "supported"
-    if "+" in found:
-        return "in part" if found & {"-", "0"} else "undecided"
-    if found == {"-"} or (holds == "all" and "-" in found):
-        return "contradicted"
-    return "undecided" if "?" in found else "no effect"
+def with_work(check: dict) -> list[dict]:
+    """A check of seconds that names counted work, as that of the work, which decides, and that of the seconds, which is reported."""
+    if "work" not in check:
+        return [check]
+    seconds = {key: value for key, value in check.items() if key != "work"}
+    return [seconds | {"metric": check["work"], "printed_metric": check["metric"]}, seconds | {"report": True}]
 
 
 def _judge_variant(
@@ -237,10 +221,11 @@ def _judge_variant(
         "study": study,
         "variant": variant,
         "artefact": ", ".join(listed(claim.get("artefact", []))),
-        "timed": any(_is_timed(check) for check in checks if "report" not in check),
+        "finding": claim.get("finding", False),
+        "timed": any(_is_timed(check) for check in checks if "report" not in check and "work" not in check),
     }
     judged, obstacle = [], ""
-    for number, check in enumerate(checks, start=1):
+    for number, check in [(number, each) for number, given in enumerate(checks, start=1) for each in with_work(given)]:
         try:
             judged += _findings(number, check, claim, name, material, functions)
         except Untestable as reason:
@@ -248,7 +233,7 @@ def _judge_variant(
                 judged.append(_Judged(number, check, False, "", "", None, Finding(reason=str(reason))))
             else:
                 obstacle = obstacle or str(reason)
-    judged = _marked(judged, holds)
+    judged = _marked(judged)
     deciding = [each for each in judged if each.decides]
     rows = [_check_row(each, material) | {key: described[key] for key in ("study", "id", "variant")} for each in judged]
     if obstacle:
@@ -256,16 +241,18 @@ def _judge_variant(
     shown = _shown(deciding, holds)
     finding = shown.finding
     summary = {
-        "verdict": verdict([each.mark for each in deciding], holds),
+        "verdict": claim_verdicts.verdict([each.mark for each in deciding], [each.mark_family for each in deciding], holds),
         "holds": f"{sum(each.mark == '+' for each in deciding)} of {len(deciding)}",
+        "where_it_holds": claim_verdicts.where_it_holds([_in_words(each, deciding) for each in deciding], material.labels),
         "published": _published(deciding),
         **{key: getattr(finding, key) for key in ("effect", "effect_size_name", "effect_size", "n", "p")},
         "low95": finding.low,
         "high95": finding.high,
-        "p_holm": shown.p_holm,
+        "counted": shown.comparison.counted if shown.comparison else "",
+        "p_family": shown.p_family,
         "chance": _chance(deciding, holds, f"{name}/chance"),
         "size": _size(shown),
-        "reason": _reason(shown),
+        "reason": "; ".join(filter(None, [_reason(shown), _disagreement(judged), claim.get("note", "")])),
     }
     return described | summary, rows
 
@@ -303,16 +290,45 @@ def _asked(check: dict, claim: dict, material: Material, functions: dict[str, Fu
     return Finding(effect, check["effect"], effect, low, high, n, mark=answer)
 
 
-def _marked(judged: list[_Judged], holds: str) -> list[_Judged]:
-    """The comparisons with their marks, the deciding ones corrected as a family."""
-    family = [number for number, each in enumerate(judged) if each.decides and not math.isnan(each.finding.p)]
-    corrected = dict(zip(family, holm(np.array([judged[number].finding.p for number in family]))))
+def _marked(judged: list[_Judged]) -> list[_Judged]:
+    """The comparisons with their marks, the deciding ones also with those of the family."""
+    tested = [number for number, each in enumerate(judged) if each.decides and not math.isnan(each.finding.p)]
+    corrected = dict(zip(tested, claim_verdicts.family(np.array([judged[number].finding.p for number in tested]))))
     marked = []
     for number, each in enumerate(judged):
-        p_holm = corrected.get(number, math.nan)
-        found = mark(each.finding, p_holm, holds) if each.decides else mark(each.finding, each.finding.p, "all")
-        marked.append(each._replace(mark=found, p_holm=p_holm))
+        p_family = corrected.get(number, math.nan)
+        together = claim_verdicts.mark(each.finding, p_family) if each.decides else ""
+        marked.append(each._replace(mark=claim_verdicts.mark(each.finding, each.finding.p), mark_family=together, p_family=p_family))
     return marked
+
+
+def _in_words(each: _Judged, deciding: list[_Judged]) -> claim_verdicts.Marked:
+    """A comparison with the factors that tell it from the others of its claim."""
+    metrics_differ = len({(other.check.get("metric"), other.check.get("statistic")) for other in deciding}) > 1
+    factors: dict[str, Any] = {}
+    if each.comparison is not None:
+        if each.check["test"] in ("lower", "ordered", "equal_within"):
+            factors |= {"against": each.comparison.cells[1], "group": each.comparison.cells[0]}
+        factors |= dict(each.comparison.factors)
+    elif each.condition:
+        factors["in"] = each.condition
+    if metrics_differ:
+        statistic = each.check.get("statistic", "")
+        factors["what"] = f"{statistic} {each.check.get('metric', each.check['test'])}".strip().replace("_", " ")
+    return claim_verdicts.Marked(factors, each.mark_family)
+
+
+def _disagreement(judged: list[_Judged]) -> str:
+    """Says so where seconds and counted work do not agree, one of which decides and the other is reported."""
+    others = {(each.condition, each.name, _is_timed(each.check)): each.mark for each in judged if not each.decides}
+    deciding = [each for each in judged if each.decides]
+    pairs = [(each, others.get((each.condition, each.name, not _is_timed(each.check)))) for each in deciding]
+    pairs = [(each, other) for each, other in pairs if other is not None and (_is_timed(each.check) or "printed_metric" in each.check)]
+    differing = sum(each.mark != other for each, other in pairs)
+    if not differing:
+        return ""
+    judged_on, other = ("seconds", "evaluations") if _is_timed(pairs[0][0].check) else ("counted work", "seconds")
+    return f"judged on {judged_on}; {other} disagree in {differing} of {len(pairs)}"
 
 
 def _shown(deciding: list[_Judged], holds: str) -> _Judged:
@@ -326,8 +342,8 @@ def _shown(deciding: list[_Judged], holds: str) -> _Judged:
         return each.finding.p if not math.isnan(each.finding.p) else -1.0 if each.mark == "+" else 2.0
 
     if holds == "any":
-        return min([each for each in deciding if each.mark == "+"] or deciding, key=p)
-    against = [each for each in deciding if each.mark == "-"]
+        return min([each for each in deciding if each.mark_family == "+"] or deciding, key=p)
+    against = [each for each in deciding if each.mark_family == "-"]
     if against:
         first = [each for each in against if each.number == against[0].number]
         return max(first, key=lambda each: np.nan_to_num(abs(each.finding.effect - each.check.get("target", 0)), nan=np.inf))
@@ -343,8 +359,8 @@ def _printed(each: _Judged) -> tuple[float, bool | None]:
         return each.finding.effect, each.mark == "+"
     if each.comparison is None or np.isnan(each.comparison.printed).any():
         return math.nan, None
-    effect = claim_tests.effect(each.check, each.comparison.printed, each.comparison.cells)
-    return float(effect), bool(claim_tests.claimed(each.check, effect, each.finding.margin))
+    effect = claim_effects.effect(each.check, each.comparison.printed, each.comparison.cells)
+    return float(effect), bool(claim_effects.claimed(each.check, effect, each.finding.margin))
 
 
 def _published(deciding: list[_Judged]) -> str:
@@ -362,11 +378,11 @@ def _chance(deciding: list[_Judged], holds: str, name: str) -> float:
         comparison = each.comparison
         if comparison is None or comparison.paper_units is None or "pick" in each.check:
             return math.nan
-        points = claim_tests.drawn_points(comparison, claim_tests.point_statistic(each.check), name, comparison.paper_units)
-        effects = claim_tests.effect(each.check, points, comparison.cells)
+        points = claim_effects.drawn_points(comparison, claim_effects.point_statistic(each.check), name, comparison.paper_units)
+        effects = claim_effects.effect(each.check, points, comparison.cells)
         if np.isnan(effects).any():
             return math.nan
-        held.append(claim_tests.claimed(each.check, effects, each.finding.margin))
+        held.append(claim_effects.claimed(each.check, effects, each.finding.margin))
     together = np.all(held, axis=0) if holds == "all" else np.any(held, axis=0)
     return float(together.mean())
 
@@ -413,10 +429,12 @@ def _check_row(each: _Judged, material: Material) -> dict:
         "condition": each.condition,
         "comparison": each.name,
         "mark": each.mark,
+        "mark_family": each.mark_family,
+        "counted": each.comparison.counted if each.comparison else "",
         **{key: getattr(finding, key) for key in fields},
         "low95": finding.low,
         "high95": finding.high,
-        "p_holm": each.p_holm,
+        "p_family": each.p_family,
         "effect_published": effect_published,
         "published": {True: "holds", False: "fails", None: "not printed"}[held],
         "timed": _is_timed(check),

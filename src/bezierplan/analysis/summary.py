@@ -3,8 +3,9 @@
 import numpy as np
 import pandas as pd
 
+from bezierplan.analysis.claim_verdicts import VERDICTS
+
 NUMBERS = ("reproduced", "not told apart", "cannot fail", "not reproduced")
-VERDICTS = ("supported", "in part", "contradicted", "no effect", "undecided", "untestable")
 
 
 def numbers(
@@ -62,7 +63,7 @@ def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
     numbers: as from `numbers`. claims: as from `claims.judge`. Of readings and variants only those count that decide.
     """
     judged = numbers[numbers["counted"]]
-    deciding = claims[claims["decides"]]
+    deciding = claims[claims["decides"] & ~claims["finding"].astype(bool)]
     verdicts = pd.crosstab(deciding["study"], deciding["verdict"]).reindex(columns=VERDICTS, fill_value=0)
     counts = pd.crosstab(judged["study"], judged["verdict"]).reindex(columns=NUMBERS, fill_value=0)
     counts.insert(0, "numbers", counts.sum(axis=1))

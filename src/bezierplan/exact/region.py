@@ -70,7 +70,9 @@ Region = GridRegion | CircleRegion | PolygonRegion
 
 
 def region(workspace: Workspace) -> Region:
-    """The blocked region of a workspace. Build it once for many paths."""
+    """The blocked region of a workspace; of cells drawn from polygons, that of the polygons. Build it once for many paths."""
+    if isinstance(workspace, Grid) and isinstance(workspace.drawn, Polygons):
+        return _polygon_region(workspace.drawn)
     if isinstance(workspace, Grid):
         return _grid_region(workspace)
     if isinstance(workspace, Circles):

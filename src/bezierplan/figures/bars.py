@@ -1,4 +1,4 @@
-"""Grouped bars of a metric's statistic with its interval, the share of feasible runs below each bar, and the shortest path as a line."""
+"""Grouped bars of a metric's statistic with its interval, how many runs are feasible below each bar, and the shortest path as a line."""
 
 from typing import Any, Literal
 
@@ -17,14 +17,22 @@ _BOUNDED = ("length", "objective")
 _FILLED = 0.84
 
 
-def data(results: Results, *, x: str, hue: str, metric: str, statistic: Literal["mean", "median", "share"] = "mean") -> pd.DataFrame:
+def data(
+    results: Results,
+    *,
+    x: str,
+    hue: str,
+    metric: str,
+    statistic: Literal["mean", "median", "share"] = "mean",
+    below: Literal["share", "count"] = "share",
+) -> pd.DataFrame:
     """One row a bar; columns: those of `lines.summary`, with x and hue by their own names, and bound.
 
     bound is the mean exact shortest length of the problems of a bar's feasible runs, those that count for a length, in units; empty for
     metrics that it does not bound.
 
-    x: a column, a group of bars for each of its values. hue: a column, a bar in each group for each of its values. Raises KeyError for an
-    unknown metric or column.
+    x: a column, a group of bars for each of its values. hue: a column, a bar in each group for each of its values. below: what stands below
+    a bar, the share or the number of feasible runs. Raises KeyError for an unknown metric or column.
     """
     frame = summary(results, [x, hue], metric, statistic)
     feasible = results.runs[results.runs["feasible"]].sort_values("id")
@@ -40,18 +48,18 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     for number, (bar, look) in enumerate(zip(bars, style.bars(len(bars)))):
         own = frame[frame[hue] == bar]
         at = own[x].map(groups.index).to_numpy() + (number - (len(bars) - 1) / 2) * width
-        _draw_bars(axes, own, at, width, look | {"label": style.printed(bar, hue, scene.labels)})
+        _draw_bars(axes, own, at, width, panel.get("below", "share"), look | {"label": style.printed(bar, hue, scene.labels)})
     axes.set_xlim(-0.5, len(groups) - 0.5)
     axes.set_xticks(range(len(groups)), [scene.labels.get(group, group) if isinstance(group, str) else f"{group:g}" for group in groups])
     axes.tick_params(axis="x", length=0, pad=32)  # below the shares
     axes.set_xlabel(f"{style.column_name(x, scene.labels)} (-)")
     axes.set_ylabel(axis_label(panel["metric"], scene, panel.get("statistic", "mean")))
     axes.grid(visible=True, axis="y")
-    return "below each bar: share of feasible runs"
+    return f"below each bar: {panel.get('below', 'share')} of feasible runs"
 
 
-def _draw_bars(axes: Axes, frame: pd.DataFrame, at: np.ndarray, width: float, look: dict) -> None:
-    """Bars at places (n,) with their intervals, and below each the share of feasible runs."""
+def _draw_bars(axes: Axes, frame: pd.DataFrame, at: np.ndarray, width: float, counted: str, look: dict) -> None:
+    """Bars at places (n,) with their intervals, and below each the share or the count of feasible runs."""
     axes.bar(at, frame["value"], width, zorder=2, **look)
     if frame["bound"].notna().any():
         ends = at - width / 2, at + width / 2
@@ -59,4 +67,5 @@ def _draw_bars(axes: Axes, frame: pd.DataFrame, at: np.ndarray, width: float, lo
     axes.vlines(at, frame["low95"], frame["high95"], color=style.BLACK, linewidth=0.8, zorder=3, label="95 % interval")
     for place, runs, feasible in zip(at, frame["runs"], frame["feasible_runs"]):
         below = {"xycoords": ("data", "axes fraction"), "xytext": (0, -2), "textcoords": "offset points"}
-        axes.annotate(f"{100 * feasible / runs:.0f} %", (place, 0), rotation=90, ha="center", va="top", **below)
+        text = f"{feasible:g}" if counted == "count" else f"{100 * feasible / runs:.0f} %"
+        axes.annotate(text, (place, 0), rotation=90, ha="center", va="top", **below)

@@ -29,7 +29,7 @@ _OUTLINE = {"facecolor": "none", "edgecolor": style.BLACK, "linewidth": 0.8, "li
 START = {"color": style.BLACK, "linestyle": "", "marker": "s", "markersize": 7, "label": "start", "zorder": 4.5}
 TARGET = {"color": style.BLACK, "linestyle": "", "marker": "*", "markersize": 12, "label": "target", "zorder": 4.5}
 
-# A grid that was drawn from circles shows its cells only up to this number of them; of more the circles tell enough.
+# A grid that was drawn from circles or polygons shows its cells only up to this number of them; of more the shapes tell enough.
 _MOST_CELLS = 2500
 
 _COLUMNS = ["part", "x", "y", "size", "obstacle", "ring", "number"]
@@ -56,12 +56,14 @@ def data(workspace: Workspace, *, numbers: Literal["all", "free", "none"] = "non
 def parts(workspace: Workspace) -> pd.DataFrame:
     """What is drawn of a workspace as it is, without numbers: rows as in `data`."""
     if isinstance(workspace, Grid):
-        circles = [] if workspace.drawn is None else [_discs(workspace.drawn)]
-        cells = [] if circles and workspace.occupied.size > _MOST_CELLS else [_cells(workspace, workspace, "none")]
-        return _table(workspace.bounds, *cells, *circles)
-    if isinstance(workspace, Circles):
-        return _table(workspace.bounds, _discs(workspace))
-    return _rings(workspace)
+        source = workspace.drawn
+        cells = [] if source and workspace.occupied.size > _MOST_CELLS else [_cells(workspace, workspace, "none")]
+        return _table(workspace.bounds, *cells, *([_shapes(source)] if source else []))
+    return _table(workspace.bounds, _shapes(workspace))
+
+
+def _shapes(workspace: Circles | Polygons) -> pd.DataFrame:
+    return _discs(workspace) if isinstance(workspace, Circles) else _rings(workspace)
 
 
 def _discs(circles: Circles) -> pd.DataFrame:
@@ -97,7 +99,7 @@ def _rings(workspace: Polygons) -> pd.DataFrame:
         for obstacle, outline in enumerate(workspace.obstacles)
         for ring, points in enumerate(outline)
     ]
-    return _table(workspace.bounds, *rings)
+    return pd.concat([pd.DataFrame(), *rings], ignore_index=True)
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:

@@ -1,0 +1,300 @@
+"""What a comparison of a claim is, its effect on point values, and the draws and intervals of that effect.
+
+A comparison has cells side by side: a group and the one that it is compared with, several groups, or the values of a factor. Each cell has
+one value a unit (an independent replicate), in one or several conditions that are averaged with equal weight.
+
+The interval of a difference of truths is Wald's with one success and one failure added to each group (Agresti and Caffo 2000), or half of
+one to each kind of pair (Agresti and Min 2005): resampling says nothing about what never happened.
+"""
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from bezierplan.analysis import statistics
+from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED, TAIL, generator
+
+# So many runs without a counterexample make it 95 % sure that fewer than 5 % of all runs are one.
+LEAST_WITHOUT_EXAMPLE = 59
+# An effect of so many standard errors is found with a power of at least 0.8 (simulated for both rank tests, normal data, 10 to 100 units).
+DETECTED = 3.0
+DETECTED_BELOW_20 = 3.2
+
+SIDES = {"lower": -1, "higher": 1, "down": -1, "up": 1, "at_most": -1, "at_least": 1}
+_EVENTS: dict[str, Callable] = {
+    "below": np.less,
+    "above": np.greater,
+    "at_most": np.less_equal,
+    "at_least": np.greater_equal,
+    "equals": np.equal,
+}
+
+
+class Comparison(NamedTuple):
+    """place: the combination of `every`, as text; name: the comparison in words. cells: groups, or values of x in rising order (k).
+
+    strata: one table (units, k) for each condition that is averaged over (mostly one), by name; not a number where a unit has no value,
+    infinite where it counts as worse than any. In a share the values are whether the event happened.
+    printed: the published numbers of the cells (k,), not a number unless all are printed. paper_units: how many units the paper has.
+    boolean: is the metric true or false? paired: do equal units of the cells belong together? note: what a reader of the row should know.
+    factors: the values of `every` at the place, by column.
+    """
+
+    place: str
+    name: str
+    cells: tuple
+    strata: dict[str, np.ndarray]
+    printed: np.ndarray
+    paper_units: int | None
+    boolean: bool
+    paired: bool
+    note: str = ""
+    factors: tuple[tuple[str, object], ...] = ()
+
+    @property
+    def counted(self) -> str:
+        """How many units of each cell have a value that can be averaged, of how many: where runs failed, fewer."""
+        found = np.sum([np.isfinite(stratum).sum(axis=0) for stratum in self.strata.values()], axis=0)
+        total = sum(map(len, self.strata.values()))
+        return ", ".join(f"{number} of {total}" for number in found)
+
+
+class Finding(NamedTuple):
+    """What a test found; not a number for what does not exist.
+
+    toward: 1 if the effect points as claimed and matters, -1 if it points against and matters, 0 if neither. negligible: is the interval of
+    the effect within the margin? least_detectable: the effect that would have been found with a power of 0.8.
+    mark: `+`, `-`, `0` or `?` where it does not follow from p (`claim_verdicts.mark`). rho, r_squared: of trends.
+    """
+
+    effect: float = math.nan
+    effect_size_name: str = ""
+    effect_size: float = math.nan
+    low: float = math.nan
+    high: float = math.nan
+    n: int = 0
+    p: float = math.nan
+    toward: int = 0
+    margin: float = math.nan
+    negligible: bool = False
+    least_detectable: float = math.nan
+    mark: str = ""
+    reason: str = ""
+    rho: float = math.nan
+    r_squared: float = math.nan
+
+
+# What a claim says about point values. All work on (..., k) numbers of cells, so that they serve ours, printed ones and draws.
+
+
+def event(check: dict, values: np.ndarray) -> np.ndarray:
+    """Did the event of a share happen? As 1 and 0; a value that is not a number stays. Without an event the values are truths already."""
+    if "event" not in check:
+        return values
+    ((word, limit),) = check["event"].items()
+    return np.where(np.isnan(values), np.nan, _EVENTS[word](values, limit))
+
+
+def effect(check: dict, points: np.ndarray, cells: tuple) -> np.ndarray:
+    """The effect (...) that point values (..., k) of the cells have.
+
+    If relative: to the other group's value, to that at the lowest x, to the mean of more than two groups.
+    """
+    relative = check.get("scale") == "relative"
+    with np.errstate(divide="ignore", invalid="ignore"):
+        if check["test"] == "share":
+            return points[..., 0]
+        if check["test"] == "trend":
+            change = points @ change_weights(np.array(cells, dtype=float))
+            return change / points[..., 0] if relative else change
+        if len(cells) > 2:
+            return np.ptp(points, axis=-1) / (points.mean(axis=-1) if relative else 1)
+        group, other = points[..., 0], points[..., 1]
+        return group / other - 1 if relative else group - other
+
+
+def claimed(check: dict, effects: np.ndarray, margin: float) -> np.ndarray:
+    """Is an effect what the claim says, by its value alone?"""
+    match check["test"]:
+        case "share":
+            match check["threshold"]:
+                case "all":
+                    return effects == 1
+                case "none":
+                    return effects == 0
+                case "some":
+                    return effects > 0
+            return SIDES[check["direction"]] * (effects - check["threshold"]) >= 0
+        case "equal_within":
+            return np.abs(effects - check.get("target", 0)) <= margin
+        case "difference":
+            return np.abs(effects) >= margin
+    return SIDES[check["direction"]] * effects > check.get("least", 0)
+
+
+def margin_of(check: dict, comparison: Comparison) -> float:
+    """The smallest effect that matters: as given, or as a share.
+
+    `{published: share}`: a share of the other group's value (of that at the lowest x; of truths the share itself), or the printed
+    difference of the same cells where that is smaller and points as claimed. Not a number for tests without a margin.
+    """
+    margin = check.get("margin", math.nan)
+    if not isinstance(margin, dict):
+        return margin
+    own = margin["published"]
+    if check.get("scale") != "relative" and not comparison.boolean:
+        own *= abs(float(points(comparison, point_statistic(check))[0 if check["test"] == "trend" else 1]))
+    printed = effect(check, comparison.printed, comparison.cells)
+    as_claimed = printed * SIDES.get(check.get("direction"), np.sign(printed)) > 0
+    return min(own, float(abs(printed))) if as_claimed else own
+
+
+def point_statistic(check: dict) -> str:
+    """The statistic that stands for a cell where one number has to."""
+    if check["test"] == "share":
+        return "share"
+    named = check.get("statistic", "rank")
+    return "mean" if named == "rank" else named
+
+
+def change_weights(x: np.ndarray) -> np.ndarray:
+    """Weights (k,) of values over x (k,) that give least-squares slope times range of x; not a number for a single x."""
+    from_mean = x - x.mean()
+    return from_mean / (from_mean**2).sum() * np.ptp(x)
+
+
+# Values of units, statistics of cells, and their bootstrap.
+
+
+def counted(stratum: np.ndarray, paired: bool) -> list[np.ndarray]:
+    """The values of each cell of a condition (units, k); if paired, of the units that have a value in every cell."""
+    if paired:
+        return list(stratum[~np.isnan(stratum).any(axis=1)].T)
+    return [values[~np.isnan(values)] for values in stratum.T]
+
+
+def finite(stratum: np.ndarray, paired: bool) -> list[np.ndarray]:
+    """The values that can be averaged."""
+    return counted(np.where(np.isinf(stratum), np.nan, stratum), paired)
+
+
+def points(comparison: Comparison, statistic: str) -> np.ndarray:
+    """A named statistic of each cell (k,), averaged over the conditions."""
+    each = [
+        [statistics.statistic(statistic, values) for values in finite(stratum, comparison.paired)] for stratum in comparison.strata.values()
+    ]
+    return np.mean(each, axis=0)
+
+
+def drawn_points(comparison: Comparison, statistic: str, name: str, size: int | None = None) -> np.ndarray:
+    """A named statistic of each cell in draws from its units (DRAWS, k), averaged over the conditions; not a number for an empty cell.
+
+    name: from it the draws follow. Cells of the same name in comparisons at the same place are drawn alike, and paired cells unit by unit.
+    size: units in a draw, of which as large a share counts as of ours; None to draw as many as there are.
+    """
+    total = np.zeros((statistics.DRAWS, len(comparison.cells)))
+    for stratum_name, stratum in comparison.strata.items():
+        for number, values in enumerate(finite(stratum, comparison.paired)):
+            if not len(values):
+                total[:, number] = np.nan
+                continue
+            drawn = len(values) if size is None else max(1, round(size * len(values) / len(stratum)))
+            own = "" if comparison.paired else f"/{comparison.cells[number]}"
+            rng = generator(f"{name}/{comparison.place}/{stratum_name}{own}")
+            total[:, number] += statistics.resampled(statistic, values, drawn, rng)
+    return total / len(comparison.strata)
+
+
+def drawn_effects(check: dict, comparison: Comparison, name: str) -> np.ndarray:
+    """The effect of the check's statistic in bootstrap draws (DRAWS,), or their normal approximation; not a number with an empty cell."""
+    statistic = point_statistic(check)
+    if comparison.boolean and statistic == "mean" and check.get("scale") != "relative" and len(comparison.cells) == 2:
+        adjusted = [_adjusted_difference(*counted(stratum, comparison.paired), comparison.paired) for stratum in comparison.strata.values()]
+        centre, variance = np.mean(adjusted, axis=0)
+        return statistics.normal_draws(float(centre), math.sqrt(variance / len(adjusted)))
+    ours = points(comparison, statistic)
+    gradient = _gradient(check, ours, comparison.cells)
+    if gradient is None or any(len(v) <= MOST_RESAMPLED for s in comparison.strata.values() for v in finite(s, comparison.paired)):
+        return effect(check, drawn_points(comparison, statistic, name), comparison.cells)
+    variance = 0.0
+    for stratum in comparison.strata.values():
+        moved = [g * statistics.influence(statistic, values) for g, values in zip(gradient, finite(stratum, comparison.paired))]
+        parts = [np.sum(moved, axis=0)] if comparison.paired else moved
+        variance += sum(part.var(ddof=1) / len(part) for part in parts)
+    return statistics.normal_draws(float(effect(check, ours, comparison.cells)), math.sqrt(variance) / len(comparison.strata))
+
+
+def _adjusted_difference(group: np.ndarray, other: np.ndarray, paired: bool) -> tuple[float, float]:
+    """Difference of the shares of two groups of truths, and its variance, with two units added to each; not numbers for an empty group."""
+    if not len(group) or not len(other):
+        return math.nan, math.nan
+    if paired:
+        n = len(group) + 2
+        more, fewer = (np.sum(group > other) + 0.5) / n, (np.sum(group < other) + 0.5) / n
+        return more - fewer, (more + fewer - (more - fewer) ** 2) / n
+    shares = [(values.sum() + 1) / (len(values) + 2) for values in (group, other)]
+    return shares[0] - shares[1], sum(share * (1 - share) / (len(values) + 2) for share, values in zip(shares, (group, other)))
+
+
+def _gradient(check: dict, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
+    """How the effect changes with the point value of each cell (k,); None where it has no linear approximation."""
+    reference = 1.0
+    if check.get("scale") == "relative":
+        reference = ours[0] if check["test"] == "trend" else ours[1]
+    if not reference or (len(cells) > 2 and check["test"] != "trend"):
+        return None
+    if check["test"] == "trend":
+        return change_weights(np.array(cells, dtype=float)) / reference
+    return np.array([1.0, -ours[0] / reference if check.get("scale") == "relative" else -1.0]) / reference
+
+
+def two_sided(draws: np.ndarray) -> float:
+    """Bootstrap p of draws of an effect against none."""
+    if not np.isfinite(draws).all():
+        return math.nan
+    return float(min(1.0, 2 * min(np.mean(draws <= 0), np.mean(draws >= 0))))
+
+
+def interval(draws: np.ndarray) -> tuple[float, float]:
+    if not np.isfinite(draws).all():
+        return math.nan, math.nan
+    low, high = np.quantile(draws, [TAIL, 1 - TAIL])
+    return float(low), float(high)
+
+
+def least_detectable(low: float, high: float, n: int) -> float:
+    """Not a number where the units do not differ: what they would differ by is unknown then."""
+    if low == high:
+        return math.nan
+    error = (high - low) / 2 / 1.96
+    return error * (DETECTED_BELOW_20 if n < 20 else DETECTED)
+
+
+def is_negligible(low: float, high: float, margin: float, n: int, least: float = 0.0) -> bool:
+    """Is the interval of an effect, less the claimed one, within the margin? Units without any difference have to be enough to say so."""
+    return bool(max(abs(low - least), abs(high - least)) <= margin and (low < high or n >= LEAST_WITHOUT_EXAMPLE))
+
+
+def no_difference(low: float, high: float, n: int) -> str:
+    """Why units that do not differ say nothing, empty if they do or say something."""
+    return f"no difference in fewer than {LEAST_WITHOUT_EXAMPLE} units" if low == high == 0 and n < LEAST_WITHOUT_EXAMPLE else ""
+
+
+def units(comparison: Comparison) -> int:
+    """Units of the smallest cell, over all conditions."""
+    return min(map(sum, zip(*(map(len, counted(stratum, comparison.paired)) for stratum in comparison.strata.values()))))
+
+
+def too_few(comparison: Comparison) -> str:
+    """Why a comparison says nothing, empty if it may say something."""
+    for stratum in comparison.strata.values():
+        for cell, values in zip(comparison.cells, stratum.T):
+            if np.isnan(values).all():
+                return f"no run of {cell} counts"
+        if np.isinf(stratum[~np.isnan(stratum)]).all():
+            return "no run succeeded"
+        if min(map(len, counted(stratum, comparison.paired))) < LEAST_RUNS:
+            return f"fewer than {LEAST_RUNS} units"
+    return ""

@@ -1,0 +1,156 @@
+"""From the comparisons of a claim to marks, to one verdict, and to words that say where the claim holds.
+
+A comparison has two marks, one from its own p and one from its p within the family, which are all comparisons of a claim's deciding checks
+in one variant. The procedure is a standard one at each step:
+
+- All comparisons have to hold: the sentence is supported if every comparison is `+` by itself. This is an intersection-union test, which
+  needs no correction (Berger 1982, Technometrics 24, 295). Everything else is said with the p of the family.
+- Any comparison may hold: the sentence is supported if one is `+` in the family, and contradicted if every one is `-` by itself.
+- The family is corrected by Benjamini and Hochberg (1995, J. R. Stat. Soc. B 57, 289). It finds something exactly where Simes' global test
+  rejects "no effect anywhere" (1986, Biometrika 73, 751), so at most 5 % of sentences without any effect get a mark other than `0` and `?`.
+  Comparisons that share a method depend on each other positively, which the procedure allows (Benjamini and Yekutieli 2001, Ann. Stat. 29,
+  1165). The least p of ten pairs is 0.002: Holm's correction over 30 comparisons can never bring it below 0.05, this one can.
+- A `+` or `-` needs, beside p, an effect of the size of the margin (Goodman, Spruill and Komaroff 2019, Am. Stat. 73, 168).
+- A `0` needs an interval within the margin (two one-sided tests, Schuirmann 1987, J. Pharmacokinet. Biopharm. 15, 657).
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from bezierplan.analysis.claim_effects import Finding
+from bezierplan.analysis.claim_tests import ALPHA
+
+VERDICTS = ("supported", "mostly", "in part", "seldom", "contradicted", "no effect", "undecided", "untestable")
+# Of the comparisons that are decided at least this share makes it `mostly`, at most the rest `seldom`; of all as many have to be decided.
+MOSTLY, DECIDED = 0.75, 0.5
+# So many names are listed; of more only the number is given. So many mixed groups are described one by one.
+MOST_LISTED, MOST_MIXED = 4, 3
+
+
+def family(p: np.ndarray) -> np.ndarray:
+    """p (n,) of a family, corrected by Benjamini and Hochberg's step-up procedure: (n,)."""
+    from scipy import stats
+
+    return stats.false_discovery_control(p) if len(p) else p
+
+
+def mark(finding: Finding, p: float) -> str:
+    """The mark of a comparison by a p of its own or of its family."""
+    if finding.mark:
+        return finding.mark
+    if finding.toward and p < ALPHA:
+        return "+" if finding.toward > 0 else "-"
+    return "0" if finding.negligible else "?"
+
+
+def verdict(alone: Sequence[str], together: Sequence[str], holds: str) -> str:
+    """The verdict on a claim that holds if `all` or `any` comparisons do, by the marks of each alone and in the family (at least one)."""
+    found = set(together)
+    if set(alone) == {"+"} or (holds == "any" and "+" in found):
+        return "supported"
+    if holds == "any":
+        return "contradicted" if set(alone) == {"-"} else "undecided" if "?" in found else "no effect"
+    if "+" in found:
+        return _partly(together) if found & {"-", "0"} else "undecided"
+    if "-" in found:
+        return "contradicted"
+    return "undecided" if "?" in found else "no effect"
+
+
+def _partly(marks: Sequence[str]) -> str:
+    decided = [mark for mark in marks if mark != "?"]
+    if len(decided) < DECIDED * len(marks):
+        return "undecided"
+    share = decided.count("+") / len(decided)
+    return "mostly" if share >= MOSTLY else "seldom" if share <= 1 - MOSTLY else "in part"
+
+
+# Words.
+
+
+class Marked(NamedTuple):
+    """A comparison as far as words tell of it: factor -> value (`against`, `group`, `in`, columns), and its mark."""
+
+    factors: Mapping[str, Any]
+    mark: str
+
+
+def where_it_holds(comparisons: Sequence[Marked], labels: Mapping[str, str]) -> str:
+    """Which comparisons of a claim hold and which do not, in words; empty if all or none do.
+
+    The comparisons are split by the factor that separates best what holds from what does not, and what is mixed once more by another one.
+    labels: name -> how readers see it. Example: `against 5 of 7: all but Circle and Sinusoidal`.
+    """
+    wanted = "+" if any(each.mark == "+" for each in comparisons) else "-"
+    holding = [each.mark == wanted for each in comparisons]
+    if all(holding) or not any(holding):
+        return ""
+    words = _described(comparisons, wanted, labels, depth=2)
+    unknown = sum(each.mark == "?" for each in comparisons)
+    words = words if wanted == "+" else f"the contrary {words}"
+    return words + (f"; undecided in {unknown} of {len(comparisons)}" if unknown else "")
+
+
+def _described(comparisons: Sequence[Marked], wanted: str, labels: Mapping[str, str], depth: int) -> str:
+    factor = _best_factor(comparisons, wanted)
+    if factor is None or not depth:
+        return f"in {sum(each.mark == wanted for each in comparisons)} of {len(comparisons)}"
+    parts: dict[Any, list[Marked]] = {}
+    for each in comparisons:
+        parts.setdefault(each.factors.get(factor), []).append(each)
+    full = [value for value, part in parts.items() if all(each.mark == wanted for each in part)]
+    mixed = [value for value, part in parts.items() if value not in full and any(each.mark == wanted for each in part)]
+    if len(mixed) > MOST_MIXED:
+        counts = [f"{_name(value, labels)} {sum(e.mark == wanted for e in parts[value])} of {len(parts[value])}" for value in parts]
+        return f"{_before(factor)}{', '.join(counts)}"
+    words = [_chosen(factor, full, list(parts), labels)] if full else []
+    for value in mixed:
+        words.append(f"{_before(factor)}{_name(value, labels)} {_described(parts[value], wanted, labels, depth - 1)}")
+    return "; ".join(words)
+
+
+def _best_factor(comparisons: Sequence[Marked], wanted: str) -> str | None:
+    """The factor whose values are least mixed (by Gini's impurity), the first of equals; None if none has two values."""
+    best, least = None, np.inf
+    for factor in dict.fromkeys(factor for each in comparisons for factor in each.factors):
+        parts: dict[Any, list[bool]] = {}
+        for each in comparisons:
+            parts.setdefault(each.factors.get(factor), []).append(each.mark == wanted)
+        impurity = sum(len(part) * np.mean(part) * (1 - np.mean(part)) for part in parts.values())
+        if len(parts) > 1 and impurity < least - 1e-9:
+            best, least = factor, impurity
+    return best
+
+
+def _chosen(factor: str, chosen: list, every: list, labels: Mapping[str, str]) -> str:
+    """Words for some of the values of a factor."""
+    others = [value for value in every if value not in chosen]
+    if len(chosen) > len(others) and len(others) <= MOST_LISTED and len(every) > MOST_LISTED:
+        return f"{_before(factor)}{len(chosen)} of {len(every)}: all but {_joined(others, labels)}"
+    if len(chosen) > MOST_LISTED:
+        return f"{_before(factor)}{len(chosen)} of {len(every)}: {_joined(chosen, labels)}"
+    return f"{_before(factor)}{_joined(chosen, labels)}"
+
+
+def _joined(values: list, labels: Mapping[str, str]) -> str:
+    names = [_name(value, labels) for value in values]
+    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} and {names[-1]}"
+
+
+def _name(value: Any, labels: Mapping[str, str]) -> str:
+    return labels.get(str(value), f"{value:g}" if isinstance(value, float) else str(value))
+
+
+def _before(factor: str) -> str:
+    words = {
+        "against": "against ",
+        "group": "for ",
+        "method": "for ",
+        "what": "in ",
+        "workspace": "in ",
+        "problem": "in ",
+        "experiment": "in ",
+    }
+    return words.get(factor, f"at {factor.replace('_', ' ')} ")

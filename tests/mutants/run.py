@@ -1,0 +1,106 @@
+"""Plants each fault of mutants.yaml in a copy of the tree, and runs the test that must catch it there.
+
+    python tests/mutants/run.py [--jobs N] [WORD ...]
+
+WORD: only faults whose description, file or test contains one of the words. Exits with 1 unless every fault is caught.
+"""
+
+import argparse
+import os
+import queue
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import NamedTuple
+
+import yaml
+
+ROOT = Path(__file__).resolve().parents[2]
+FILE = Path(__file__).with_name("mutants.yaml")
+# Seconds after which a test is ended: a fault that makes a search endless is caught as well.
+TIME_LIMIT = 300
+# What no test of a fault needs; compiled kernels are copied, because most of them do not change.
+LEFT_OUT = shutil.ignore_patterns(".git", ".venv", ".snakemake", "results", "__pycache__")
+
+
+class Mutant(NamedTuple):
+    """A planted fault: its description, the file, the text that it replaces and the new text, and the test that must catch it."""
+
+    fault: str
+    file: str
+    old: str
+    new: str
+    test: str
+
+
+def load() -> list[Mutant]:
+    """All mutants of mutants.yaml, in its order."""
+    return [Mutant(**each) for each in yaml.safe_load(FILE.read_text(encoding="utf-8"))]
+
+
+def planted(mutant: Mutant, tree: Path = ROOT) -> str:
+    """The text of a mutant's file in a tree with the fault in it. Raises ValueError unless the old text stands there exactly once."""
+    text = (tree / mutant.file).read_text(encoding="utf-8")
+    if text.count(mutant.old) != 1:
+        raise ValueError(f"{mutant.fault}: {mutant.file} has the old text {text.count(mutant.old)} times; expected once")
+    return text.replace(mutant.old, mutant.new)
+
+
+def run_tests(tree: Path, tests: list[str]) -> subprocess.CompletedProcess:
+    """Run tests in a tree. Raises subprocess.TimeoutExpired after `TIME_LIMIT` seconds a test."""
+    command = [sys.executable, "-m", "pytest", "-q", "-x", *tests]
+    # A file that changes twice within a second could be mistaken for its own byte code.
+    environment = os.environ | {"PYTHONDONTWRITEBYTECODE": "1"}
+    return subprocess.run(command, cwd=tree, env=environment, capture_output=True, text=True, check=False, timeout=TIME_LIMIT * len(tests))
+
+
+def outcome(mutant: Mutant, trees: queue.Queue) -> str:
+    """`caught`, `survived`, or why the test could not be run, with the fault planted in one of the trees."""
+    tree = trees.get()
+    file = tree / mutant.file
+    clean = file.read_text(encoding="utf-8")
+    try:
+        file.write_text(planted(mutant, tree), encoding="utf-8")
+        status = run_tests(tree, [mutant.test]).returncode
+        return {0: "survived", 1: "caught"}.get(status, f"pytest ended with {status}")
+    except subprocess.TimeoutExpired:
+        return "caught"
+    finally:
+        file.write_text(clean, encoding="utf-8")
+        trees.put(tree)
+
+
+def main() -> int:
+    """Run the mutants that the command line selects; returns the exit status."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="how many run at a time (default: one a core)")
+    parser.add_argument("words", nargs="*", metavar="WORD", help="only faults whose description, file or test contains a word")
+    arguments = parser.parse_args()
+    wanted = [each for each in load() if not arguments.words or any(word in " ".join(each) for word in arguments.words)]
+    with tempfile.TemporaryDirectory() as folder:
+        trees: queue.Queue = queue.Queue()
+        for number in range(max(1, min(arguments.jobs, len(wanted)))):
+            trees.put(Path(shutil.copytree(ROOT, Path(folder) / str(number), ignore=LEFT_OUT)))
+        clean = run_tests(trees.queue[0], sorted({each.test for each in wanted}))
+        if clean.returncode:
+            print(clean.stdout, clean.stderr, "These tests fail without a planted fault.", sep="\n")
+            return 1
+
+        def timed(mutant: Mutant) -> str:
+            begin = time.perf_counter()
+            found = outcome(mutant, trees)
+            print(f"{found:10s}{time.perf_counter() - begin:6.0f} s  {mutant.fault}", flush=True)
+            return found
+
+        with ThreadPoolExecutor(max(1, arguments.jobs)) as pool:
+            found = list(pool.map(timed, wanted))
+    print(f"{found.count('caught')} of {len(found)} planted faults caught")
+    return int(found.count("caught") < len(found))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

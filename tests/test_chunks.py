@@ -1,0 +1,57 @@
+"""From a study to its jobs and results: every repeat is run, and read once; which experiments are compared pair by pair."""
+
+from dataclasses import fields
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pyarrow as pa
+import pyarrow.parquet as parquet
+import pytest
+
+from bezierplan import problems, study
+from bezierplan.analysis import results
+from bezierplan.problem import Problem
+from bezierplan.workspaces.grid import from_lines
+
+
+def study_of(**experiment):
+    """A study of one experiment, and of nothing else."""
+    empty = {field.name: {} for field in fields(study.Study)} | {"key": "s", "folder": Path(), "title": "A study", "claims": []}
+    return study.Study(**empty | {"experiments": {"first": experiment}})
+
+
+@pytest.mark.parametrize(("repeats", "chunk", "count"), [(10, 4, 3), (8, 4, 2), (1, 4, 1), (9, 3, 3), (100, 1, 100), (4, 5, 1)])
+def test_chunks_hold_all_repeats_and_no_chunk_more(repeats, chunk, count):
+    own = study_of(repeats={"full": repeats}, chunk={"full": chunk})
+    assert list(study.chunks(own, "first", "full")) == list(range(count))
+
+
+@pytest.mark.parametrize(
+    ("seeds", "paired"), [({}, False), ({"seeds": "own"}, False), ({"seeds": "shared"}, True), ({"seeds": "common"}, True)]
+)
+def test_runs_are_pairs_where_methods_share_their_random_numbers(seeds, paired):
+    """Runs of two methods with seeds of their own have nothing to do with each other."""
+    own = study_of(repeats={"full": 10}, **seeds)
+    claims = [{"id": "C1", "checks": [{"test": "lower", "experiment": "first"}]}]
+    assert study.claims_job(own, claims)["paired"] == {"first": paired}
+
+
+def test_results_are_cut_at_the_number_of_repeats(tmp_path):
+    """Two chunks of four repeats; six are asked for, and whole chunks were run."""
+    grid = from_lines(["..", ".."], 1.0, "m")
+    described = {"across": Problem("across", grid, (0.5, 0.5), (1.5, 1.5))}
+    problems.write(described, {"across": "square"}, str(tmp_path / "problems.parquet"))
+    parquet.write_table(problems.bounds_of(described), tmp_path / "bounds.parquet")
+    files = []
+    for chunk in range(2):
+        repeats = np.arange(4 * chunk, 4 * chunk + 4)
+        runs = pd.DataFrame({"id": [f"r{n}" for n in repeats], "problem": "across", "repeat": repeats, "length": 2.0, "feasible": True})
+        times = pd.DataFrame({"id": runs["id"], "cpu_s": repeats / 100, "wall_s": repeats / 50})
+        files.append(str(tmp_path / f"{chunk}.parquet"))
+        parquet.write_table(pa.Table.from_pandas(runs), files[-1])
+        parquet.write_table(pa.Table.from_pandas(times[::-1]), tmp_path / f"{chunk}.times.parquet")
+    found = results.read(files, 6, str(tmp_path / "problems.parquet"), str(tmp_path / "bounds.parquet")).runs
+    assert found["repeat"].to_list() == [0, 1, 2, 3, 4, 5]
+    assert found["cpu_s"].to_list() == [0.0, 0.01, 0.02, 0.03, 0.04, 0.05]
+    assert found["bound"].to_numpy() == pytest.approx(np.sqrt(2))
