@@ -133,32 +133,3 @@ def test_pauses_between_runs_and_short_runs_are_not_ended(tmp_path):
 def test_without_a_limit_nothing_is_watched():
     with watchdog.watching(None) as watch:
         watch("run")
-
-
-def drawn(folder, repeat=0, layout=None, condition=None, **changed):
-    """The first random number of a run."""
-    place = {"workspace": "field"} | ({} if layout is None else {"layout": layout})
-    given = job(folder, problems={"disc": place, "ring": place}) | changed
-    return running.generator(given, condition or running.Condition("disc", {"bend": 0.0}), repeat).random()
-
-
-# What may differ from run to run, and under which rules it changes the random numbers.
-DIFFERENCES = {
-    "study": ({"study": "other"}, {"own", "shared", "common"}),
-    "experiment": ({"experiment": "other"}, {"own", "shared", "common"}),
-    "repeat": ({"repeat": 1}, {"own", "shared", "common"}),
-    "a late repeat": ({"repeat": 1000}, {"own", "shared", "common"}),
-    "method": ({"method": "other"}, {"own"}),
-    "problem": ({"condition": running.Condition("ring", {"bend": 0.0})}, {"own", "shared"}),
-    "varied value": ({"condition": running.Condition("disc", {"bend": 1.0})}, {"own", "shared"}),
-    "layout": ({"layout": 1}, {"common"}),
-    "planner": ({"planner": "prm"}, set()),
-}
-
-
-@pytest.mark.parametrize("seeds", ["own", "shared", "common"])
-@pytest.mark.parametrize("difference", DIFFERENCES)
-def test_random_numbers_depend_on_what_the_rule_says(difference, seeds, tmp_path):
-    changed, rules = DIFFERENCES[difference]
-    same = {"layout": 0, "seeds": seeds}
-    assert (drawn(tmp_path, **same) != drawn(tmp_path, **same | changed)) == (seeds in rules)
