@@ -1,5 +1,5 @@
-"""A study of a reader's own, outside of the repository: a map, a planner with a module beside it, a table, a figure, claims, an alternative,
-and a wrong published number.
+"""A study of a reader's own, outside of the repository: a map, a planner with a module beside it, a table, a figure, claims, an
+alternative, and a wrong published number.
 """
 
 import math
