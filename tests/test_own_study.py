@@ -72,7 +72,8 @@ claims:
     place: invented
     statement: The low bend is shorter than the high one.
     artefact: lengths
-    checks: [{test: lower, experiment: [bends, again], metric: length, groups: [low], than: [high], direction: lower, margin: 0.01}]
+    checks: [{test: lower, experiment: [bends, again], every: [experiment], metric: length, groups: [low], than: [high],
+              direction: lower, margin: 0.01}]
   - id: C2
     place: invented
     statement: The high bend is shorter than the low one, which is false.
