@@ -93,8 +93,8 @@ PUBLISHED = f"problem,method,metric,statistic,n,unit,value\nacross,low,length,me
 
 
 def snakemake(folder, *words):
-    command = [sys.executable, "-m", "snakemake", "-s", str(ROOT / "Snakefile"), "--workflow-profile", "none", "--cores", "2"]
-    command += ["--config", f"studies=[{folder / 'bends'}]", "--rerun-triggers", "mtime", "input", "params", "--", *words]
+    command = [sys.executable, "-m", "snakemake", "-s", str(ROOT / "Snakefile"), "--workflow-profile", "none", "--cores", "2", *words]
+    command += ["--config", f"studies=[{folder / 'bends'}]", "--rerun-triggers", "mtime", "input", "params"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return done.stdout + done.stderr
