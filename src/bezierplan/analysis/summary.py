@@ -53,17 +53,25 @@ def report(numbers: pd.DataFrame, claims: pd.DataFrame, titles: dict[str, str], 
     parts = [
         f"# Outcome at scale {scale}",
         "`numbers`: published numbers that can be judged; `reproduced`: those within the central 95 % of what our runs give by chance in "
-        "an experiment of the paper's size. The other columns count claims by verdict. Readings that do not decide are left out here; "
+        "an experiment of the paper's size. The other columns count claims by verdict, our own findings left out. Readings that do not decide are left out here; "
         "`numbers.csv` and `claims.csv` have them.",
         markdown(outcome(numbers, claims)),
     ]
     for study, title in titles.items():
         own = claims[(claims["study"] == study) & claims["decides"]].set_index("id")
+        found = own["finding"].astype(bool)
         if not own.empty:
-            shown = own[["statement", "verdict", "holds", "published", "effect", "n"]].fillna("")
-            shown["effect"] = [f"{value:.3g}" if isinstance(value, float) else value for value in shown["effect"]]
-            parts += [f"## {title}", markdown(shown)]
+            parts += [f"## {title}", _listed(own[~found])]
+        if found.any():
+            parts += ["Our own findings, no sentences of the paper:", _listed(own[found])]
     return "\n\n".join(parts) + "\n"
+
+
+def _listed(claims: pd.DataFrame) -> str:
+    """Claims with their verdicts, as markdown."""
+    shown = claims[["statement", "verdict", "holds", "where_it_holds", "published", "effect", "n"]].fillna("")
+    shown["effect"] = [f"{value:.3g}" if isinstance(value, float) else value for value in shown["effect"]]
+    return markdown(shown)
 
 
 def with_block(text: str, name: str, block: str) -> str:
