@@ -31,7 +31,7 @@ def found(study, experiment, method):
 
 def home(study, method):
     """The first experiment that has a method."""
-    return next(name for name, experiment in study.experiments.items() if method in experiment["methods"])
+    return next(name for name, experiment in study.experiments.items() if method in experiment.methods)
 
 
 @pytest.mark.parametrize(("key", "name"), [(key, name) for key, study in STUDIES.items() for name in alternatives(study)])
@@ -44,7 +44,7 @@ def test_alternative_changes_what_a_run_finds(key, name):
 
 
 def claims(study, *wanted):
-    return [claim for claim in study.claims if claim["id"] in wanted]
+    return [claim for claim in study.claims if claim.id in wanted]
 
 
 @pytest.mark.parametrize(
@@ -59,7 +59,7 @@ def claims(study, *wanted):
 )
 def test_alternatives_run_only_what_their_claims_compare(claim, experiment, methods):
     study = STUDIES["tharwat2018"]
-    every = [name for name in study.experiments[experiment]["methods"] if "variant_of" not in study.methods[name]]
+    every = [name for name in study.experiments[experiment].methods if not study.methods[name].variant_of]
     assert methods_of_claims(study, claims(study, claim), experiment) == (every if methods is None else methods)
 
 

@@ -18,7 +18,7 @@ from bezierplan.studies import ma2020
 from bezierplan.workspaces import files
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "ma2020"
-STUDY = checked.read(FOLDER / "experiments.yaml", "experiments")
+STUDY = checked.read(FOLDER / "experiments.yaml")
 PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
 
 
@@ -243,7 +243,7 @@ def test_continuous_curvature(points, feasible, mark, count):
 
 
 def test_assumptions_are_the_values_in_force():
-    assumptions = checked.read(FOLDER / "assumptions.yaml", "assumptions")["assumptions"]
+    assumptions = checked.read(FOLDER / "assumptions.yaml")["assumptions"]
     governed = [assumption for assumption in assumptions if "setting" in assumption]
     assert len(governed) >= 14
     for assumption in governed:

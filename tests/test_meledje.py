@@ -43,8 +43,8 @@ def test_counts_of_the_published_tables_add_to_the_trials():
 
 
 def test_repeats_are_the_trials_of_the_paper():
-    assert STUDY.experiments["operators"]["repeats"]["full"] == meledje.TRIALS
-    assert STUDY.experiments["operators"]["seeds"] == "shared"
+    assert STUDY.experiments["operators"].repeats["full"] == meledje.TRIALS
+    assert STUDY.experiments["operators"].seeds == "shared"
 
 
 def test_every_title_of_a_number_or_picture_on_the_maps_says_that_they_are_reconstructed():
@@ -330,4 +330,4 @@ def test_bad_maps_are_told_before_any_run(yard, told, tmp_path):
 
 
 def test_schemas_know_heights():
-    assert checked.read(FOLDER / "experiments.yaml", "experiments")["workspaces"]["hill"]["heights"] == "workspaces/hill_heights.txt"
+    assert checked.read(FOLDER / "experiments.yaml")["workspaces"]["hill"]["heights"] == "workspaces/hill_heights.txt"

@@ -18,7 +18,7 @@ from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
 
 STUDIES = File(__file__).parents[1] / "config" / "studies"
-THARWAT = checked.read(STUDIES / "tharwat2018" / "experiments.yaml", "experiments")
+THARWAT = checked.read(STUDIES / "tharwat2018" / "experiments.yaml")
 # Of the planner's settings in force.
 SAMPLES, BETA = 100, 100.0
 
@@ -291,7 +291,7 @@ def test_methods_of_tharwat2018():
 
 def test_assumptions_of_tharwat2018():
     """With a setting, the default is the value in force, and every alternative is legal."""
-    assumptions = checked.read(STUDIES / "tharwat2018" / "assumptions.yaml", "assumptions")["assumptions"]
+    assumptions = checked.read(STUDIES / "tharwat2018" / "assumptions.yaml")["assumptions"]
     governed = [assumption for assumption in assumptions if "setting" in assumption]
     assert len(governed) >= 15
     for assumption in governed:

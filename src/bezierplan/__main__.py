@@ -35,29 +35,30 @@ def main(words: list[str]) -> None:
 
 def list_studies(names: list[str] | None) -> None:
     """Print what the studies of the configuration, or those named, hold."""
-    from bezierplan import study_file
+    from bezierplan.study import SCALES, reading
 
-    for key, study in study_file.load(study_file.read_config({"studies": names} if names else {})).items():
+    for key, study in reading.load(reading.read_config({"studies": names} if names else {})).items():
         print(f"{key}: {study.title}")
         for kind, artefacts in (("table", study.tables), ("figure", study.figures)):
             for name, content in artefacts.items():
-                print(f"  {kind:12}{key}_{name:12} {content['title']}")
+                print(f"  {kind:12}{key}_{name:12} {content.title}")
         for name, method in study.methods.items():
-            variant = f", a variant of {method['variant_of']}" if "variant_of" in method else ""
+            variant = f", a variant of {method.variant_of}" if method.variant_of else ""
             print(f"  {'method':12}{name:20} {study.planner(name)}{variant}")
         for name, workspace in study.workspaces.items():
-            print(f"  {'workspace':12}{name:20} {workspace['kind']}")
+            print(f"  {'workspace':12}{name:20} {workspace.kind}")
         for name, experiment in study.experiments.items():
-            size = f"{len(experiment['problems'])} problems, {len(experiment['methods'])} methods"
-            repeats = ", ".join(f"{number} ({scale})" for scale, number in experiment["repeats"].items())
+            size = f"{len(experiment.problems)} problems, {len(experiment.methods)} methods"
+            repeats = ", ".join(f"{experiment.repeats[scale]} ({scale})" for scale in SCALES)
             print(f"  {'experiment':12}{name:20} {size}, repeats {repeats}")
 
 
 def replay_run(name: str) -> None:
     """Make a run again, print what it came to and whether it equals the stored one, and save its picture below results/replay."""
-    from bezierplan import replay, study_file
+    from bezierplan import replay
+    from bezierplan.study import reading
 
-    studies = study_file.load(study_file.read_config({}))
+    studies = reading.load(reading.read_config({}))
     made = replay.replay(name, studies)
     run = made.runs.iloc[0]
     shown = ("objective", "length", "bound", "claimed_feasible", "feasible", "collision_at", "collision_depth", "clearance", "evaluations")

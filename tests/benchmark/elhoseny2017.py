@@ -19,7 +19,7 @@ def benchmark_fields() -> None:
         described = {"side": side, "start": (0, 0), "target": (side, side), "obstacles": 15}
         fields = [random_field.field(study.workspaces[home], described | {"layout": i}, home) for i in range(runs)]
         problems = [Problem(home, grid, (0.0, 0.0), (float(side), float(side))) for grid in fields]
-        for method in study.experiments["fields100"]["methods"]:
+        for method in study.experiments["fields100"].methods:
             planner, settings = planner_module(study.planner(method)), study.resolved(method)
             plans = [planner.plan(each, np.random.default_rng(0), **settings) for each in problems]
             seconds = cpu_seconds(lambda: [planner.plan(each, np.random.default_rng(0), **settings) for each in problems])  # noqa: B023

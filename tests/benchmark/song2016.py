@@ -41,7 +41,7 @@ def benchmark_binary_genetic() -> None:
     problem = Problem("0_240", grid, grid.centre(0), grid.centre(240))
     runs = 20
     print(f"{'binary_genetic':16}{'evaluations/s':>16}{'ms a run':>12}{'bare minimum/s':>16}{'times the minimum':>20}")
-    for method in study.experiments["routes"]["methods"]:
+    for method in study.experiments["routes"].methods:
         settings = study.resolved(method)
         evaluations = runs * settings["population"] * (settings["generations"] + 1)
         seconds = cpu_seconds(lambda: [binary_genetic.plan(problem, np.random.default_rng(seed), **settings) for seed in range(runs)])  # noqa: B023

@@ -10,11 +10,12 @@ SOURCE = str(Path(str(workflow.current_basedir)).parents[1] / "src")
 sys.path.insert(0, SOURCE)
 os.environ.update(PYTHONPATH=SOURCE, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", NUMBA_NUM_THREADS="1")
 
-from bezierplan import checked, study as studies, study_file
+from bezierplan import checked, study as studies
 from bezierplan.digest import source_digest
+from bezierplan.study import reading
 
 try:
-    STUDIES = study_file.load(study_file.read_config(config))
+    STUDIES = reading.load(reading.read_config(config))
 except checked.Fault as fault:
     sys.exit(str(fault))
 
@@ -143,9 +144,7 @@ def figure_code(wildcards):
 
 def figure_published(wildcards):
     """Published numbers, for the kinds that draw them and the functions that ask for them."""
-    drawn = any(
-        panel["kind"] in ("boxes", "critical_difference") or panel.get("published") for panel in figure_job(wildcards)["spec"]["panels"]
-    )
+    drawn = studies.published_drawn(STUDIES[wildcards.study], wildcards.figure)
     return published_files(wildcards) if drawn else []
 
 
@@ -162,7 +161,7 @@ def claims_in_force(wildcards):
 def claims_job(wildcards):
     study = STUDIES[wildcards.study]
     job = studies.claims_job(study, claims_in_force(wildcards))
-    return job | {"repeats": {name: study.experiments[name]["repeats"][wildcards.scale] for name in job["paired"]}}
+    return job | {"repeats": {name: study.experiments[name].repeats[wildcards.scale] for name in job["paired"]}}
 
 
 def claims_code(wildcards):
@@ -171,11 +170,11 @@ def claims_code(wildcards):
 
 
 def claims_experiments(wildcards):
-    return studies.experiments_of_claims(STUDIES[wildcards.study], claims_in_force(wildcards))
+    return studies.experiments_of_claims(claims_in_force(wildcards))
 
 
 def claims_runs(wildcards):
-    methods = {name: STUDIES[wildcards.study].experiments[name]["methods"] for name in claims_experiments(wildcards)}
+    methods = {name: STUDIES[wildcards.study].experiments[name].methods for name in claims_experiments(wildcards)}
     return [file for experiment, names in methods.items() for file in chunk_files(wildcards, experiment, names)]
 
 
@@ -193,7 +192,7 @@ def published_files(wildcards):
 
 def audit_job(wildcards):
     study = STUDIES[wildcards.study]
-    tables = {Path(spec["published"]).stem: spec["experiment"] for spec in study.compared().values() if "published" in spec}
+    tables = {Path(table.published).stem: table.experiment for table in study.compared().values() if table.published}
     return {"study": study.key, "module": study.module(), "tables": tables, "experiments": sorted(set(tables.values()))}
 
 
@@ -241,9 +240,9 @@ def all_claims(wildcards):
 
 def summary_job(wildcards):
     return {
-        "tables": [[key, name] for key, study in STUDIES.items() for name, table in study.compared().items() if "published" in table],
-        "deciding": [table.get("decides", {}) for study in STUDIES.values() for table in study.compared().values() if "published" in table],
-        "variants": {key: [name for name, method in study.methods.items() if "variant_of" in method] for key, study in STUDIES.items()},
+        "tables": [[key, name] for key, study in STUDIES.items() for name, table in study.compared().items() if table.published],
+        "deciding": [table.decides for study in STUDIES.values() for table in study.compared().values() if table.published],
+        "variants": {key: list(study.variants()) for key, study in STUDIES.items()},
         "titles": {key: study.title for key, study in STUDIES.items()},
     }
 
