@@ -59,9 +59,9 @@ def _mapping(loader: _Loader, node: yaml.MappingNode) -> dict:
 _Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
 
 
-def read(file: Path) -> Any:
-    """The content of a YAML file. Raises Fault."""
-    return parse(text_of(file, str(file)), str(file))
+def read(file: Path, place: str | None = None) -> Any:
+    """The content of a YAML file. Raises Fault, beginning with a place, the file's name unless given."""
+    return parse(text_of(file, place or str(file)), place or str(file))
 
 
 def text_of(file: Path, place: str) -> str:

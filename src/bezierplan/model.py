@@ -127,9 +127,9 @@ def _fault(fault: Any, field: FieldInfo | None) -> str:
         return context["text"]
     if fault["type"] == "expected" and field is None:
         return f"{shown(given)}: expected {context['text']}"
-    if fault["type"] == "literal_error":
+    if fault["type"] == "literal_error" and isinstance(given, str):
         known = re.findall(r"'([^']*)'", context["expected"])
-        return f"{given}: unknown{closest(given, known)}" if isinstance(given, str) else f"{shown(given)}: expected {', '.join(known)}"
+        return f"{given}: unknown{closest(given, known)}"
     return f"{shown(given)}: expected {field.description if field else _EXPECTED.get(fault['type'], fault['msg'])}"
 
 

@@ -3,7 +3,7 @@ numbers that fit. Every fault is reported in one line.
 """
 
 import importlib
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from bezierplan import metrics, problems
@@ -38,15 +38,21 @@ def check(study: Study) -> None:
         for number, panel in enumerate(figure.panels):
             _check_names(design, functions, panel, f"{place}: figures: {name}: panels: {number}")
     place = relative(study.folder / "claims.yaml")
-    for number, claim in enumerate(study.claims):
-        if claim.id in (other.id for other in study.claims[:number]):
-            raise Fault(f"{place}: claims: {claim.id}: another claim has this id already")
+    _check_ids(study.claims, f"{place}: claims")
+    for claim in study.claims:
         _check_claim(design, functions, claim, f"{place}: claims: {claim.id}")
     place = relative(study.folder / "assumptions.yaml")
-    for number, assumption in enumerate(study.assumptions):
-        if assumption.id in (other.id for other in study.assumptions[:number]):
-            raise Fault(f"{place}: assumptions: {assumption.id}: another assumption has this id already")
+    _check_ids(study.assumptions, f"{place}: assumptions")
+    for assumption in study.assumptions:
         _check_assumption(study, assumption, f"{place}: assumptions: {assumption.id}")
+
+
+def _check_ids(entries: Sequence[Claim] | Sequence[Assumption], place: str) -> None:
+    """Every id stands once, for alternatives and results are found by it."""
+    ids = [entry.id for entry in entries]
+    for number, identity in enumerate(ids):
+        if identity in ids[:number]:
+            raise Fault(f"{place}: {identity}: another one has this id already")
 
 
 def _known(name: Any, known: Iterable[Any], place: str) -> None:

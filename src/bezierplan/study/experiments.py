@@ -33,7 +33,7 @@ MOST_CONDITIONS = 100_000
 
 Settings = dict[Name, Setting]
 ProblemName = Annotated[str, matching(r"^[a-z0-9][a-z0-9_]*$", "a name of lower-case letters, digits and _")]
-File = Annotated[str, value(lambda given: isinstance(given, str) and given.isprintable() and given != "", "the name of a file")]
+File = Annotated[str, value(lambda given: isinstance(given, str) and given.isprintable() and 0 < len(given) <= 200, "the name of a file")]
 Point = Annotated[list[Number], after(lambda given: _of_length(given, 2, "[x, y]"))]
 Bounds = Annotated[list[Number], after(lambda given: _of_length(given, 4, "[x low, x high, y low, y high]"))]
 Circle = Annotated[list[Number], after(lambda given: _of_length(given, 3, "[x, y, radius]"))]

@@ -45,7 +45,7 @@ def check(design: Design, table: Pivot) -> None:
         where = f"{place}: line {number}"
         if "" in row or None in row.values():
             raise Fault(f"{where}: expected {len(header)} values, one a column")
-        for column in known.keys() & row.keys():
+        for column in (name for name in known if name in row):
             if row[column] not in known[column]:
                 raise Fault(f"{where}: {column}: {row[column]}: unknown{closest(row[column], known[column])}")
         _check_numbers(row, where)

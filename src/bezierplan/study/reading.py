@@ -15,6 +15,7 @@ from bezierplan.study.checks import check
 from bezierplan.study.claims import AssumptionsFile, ClaimsFile
 from bezierplan.study.definition import Study, relative
 from bezierplan.study.experiments import ExperimentsFile
+from bezierplan.study.files import inside
 
 M = TypeVar("M", bound=Model)
 
@@ -83,5 +84,6 @@ def _read(folder: Path, name: str, model: type[M]) -> M | None:
     file = folder / f"{name}.yaml"
     if name != "experiments" and not file.exists() and not file.is_symlink():
         return None
-    shown = Path(relative(file))
-    return parsed(model, checked.read(shown), str(shown))
+    place = relative(file)
+    inside(folder, file.name, place)
+    return parsed(model, checked.read(file, place), place)
