@@ -10,7 +10,7 @@ from faults import told
 from bezierplan import running
 from bezierplan import study as studies
 from bezierplan.checked import Fault
-from bezierplan.study import reading
+from bezierplan.study import keys, reading
 
 SONG = Path(__file__).parents[1] / "config" / "studies" / "song2016"
 
@@ -252,3 +252,20 @@ def test_settings_of_a_problem_stand_between_those_of_the_study_and_of_a_method(
     assert "settings" not in studies.job(study, "routes", "shortest_path", "smoke", 0)["problems"]["0_255"]
     assert "On 0 to 255: genes 5, samples 7, generations 9" in studies.caption(study, "table1", "smoke")
     assert all("settings" not in problem for problem in studies.problems_job(study, "routes", "smoke")["problems"].values())
+
+
+def test_tables_of_keys_are_those_of_the_models():
+    """`python -m bezierplan.study.keys` renews them."""
+    text = keys.README.read_text(encoding="utf-8")
+    assert keys.renewed(text) == text
+    assert all(f"<!-- keys of {name}.yaml -->" in text for name in keys.GROUPS)
+
+
+def test_settings_of_a_planner_stand_between_those_of_the_study_and_of_a_method(folder):
+    file = folder / EXPERIMENTS
+    text = file.read_text().replace("  genes: 6", "  binary_genetic: {generations: 7, samples: 7}\n  genes: 6", 1)
+    file.write_text(text)
+    study = reading.load([folder])["song2016"]
+    resolved = study.resolved("smooth")
+    assert (resolved["generations"], resolved["samples"], resolved["genes"]) == (7, 601, 6)
+    assert study.resolved("shortest_path") == {}

@@ -31,7 +31,7 @@ class Options(RunsPanel):
     """Keys of a panel."""
 
     pick: Pick = Field(description=PICK)
-    quantity: Literal["curvature"] = Field(description="curvature")
+    quantity: Literal["curvature"] = Field(description="what is drawn along the path: curvature")
     limit: Number = Field(None, description="the published limit, a number")
 
 
