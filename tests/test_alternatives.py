@@ -3,9 +3,10 @@
 import pytest
 
 from bezierplan import study as of_study
-from bezierplan import study_file, targets
+from bezierplan import targets
+from bezierplan.study import reading
 
-STUDIES = study_file.load(study_file.read_config({}))
+STUDIES = reading.load(reading.read_config({}))
 ALTERNATIVES = [(key, name) for key, study in STUDIES.items() for name in of_study.tried(study)]
 
 

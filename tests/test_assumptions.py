@@ -5,11 +5,11 @@ from functools import cache
 
 import pytest
 
-from bezierplan import problems, running, study_file
+from bezierplan import problems, running
 from bezierplan.exact.region import region
-from bezierplan.study import alternatives, job, methods_changed, methods_of_claims, problems_job, tried, with_alternative
+from bezierplan.study import alternatives, job, methods_changed, methods_of_claims, problems_job, reading, tried, with_alternative
 
-STUDIES = study_file.load(study_file.read_config({}))
+STUDIES = reading.load(reading.read_config({}))
 # What a run finds beside its extra columns, as opposed to the settings that it was given.
 FOUND = ("objective", "history", "path_points", "evaluations")
 REPEATS = 3
@@ -32,7 +32,7 @@ def found(study, experiment, method):
 
 def home(study, method):
     """The first experiment that has a method."""
-    return next(name for name, experiment in study.experiments.items() if method in experiment["methods"])
+    return next(name for name, experiment in study.experiments.items() if method in experiment.methods)
 
 
 @cache
@@ -50,7 +50,7 @@ def test_alternative_changes_what_a_run_finds(key, name):
 
 
 def claims(study, *wanted):
-    return [claim for claim in study.claims if claim["id"] in wanted]
+    return [claim for claim in study.claims if claim.id in wanted]
 
 
 @pytest.mark.parametrize(
@@ -65,7 +65,7 @@ def claims(study, *wanted):
 )
 def test_alternatives_run_only_what_their_claims_compare(claim, experiment, methods):
     study = STUDIES["tharwat2018"]
-    every = [name for name in study.experiments[experiment]["methods"] if "variant_of" not in study.methods[name]]
+    every = [name for name in study.experiments[experiment].methods if not study.methods[name].variant_of]
     assert methods_of_claims(study, claims(study, claim), experiment) == (every if methods is None else methods)
 
 

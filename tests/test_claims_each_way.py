@@ -13,13 +13,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan import metrics, study_file
+from bezierplan import metrics
 from bezierplan.analysis import claim_comparisons, claims, statistics
 from bezierplan.analysis.claim_comparisons import Material
 from bezierplan.analysis.claim_published import listed
 from bezierplan.analysis.results import Results
 from bezierplan.problem import Problem
 from bezierplan.studies import elhoseny2017, ma2020, song2016, tharwat2018
+from bezierplan.study import reading
 from bezierplan.workspaces.grid import from_lines
 
 STUDIES = Path(__file__).parents[1] / "config" / "studies"
@@ -35,7 +36,7 @@ FALSE_VERDICTS = {"contradicted", "no effect", "seldom", "in part"}
 
 @cache
 def study(key):
-    return study_file.load([STUDIES / key])[key]
+    return reading.load([STUDIES / key])[key]
 
 
 @cache

@@ -18,7 +18,7 @@ from bezierplan.studies import ma2020
 from bezierplan.workspaces import files
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "ma2020"
-STUDY = checked.read(FOLDER / "experiments.yaml", "experiments")
+STUDY = checked.read(FOLDER / "experiments.yaml")
 PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
 
 

@@ -9,18 +9,18 @@ import pandas as pd
 import pytest
 import shapely
 
-from bezierplan import checked, problems, running, study_file
+from bezierplan import checked, problems, running
 from bezierplan.checked import Fault
 from bezierplan.exact import bounds
 from bezierplan.figures import drawing
 from bezierplan.planners import node_genetic
 from bezierplan.studies import meledje
-from bezierplan.study import job, problems_job
+from bezierplan.study import job, problems_job, reading
 from bezierplan.workspaces import files, grid
 from bezierplan.workspaces.ground import centres, cheapest, edge_energy, ground_of, obstacles_met
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "meledje"
-STUDY = study_file.load([FOLDER])["meledje"]
+STUDY = reading.load([FOLDER])["meledje"]
 PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
 
 
@@ -43,8 +43,8 @@ def test_counts_of_the_published_tables_add_to_the_trials():
 
 
 def test_repeats_are_the_trials_of_the_paper():
-    assert STUDY.experiments["operators"]["repeats"]["full"] == meledje.TRIALS
-    assert STUDY.experiments["operators"]["seeds"] == "shared"
+    assert STUDY.experiments["operators"].repeats["full"] == meledje.TRIALS
+    assert STUDY.experiments["operators"].seeds == "shared"
 
 
 def test_every_title_of_a_number_or_picture_on_the_maps_says_that_they_are_reconstructed():
@@ -264,7 +264,7 @@ YARD = "\n".join(["." * 19] * 5 + ["." * 4 + "#" * 13 + ".."] * 3 + ["." * 19] *
 def own_study(folder, experiments=OWN, yard=YARD):
     (folder / "experiments.yaml").write_text(experiments)
     (folder / "yard.txt").write_text(yard)
-    return study_file.load([folder])[folder.name]
+    return reading.load([folder])[folder.name]
 
 
 def test_an_own_map_of_any_size_needs_configuration_alone(tmp_path):
@@ -317,4 +317,4 @@ def test_bad_maps_are_told_before_any_run(yard, told, tmp_path):
 
 
 def test_schemas_know_heights():
-    assert checked.read(FOLDER / "experiments.yaml", "experiments")["workspaces"]["hill"]["heights"] == "workspaces/hill_heights.txt"
+    assert checked.read(FOLDER / "experiments.yaml")["workspaces"]["hill"]["heights"] == "workspaces/hill_heights.txt"

@@ -17,7 +17,7 @@ from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
 
 STUDIES = File(__file__).parents[1] / "config" / "studies"
-THARWAT = checked.read(STUDIES / "tharwat2018" / "experiments.yaml", "experiments")
+THARWAT = checked.read(STUDIES / "tharwat2018" / "experiments.yaml")
 # Of the planner's settings in force.
 SAMPLES, BETA = 100, 100.0
 

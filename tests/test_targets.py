@@ -9,10 +9,11 @@ import pytest
 from docutils.core import publish_parts
 from snakemake.iocontainers import OutputFiles
 
-from bezierplan import log, study_file, targets
+from bezierplan import log, targets
 from bezierplan.checked import Fault
+from bezierplan.study import reading
 
-STUDIES = study_file.load(study_file.read_config({"studies": ["song2016"]}))
+STUDIES = reading.load(reading.read_config({"studies": ["song2016"]}))
 SONG = STUDIES["song2016"]
 RULES = ("runs", "table", "all", "default")
 

@@ -14,7 +14,7 @@ from bezierplan.problem import Problem
 from bezierplan.search import penalised
 from bezierplan.workspaces.circles import Circles
 
-SETTINGS = checked.read(File(__file__).parents[1] / "config" / "studies" / "tharwat2018" / "experiments.yaml", "experiments")["settings"]
+SETTINGS = checked.read(File(__file__).parents[1] / "config" / "studies" / "tharwat2018" / "experiments.yaml")["settings"]
 FIELD = Problem("field", Circles((-10.0, 10.0, -10.0, 10.0), np.array([[2.0, 3.0]]), np.array([1.0]), "m"), (0.0, 0.0), (4.0, 6.0))
 JOB = {
     "study": "study",

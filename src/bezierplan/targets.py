@@ -16,6 +16,8 @@ from bezierplan import study as studies
 from bezierplan.checked import Fault
 from bezierplan.digest import PACKAGE, content_digest, source_digest
 from bezierplan.study import Study
+from bezierplan.study.artefacts import Pivot
+from bezierplan.study.claims import Claim
 
 Studies = dict[str, Study]
 
@@ -115,15 +117,15 @@ def table_params(given: Studies, scale: str, study: str, table: str) -> dict:
 def listing_published(given: Studies, scale: str, study: str, listing: str) -> list[str]:
     """The file that a transcribed table shows, the comparisons that one is of, or all files of published numbers for a function."""
     spec, own = given[study].tables[listing], given[study]
-    if spec["kind"] == "comparison":
-        return [f"{_folder(scale, study)}/tables/{name}.comparison.csv" for name in spec["of"]]
+    if spec.kind == "comparison":
+        return [f"{_folder(scale, study)}/tables/{name}.comparison.csv" for name in spec.of]
     file = own.published_file(listing)
     return [file] if file else own.published_files()
 
 
 def listing_params(given: Studies, scale: str, study: str, listing: str) -> dict:
     """Params of a table that shows no runs."""
-    job, kind = studies.listing_job(given[study], listing), given[study].tables[listing]["kind"]
+    job, kind = studies.listing_job(given[study], listing), given[study].tables[listing].kind
     sources = [] if kind == "comparison" else listing_published(given, scale, study, listing)
     return {
         "job": _shown(given[study], listing, job),
@@ -134,8 +136,7 @@ def listing_params(given: Studies, scale: str, study: str, listing: str) -> dict
 
 def figure_inputs(given: Studies, scale: str, study: str, figure: str) -> dict[str, list[str]]:
     """Input files of a figure: published numbers only for the kinds that draw them and the functions that ask for them."""
-    panels = given[study].figures[figure]["panels"]
-    drawn = any(panel["kind"] in ("boxes", "critical_difference") or panel.get("published") for panel in panels)
+    drawn = studies.published_drawn(given[study], figure)
     bare = studies.figure_job(given[study], figure, scale)["workspaces"]
     sources = {"maps": given[study].maps(bare), "published": given[study].published_files() if drawn else []}
     return artefact_inputs(given, scale, study, figure=figure) | sources
@@ -176,16 +177,16 @@ def _shown(study: Study, artefact: str, job: dict) -> dict:
 
 def _labels(study: Study, artefact: str) -> dict[str, str]:
     """Labels without those of methods, problems and workspaces that a table or figure cannot show. A function may name any."""
-    spec = study.tables.get(artefact) or study.figures[artefact]
+    spec = (study.tables.get(artefact) or study.figures[artefact]).plain()
     if spec.get("kind") in ("function", "comparison") or any("data" in panel for panel in spec.get("panels", [])):
         return study.labels
     shown: set[str] = set()
     for experiment in studies.experiments_of(study, artefact):
         content = study.experiments[experiment]
-        described = [study.problems[name] for name in content["problems"]]
-        shown |= {*study.methods_of(experiment), *content["problems"], *(problem["workspace"] for problem in described)}
-        shown |= {problem["route"] for problem in described if "route" in problem}
-        shown |= {str(value) for values in content.get("vary", {}).values() for value in values}
+        described = [study.problems[name] for name in content.problems]
+        shown |= {*study.methods_of(experiment), *content.problems, *(problem.workspace for problem in described)}
+        shown |= {problem.route for problem in described if problem.route}
+        shown |= {str(value) for values in content.vary.values() for value in values}
     names = study.methods.keys() | study.problems.keys() | study.workspaces.keys()
     return {name: label for name, label in study.labels.items() if name in shown or name not in names}
 
@@ -194,7 +195,7 @@ def _labels(study: Study, artefact: str) -> dict[str, str]:
 # Claims, audit, alternatives
 
 
-def _claims(study: Study, alternative: str | None) -> list[dict]:
+def _claims(study: Study, alternative: str | None) -> list[Claim]:
     """All claims of a study, or under an alternative those on which it is tried."""
     return studies.headline_claims(study, alternative) if alternative else study.claims
 
@@ -205,9 +206,9 @@ def claims_inputs(given: Studies, scale: str, study: str, alternative: str | Non
     claims = _claims(own, alternative)
     changed = studies.methods_changed(own, alternative) if alternative else []
     runs: list[str] = []
-    experiments = studies.experiments_of_claims(own, claims)
+    experiments = studies.experiments_of_claims(claims)
     for experiment in experiments:
-        methods = studies.methods_of_claims(own, claims, experiment) if alternative else own.experiments[experiment]["methods"]
+        methods = studies.methods_of_claims(own, claims, experiment) if alternative else own.experiments[experiment].methods
         runs += _chunks(own, scale, experiment, [name for name in methods if name not in changed])
         runs += _chunks(own, scale, experiment, [name for name in methods if name in changed], alternative)
     problems, bounds = _problems(scale, study, experiments), _bounds(scale, study, experiments)
@@ -219,7 +220,7 @@ def claims_params(given: Studies, scale: str, study: str, alternative: str | Non
     own = given[study]
     job = studies.claims_job(own, _claims(own, alternative))
     artefacts = {name: {key: value for key, value in spec.items() if key != "title"} for name, spec in job["artefacts"].items()}
-    repeats = {name: own.experiments[name]["repeats"][scale] for name in job["paired"]}
+    repeats = {name: own.experiments[name].repeats[scale] for name in job["paired"]}
     return {
         "job": job | {"artefacts": artefacts, "repeats": repeats},
         "published": content_digest(*own.published_files()),
@@ -227,13 +228,13 @@ def claims_params(given: Studies, scale: str, study: str, alternative: str | Non
     }
 
 
-def _audited(study: Study) -> dict[str, dict]:
+def _audited(study: Study) -> dict[str, Pivot]:
     """Tables of published numbers, by the stem of their file."""
-    return {Path(spec["published"]).stem: spec for spec in study.compared().values() if "published" in spec}
+    return {Path(table.published).stem: table for table in study.compared().values() if table.published}
 
 
 def _audited_experiments(study: Study) -> list[str]:
-    return sorted({spec["experiment"] for spec in _audited(study).values()})
+    return sorted({table.experiment for table in _audited(study).values()})
 
 
 def audit_inputs(given: Studies, scale: str, study: str) -> dict[str, list[str]]:
@@ -248,8 +249,8 @@ def audit_params(given: Studies, scale: str, study: str) -> dict:
         "job": {
             "study": study,
             "module": own.module(),
-            "tables": {name: spec["experiment"] for name, spec in _audited(own).items()},
-            "decides": {name: spec.get("decides", {}) for name, spec in _audited(own).items()},
+            "tables": {name: table.experiment for name, table in _audited(own).items()},
+            "decides": {name: table.decides for name, table in _audited(own).items()},
             "experiments": _audited_experiments(own),
         },
         "published": content_digest(*own.published_files()),
@@ -275,9 +276,9 @@ def sensitivity_params(given: Studies, scale: str, study: str) -> dict:
 # All studies together
 
 
-def _published_tables(given: Studies) -> dict[tuple[str, str], dict]:
+def _published_tables(given: Studies) -> dict[tuple[str, str], Pivot]:
     """The tables that are compared with published numbers, by study and table."""
-    return {(key, name): table for key, study in given.items() for name, table in study.compared().items() if "published" in table}
+    return {(key, name): table for key, study in given.items() for name, table in study.compared().items() if table.published}
 
 
 def summary_inputs(given: Studies, scale: str) -> dict[str, list[str]]:
@@ -293,8 +294,8 @@ def summary_params(given: Studies, scale: str) -> dict:
     tables = _published_tables(given)
     job = {
         "tables": [list(name) for name in tables],
-        "deciding": [table.get("decides", {}) for table in tables.values()],
-        "variants": {key: [name for name, method in study.methods.items() if "variant_of" in method] for key, study in given.items()},
+        "deciding": [table.decides for table in tables.values()],
+        "variants": {key: list(study.variants()) for key, study in given.items()},
         "titles": {key: study.title for key, study in given.items()},
     }
     return {"job": job, "code": _code("summary")}

@@ -29,16 +29,16 @@ from pymoo.core.problem import Problem as PymooProblem
 from pymoo.optimize import minimize
 from pyswarms.single import GlobalBestPSO
 
-from bezierplan import study_file
 from bezierplan.planners import chaotic_pso
 from bezierplan.problem import Problem
 from bezierplan.search import penalised
+from bezierplan.study import reading
 from bezierplan.workspaces import files
 
 SEEDS = 200
 GOOD = 8.0
 
-STUDY = study_file.load(study_file.read_config({"studies": ["tharwat2018"]}))["tharwat2018"]
+STUDY = reading.load(reading.read_config({"studies": ["tharwat2018"]}))["tharwat2018"]
 PROBLEM = Problem("public", files.load(STUDY.workspaces["public"], STUDY.folder), (0.0, 0.0), (4.0, 6.0))
 SETTINGS = STUDY.resolved("pso") | STUDY.levels["profile"]["tuned"] | {"stall_limit": 0}
 PARTICLES, ITERATIONS, DIMENSIONS = SETTINGS["particles"], SETTINGS["iterations"], 2 * SETTINGS["control_points"]

@@ -6,9 +6,9 @@ import numpy as np
 from geometry import random_grid
 from timing import cpu_seconds
 
-from bezierplan import study_file
 from bezierplan.planners import node_genetic
 from bezierplan.problem import Problem
+from bezierplan.study import reading
 from bezierplan.workspaces import files
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.ground import Ground, cheapest, ground_of, obstacles_met
@@ -20,7 +20,7 @@ def benchmark_node_genetic() -> None:
 
     Prepared once a map: the least energy of all paths, and up to `TABLE_CELLS` cells a table of all edges, whose size is told.
     """
-    study = study_file.load(study_file.read_config({"studies": ["meledje"]}))["meledje"]
+    study = reading.load(reading.read_config({"studies": ["meledje"]}))["meledje"]
     maps = {name: (files.load(study.workspaces[name], study.folder), study.problems[name]["settings"]) for name in list(study.problems)[:4]}
     maps |= {f"{side} x {side}": (_grid_in_the_way(side), {}) for side in (16, 32, 64, 128)}
     print(f"\n{'node_genetic':16}{'prepared in s':>16}{'ms a run':>12}{'MB of edges':>16}")

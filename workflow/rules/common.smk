@@ -14,10 +14,11 @@ os.environ.update(PYTHONPATH=SOURCE, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="
 # Snakemake puts the path of its interpreter into shell commands as it stands; here the folder may have any name.
 sys.executable = shlex.quote(sys.executable)
 
-from bezierplan import checked, study as studies, study_file, targets
+from bezierplan import checked, study as studies, targets
+from bezierplan.study import reading
 
 try:
-    STUDIES = study_file.load(study_file.read_config(config))
+    STUDIES = reading.load(reading.read_config(config))
     targets.check_folder()
 except checked.Fault as fault:
     sys.exit(str(fault))

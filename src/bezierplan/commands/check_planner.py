@@ -4,7 +4,8 @@ import sys
 from argparse import ArgumentParser
 from typing import Any
 
-from bezierplan import checked, contract, study_file
+from bezierplan import checked, contract
+from bezierplan.study import reading
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
@@ -35,7 +36,7 @@ def of_text(text: str) -> dict[str, Any]:
 
 def of_study(name: str, method: str) -> tuple[str, dict[str, Any]]:
     """Planner and settings of a method of a study. Raises Fault."""
-    (study,) = study_file.load(study_file.read_config({"studies": [name]})).values()
+    (study,) = reading.load(reading.read_config({"studies": [name]})).values()
     if method not in study.methods:
         raise checked.Fault(f"{name}: methods: {method}: unknown{checked.closest(method, study.methods)}")
     return study.planner(method), study.resolved(method)

@@ -6,13 +6,13 @@ from typing import Any
 
 import pandas as pd
 
-from bezierplan import problems, running, sheet, study_file
+from bezierplan import problems, running, sheet
 from bezierplan.analysis import results
 from bezierplan.checked import Fault, closest
 from bezierplan.commands import add_studies
 from bezierplan.commands.digest import read_rows, row_text
 from bezierplan.exact.region import region
-from bezierplan.study import Study, job, problems_job
+from bezierplan.study import Study, job, problems_job, reading
 
 SHOWN = ("objective", "length", "bound", "claimed_feasible", "feasible", "collision_at", "collision_depth", "clearance", "evaluations")
 
@@ -22,7 +22,7 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     parser.add_argument("run", help="its name: study/experiment/condition/method/repeat")
     add_studies(parser)
     given = parser.parse_args(words)
-    studies = study_file.load(study_file.read_config({"studies": given.studies} if given.studies else {}))
+    studies = reading.load(reading.read_config({"studies": given.studies} if given.studies else {}))
     found = replay(given.run, studies)
     run = found.runs.iloc[0]
     for column in SHOWN:
