@@ -1,5 +1,5 @@
-"""A study of a reader's own, outside of the repository: a map, a planner with a module beside it, a table, a figure, claims, an alternative,
-and a wrong published number.
+"""A study of a reader's own, outside of the repository: a map, a planner with a module beside it, a table, a figure, claims, an
+alternative, and a wrong published number.
 """
 
 import math
@@ -72,7 +72,8 @@ claims:
     place: invented
     statement: The low bend is shorter than the high one.
     artefact: lengths
-    checks: [{test: lower, experiment: [bends, again], metric: length, groups: [low], than: [high], direction: lower, margin: 0.01}]
+    checks: [{test: lower, experiment: [bends, again], every: [experiment], metric: length, groups: [low], than: [high],
+              direction: lower, margin: 0.01}]
   - id: C2
     place: invented
     statement: The high bend is shorter than the low one, which is false.
@@ -92,8 +93,8 @@ PUBLISHED = f"problem,method,metric,statistic,n,unit,value\nacross,low,length,me
 
 
 def snakemake(folder, *words):
-    command = [sys.executable, "-m", "snakemake", "-s", str(ROOT / "Snakefile"), "--workflow-profile", "none", "--cores", "2"]
-    command += ["--config", f"studies=[{folder / 'bends'}]", "--rerun-triggers", "mtime", "input", "params", "--", *words]
+    command = [sys.executable, "-m", "snakemake", "-s", str(ROOT / "Snakefile"), "--workflow-profile", "none", "--cores", "2", *words]
+    command += ["--config", f"studies=[{folder / 'bends'}]", "--rerun-triggers", "mtime", "input", "params"]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return done.stdout + done.stderr

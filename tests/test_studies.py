@@ -179,10 +179,10 @@ def test_a_bowl_holds_only_with_several_minima(monkeypatch, waves, mark):
 WAYS = {"above": [(-4, 2), (-2, 8), (2, 8)], "below": [(6, 0), (6, 3), (6, 6)], "between": list(tharwat2018.BEST_KNOWN["equal"])}
 
 
-def run(way, feasible=True, curve="bezier"):
+def run(way, feasible=True, curve="bezier", length=8.0):
     points = [(0, 0), *WAYS[way], (4, 6)]
     flat = [float(number) for point in points for number in point]
-    return {"problem": "equal", "feasible": feasible, "path_curve": curve, "path_points": flat}
+    return {"problem": "equal", "feasible": feasible, "path_curve": curve, "path_points": flat, "length": length}
 
 
 def test_homotopy_class():
@@ -197,9 +197,10 @@ def test_homotopy_class():
 @pytest.mark.parametrize(
     ("runs", "mark", "classes", "counted"),
     [
-        ([run("above"), run("above")], "-", 1, 2),
-        ([run("above"), run("below"), run("between"), run("above")], "+", 3, 4),
-        ([run("above"), run("below", feasible=False)], "-", 1, 1),
+        ([run("above"), run("above")], "?", 1, 2),
+        ([run("above")] * 59, "-", 1, 59),
+        ([run("above"), run("below"), run("between"), run("above"), run("below")], "+", 2, 5),
+        ([run("above"), run("above", feasible=False), run("below"), run("below", length=8.2)], "?", 0, 3),
     ],
 )
 def test_several_homotopy_classes(runs, mark, classes, counted):

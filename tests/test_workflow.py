@@ -125,8 +125,8 @@ EDITS = {
     "a comment in a script": ("workflow/scripts/runs.py", "    import pyarrow", "    # A comment.\n    import pyarrow", {}),
     "code of a script": (
         "workflow/scripts/table.py",
-        "    table = ",
-        "    0\n    table = ",
+        "    compared = ",
+        "    0\n    compared = ",
         {name: 1 for name in TABLES if name != "claims"},
     ),
     "how a job is logged": ("src/bezierplan/log.py", "PR_SET_PDEATHSIG = 1", "PR_SET_PDEATHSIG = 1 + 0", {}),

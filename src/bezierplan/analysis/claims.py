@@ -308,7 +308,8 @@ def _in_words(each: _Judged, deciding: list[_Judged]) -> claim_verdicts.Marked:
     factors: dict[str, Any] = {}
     if each.comparison is not None:
         if each.check["test"] in ("lower", "ordered", "equal_within"):
-            factors |= {"against": each.comparison.cells[1], "group": each.comparison.cells[0]}
+            group, other = (_group_in_words(each.check, cell) for cell in each.comparison.cells)
+            factors |= {"against": other, "group": group}
         factors |= dict(each.comparison.factors)
     elif each.condition:
         factors["in"] = each.condition
@@ -316,6 +317,11 @@ def _in_words(each: _Judged, deciding: list[_Judged]) -> claim_verdicts.Marked:
         statistic = each.check.get("statistic", "")
         factors["what"] = f"{statistic} {each.check.get('metric', each.check['test'])}".strip().replace("_", " ")
     return claim_verdicts.Marked(factors, each.mark_family)
+
+
+def _group_in_words(check: dict, group: Any) -> Any:
+    """A group's name; a number with the column that it is a value of."""
+    return group if isinstance(group, str) else f"{group:g} {check.get('across', 'method').replace('_', ' ')}"
 
 
 def _disagreement(judged: list[_Judged]) -> str:

@@ -85,17 +85,25 @@ def report(numbers: pd.DataFrame, claims: pd.DataFrame, titles: dict[str, str], 
         "runs give by chance in an experiment of the paper's size, where that range refuses at least half of the numbers that the paper "
         "prints of other methods in the same place (where it prints none, a number 10 % lower or higher). `not told apart`: within the "
         "range, which refuses fewer of them. `cannot fail`: within the range, which on the printed number's side of ours has no end, or "
-        "ends where nothing possible lies beyond. `not reproduced`: outside. The other columns count claims by verdict. Readings that do "
-        "not decide are left out here; `numbers.csv` and `claims.csv` have them.",
+        "ends where nothing possible lies beyond. `not reproduced`: outside. The other columns count claims by verdict; our own findings "
+        "are not among them. Readings that do not decide are left out here; `numbers.csv` and `claims.csv` have them.",
         markdown(outcome(numbers, claims)),
     ]
     for study, title in titles.items():
         own = claims[(claims["study"] == study) & claims["decides"]].set_index("id")
+        found = own["finding"].astype(bool)
         if not own.empty:
-            shown = own[["statement", "verdict", "holds", "published", "effect", "n"]].fillna("")
-            shown["effect"] = [f"{value:.3g}" if isinstance(value, float) else value for value in shown["effect"]]
-            parts += [f"## {title}", markdown(shown)]
+            parts += [f"## {title}", _listed(own[~found])]
+        if found.any():
+            parts += ["Our own findings, no sentences of the paper:", _listed(own[found])]
     return "\n\n".join(parts) + "\n"
+
+
+def _listed(claims: pd.DataFrame) -> str:
+    """Claims with their verdicts, as markdown."""
+    shown = claims[["statement", "verdict", "holds", "where_it_holds", "published", "effect", "n"]].fillna("")
+    shown["effect"] = [f"{value:.3g}" if isinstance(value, float) else value for value in shown["effect"]]
+    return markdown(shown)
 
 
 def with_block(text: str, name: str, block: str) -> str:
