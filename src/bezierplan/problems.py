@@ -85,7 +85,7 @@ _SAME_OPTIMUM = 1e-3
 
 
 def _scenario(description: dict, number: int, workspace: Grid, folder: Path) -> dict:
-    """Start and target of a scenario. Raises ValueError if it does not fit the map, or its optimal length is not that of our lattice path."""
+    """Start and target of a scenario. Raises ValueError if it does not fit the map, or has another optimal length than our lattice path."""
     from bezierplan.exact import bounds
 
     found = files.scenario(description, number, workspace, folder)
