@@ -359,3 +359,10 @@ def test_a_comparison_shows_published_numbers_with_what_chance_gives(tmp_path):
     assert shown["method"].to_list() == ["plain curves"] * 2
     assert shown["95 % by chance, from"].to_list() == [2.123, 3.0]
     assert shown["published"].to_list() == [2.5, 4.5]
+
+
+def test_a_printed_length_is_compared_with_the_metric_that_the_table_reads_it_as(tmp_path):
+    file = tmp_path / "table.csv"
+    file.write_text("method,metric,statistic,n,unit,value\nplain,length,mean,10,m,3\nplain,cpu_s,mean,10,s,4\n")
+    assert comparison.read_published(str(file), SPEC | {"reads": {"length": "cells4"}})["metric"].to_list() == ["cells4", "cpu_s"]
+    assert comparison.read_published(str(file), SPEC)["metric"].to_list() == ["length", "cpu_s"]
