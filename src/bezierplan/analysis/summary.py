@@ -53,8 +53,8 @@ def report(numbers: pd.DataFrame, claims: pd.DataFrame, titles: dict[str, str], 
     parts = [
         f"# Outcome at scale {scale}",
         "`numbers`: published numbers that can be judged; `reproduced`: those within the central 95 % of what our runs give by chance in "
-        "an experiment of the paper's size. The other columns count claims by verdict, our own findings left out. Readings that do not decide are left out here; "
-        "`numbers.csv` and `claims.csv` have them.",
+        "an experiment of the paper's size. The other columns count claims by verdict, our own findings left out. Readings that do not "
+        "decide are left out here; `numbers.csv` and `claims.csv` have them.",
         markdown(outcome(numbers, claims)),
     ]
     for study, title in titles.items():
