@@ -37,7 +37,7 @@ Columns of claims.csv, one row a claim and variant:
 | finding | is it our own finding, and no sentence of the paper? |
 | verdict | as above |
 | holds | how many comparisons of the deciding checks are + |
-| where_it_holds | which of them, in words; if none is +, where the contrary holds |
+| where_it_holds | which of them are + in the family, in words; if none is, where the contrary holds; empty where all or none do |
 | published | how many of them hold in the printed numbers, by value alone, of those that are printed |
 | effect ... p_family | of the comparison that decides: the worst -, else that with the largest p; the columns as below |
 | chance | share of experiments of the paper's size, drawn from our runs, in which the claim holds by values alone |
@@ -240,10 +240,14 @@ def _judge_variant(
         return described | {"verdict": "untestable", "published": _published(deciding), "reason": obstacle}, rows
     shown = _shown(deciding, holds)
     finding = shown.finding
+    verdict = claim_verdicts.verdict([each.mark for each in deciding], [each.mark_family for each in deciding], holds)
+    everywhere = verdict == "supported" and holds == "all"
     summary = {
-        "verdict": claim_verdicts.verdict([each.mark for each in deciding], [each.mark_family for each in deciding], holds),
+        "verdict": verdict,
         "holds": f"{sum(each.mark == '+' for each in deciding)} of {len(deciding)}",
-        "where_it_holds": claim_verdicts.where_it_holds([_in_words(each, deciding) for each in deciding], material.labels),
+        "where_it_holds": ""
+        if everywhere
+        else claim_verdicts.where_it_holds([_in_words(each, deciding) for each in deciding], material.labels),
         "published": _published(deciding),
         **{key: getattr(finding, key) for key in ("effect", "effect_size_name", "effect_size", "n", "p")},
         "low95": finding.low,
