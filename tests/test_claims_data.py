@@ -11,7 +11,6 @@ import pytest
 from bezierplan import checked
 from bezierplan.metrics import METRICS
 from bezierplan.model import Model, keys, parsed
-from bezierplan.problem import planner_module, planner_settings, setting_fault
 from bezierplan.study import claims as study_claims
 
 STUDIES = Path(__file__).parents[1] / "config" / "studies"
@@ -116,25 +115,6 @@ def test_assumptions_are_numbered_and_name_claims(key):
         default = assumption["default"]
         in_force = default.values() if isinstance(default, dict) else [default]
         assert not set(in_force) & set(assumption["alternatives"]), f"{assumption['id']}: the default is not an alternative"
-
-
-def test_alternatives_of_song2016_are_legal():
-    """The default is the value in force, and every alternative fits the planner, with the settings that go along with it."""
-    study = checked.read(STUDIES / "song2016" / "experiments.yaml")
-    governed = [assumption for assumption in assumptions("song2016") if "setting" in assumption]
-    assert len(governed) == 9
-    for assumption in governed:
-        assert assumption["claims"]
-        setting, default = assumption["setting"], assumption["default"]
-        for method, value in default.items() if isinstance(default, dict) else ((method, default) for method in study["methods"]):
-            planner = planner_module(study["methods"][method]["planner"])
-            settings = study["settings"] | study["methods"][method]["settings"]
-            assert settings[setting] == value, f"{assumption['id']}: {method}"
-            for alternative in assumption["alternatives"]:
-                changed = {setting: alternative} | assumption.get("with", {}).get(method, {})
-                for name, given in changed.items():
-                    assert setting_fault(planner_settings(planner)[name], given) is None, f"{assumption['id']}: {name}: {given}"
-                planner.check(settings | changed)
 
 
 def keys_of_data(data):

@@ -11,9 +11,9 @@ from bezierplan import checked, metrics, problems
 from bezierplan.analysis import audit
 from bezierplan.analysis.results import Results
 from bezierplan.planners import chaotic_pso
-from bezierplan.problem import planner_module, planner_settings, setting_fault
 from bezierplan.search import chaotic_maps
 from bezierplan.studies import song2016, tharwat2018
+from bezierplan.study import checks, reading
 from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
 
@@ -289,16 +289,15 @@ def test_methods_of_tharwat2018():
     assert set(plan.history.tolist()) == {plan.objective}
 
 
-def test_assumptions_of_tharwat2018():
-    """With a setting, the default is the value in force, and every alternative is legal."""
-    assumptions = checked.read(STUDIES / "tharwat2018" / "assumptions.yaml")["assumptions"]
-    governed = [assumption for assumption in assumptions if "setting" in assumption]
-    assert len(governed) >= 15
+@pytest.mark.parametrize("folder", sorted(STUDIES.iterdir()), ids=lambda folder: folder.name)
+def test_every_default_of_an_assumption_is_in_force(folder):
+    """Of all five studies; `load` refuses a default that is not, which is tried here with a value that no setting has."""
+    study = reading.read_study(folder)
+    governed = [assumption for assumption in study.assumptions if assumption.setting]
+    assert len(governed) >= {"song2016": 9, "tharwat2018": 15, "ma2020": 14}.get(folder.name, 5)
     for assumption in governed:
-        setting, default = assumption["setting"], assumption["default"]
-        for method, value in default.items() if isinstance(default, dict) else [("pso", default)]:
-            described = THARWAT["methods"][method]
-            annotation = planner_settings(planner_module(described["planner"]))[setting]
-            assert (THARWAT["settings"] | described["settings"])[setting] == value, assumption["id"]
-            for alternative in assumption["alternatives"]:
-                assert setting_fault(annotation, alternative) is None, assumption["id"]
+        checks.check_assumption(study, assumption, "here")
+        named = isinstance(assumption.default, dict)
+        other = dict.fromkeys(assumption.default, "none such") if named else "none such"
+        with pytest.raises(checked.Fault, match="not in force"):
+            checks.check_assumption(study, assumption.but(default=other), "here")
