@@ -13,6 +13,7 @@ from bezierplan.analysis.results import Results
 from bezierplan.planners import chaotic_pso
 from bezierplan.search import chaotic_maps
 from bezierplan.studies import song2016, tharwat2018
+from bezierplan.study import checks, reading
 from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
 
@@ -287,3 +288,17 @@ def test_methods_of_tharwat2018():
     plan = chaotic_pso.plan(problem("equal"), np.random.default_rng(0), **frozen)
     assert plan.extra["zeta_collapsed_at"] == 1
     assert set(plan.history.tolist()) == {plan.objective}
+
+
+@pytest.mark.parametrize("folder", sorted(STUDIES.iterdir()), ids=lambda folder: folder.name)
+def test_every_default_of_an_assumption_is_in_force(folder):
+    """Of all five studies; `load` refuses a default that is not, which is tried here with a value that no setting has."""
+    study = reading.read_study(folder)
+    governed = [assumption for assumption in study.assumptions if assumption.setting]
+    assert len(governed) >= {"song2016": 9, "tharwat2018": 15, "ma2020": 14}.get(folder.name, 5)
+    for assumption in governed:
+        checks.check_assumption(study, assumption, "here")
+        named = isinstance(assumption.default, dict)
+        other = dict.fromkeys(assumption.default, "none such") if named else "none such"
+        with pytest.raises(checked.Fault, match="not in force"):
+            checks.check_assumption(study, assumption.but(default=other), "here")

@@ -3,7 +3,8 @@ numbers that fit. Every fault is reported in one line.
 """
 
 import importlib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache, partial
 from typing import Any
 
 from bezierplan import metrics, problems
@@ -44,7 +45,7 @@ def check(study: Study) -> None:
     place = relative(study.folder / "assumptions.yaml")
     _check_ids(study.assumptions, f"{place}: assumptions")
     for assumption in study.assumptions:
-        _check_assumption(study, assumption, f"{place}: assumptions: {assumption.id}")
+        check_assumption(study, assumption, f"{place}: assumptions: {assumption.id}")
 
 
 def _check_ids(entries: Sequence[Claim] | Sequence[Assumption], place: str) -> None:
@@ -83,15 +84,16 @@ def _check_experiments(study: Study, place: str) -> None:
     check_complete(study, place)
     for name in study.methods:
         check_settings(planner_module(study.planner(name)), study.resolved(name), f"{place}: methods: {name}")
+    built = cache(partial(_built, study))
     for name in study.workspaces:
         _check_workspace(study, name, f"{place}: workspaces: {name}")
     for name, problem in study.problems.items():
         _known(problem.workspace, study.workspaces, f"{place}: problems: {name}: workspace")
         for setting in problem.settings:
             _known(setting, used, f"{place}: problems: {name}: settings")
-        _check_problem(study, name, f"{place}: problems: {name}")
+        _check_problem(study, built, name, f"{place}: problems: {name}")
     for name in study.experiments:
-        _check_experiment(study, name, f"{place}: experiments: {name}")
+        _check_experiment(study, built, name, f"{place}: experiments: {name}")
 
 
 def _check_shared_settings(study: Study, used: set[str], place: str) -> None:
@@ -123,7 +125,7 @@ def _check_workspace(study: Study, name: str, place: str) -> None:
             raise Fault(f"{place}: {error}") from None
 
 
-def _check_problem(study: Study, name: str, place: str) -> None:
+def _check_problem(study: Study, built: Callable[[str], Problem], name: str, place: str) -> None:
     """Start and target are free, in the first layout where the workspace is drawn."""
     problem, home = study.problems[name], study.workspace_of(name)
     drawn = [kind for kind, model in WORKSPACES.items() if model.drawn]
@@ -141,7 +143,7 @@ def _check_problem(study: Study, name: str, place: str) -> None:
     if home.kind == "random_circles" and max(problem.obstacles) > home.circles:
         raise Fault(f"{place}: obstacles: {max(problem.obstacles)}; expected at most {home.circles}, the circles of the workspace")
     try:
-        _built(study, name)
+        built(name)
     except ValueError as error:
         raise Fault(f"{place}: {error}") from None
 
@@ -156,7 +158,7 @@ def _built(study: Study, name: str) -> Problem:
     ][name]
 
 
-def _check_experiment(study: Study, name: str, place: str) -> None:
+def _check_experiment(study: Study, built: Callable[[str], Problem], name: str, place: str) -> None:
     experiment = study.experiments[name]
     for problem in experiment.problems:
         _known(problem, study.problems, f"{place}: problems")
@@ -170,10 +172,10 @@ def _check_experiment(study: Study, name: str, place: str) -> None:
         for value in values if setting in study.levels else []:
             _known(str(value).lower(), study.levels[setting], f"{place}: vary: {setting}")
     for method in experiment.methods:
-        _check_method_in(study, name, method, place)
+        _check_method_in(study, built, name, method, place)
 
 
-def _check_method_in(study: Study, name: str, method: str, place: str) -> None:
+def _check_method_in(study: Study, built: Callable[[str], Problem], name: str, method: str, place: str) -> None:
     """A method's planner serves the problems of an experiment, and its settings are right under every condition."""
     module, experiment = planner_module(study.planner(method)), study.experiments[name]
     for problem in experiment.problems:
@@ -182,7 +184,7 @@ def _check_method_in(study: Study, name: str, method: str, place: str) -> None:
             served = ", ".join(module.workspaces)
             raise Fault(f"{place}: methods: {method}: its planner serves workspaces of kind {served}, not {kind} ({problem})")
         if hasattr(module, "serves"):
-            asked(module.serves, f"{place}: methods: {method}: problem {problem}", _built(study, problem))
+            asked(module.serves, f"{place}: methods: {method}: problem {problem}", built(problem))
     described = job(study, name, method, "full", 0)
     # One problem for each set of settings that go with problems.
     apart = {str(met.get("settings")): problem for problem, met in reversed(described["problems"].items())}
@@ -258,7 +260,7 @@ def _check_claim(design: Design, functions: list[str], claim: Claim, place: str)
 # assumptions.yaml
 
 
-def _check_assumption(study: Study, assumption: Assumption, place: str) -> None:
+def check_assumption(study: Study, assumption: Assumption, place: str) -> None:
     """An assumption's claims are claims of the study, its default is in force, and every alternative is a legal value of its setting."""
     for identity in assumption.claims:
         _known(identity, [claim.id for claim in study.claims], f"{place}: claims")
@@ -281,13 +283,17 @@ def _check_assumption(study: Study, assumption: Assumption, place: str) -> None:
 
 
 def _check_in_force(study: Study, assumption: Assumption, methods: list[str], place: str) -> None:
-    """The default is the value that runs get, of each method named; without names of one at least, for others may differ on purpose."""
+    """The default is what runs get: those of each method that it names; without names those of the methods that have no value of their own
+    or, if all have one, of one of them.
+    """
     in_force = {method: study.resolved(method)[assumption.setting] for method in methods}
     default = assumption.default
     if isinstance(default, dict):
         for method, value in in_force.items():
             if value != default[method]:
                 raise Fault(f"{place}: default: {method}: {default[method]}: not in force; its {assumption.setting} is {value}")
-    elif default not in in_force.values():
-        values = ", ".join(dict.fromkeys(map(str, in_force.values())))
+        return
+    shared = [value for method, value in in_force.items() if assumption.setting not in study.methods[method].settings]
+    if any(value != default for value in shared) or default not in in_force.values():
+        values = ", ".join(dict.fromkeys(map(str, shared or in_force.values())))
         raise Fault(f"{place}: default: {default}: not in force; {assumption.setting} is {values}")
