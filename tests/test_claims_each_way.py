@@ -25,7 +25,7 @@ from bezierplan.workspaces.grid import from_lines
 
 STUDIES = Path(__file__).parents[1] / "config" / "studies"
 KEYS = ("song2016", "elhoseny2017", "tharwat2018", "ma2020", "meledje")
-UNITS, LAYOUTS = 64, 8
+UNITS, LAYOUTS = 80, 8
 # A level is so many times the one below; single runs are about so much off, as a share.
 STEP, NOISE = 3.0, 0.0005
 TRUTHS = {"claimed_feasible", "feasible", "optimal", "near_optimal", "infeasible", "keeps_distance", "best_corridor"}
@@ -209,7 +209,7 @@ def made(key, claim, truth) -> dict[str, Results]:
                 rows[metric] = places <= (rank + 0.5) / max(most, 2)
                 continue
             centre = 100 * STEP**rank * factor + offset
-            rows[metric] = centre * (1 + NOISE * STEP**spread * rng.normal(size=len(rows)))
+            rows[metric] = centre * (1 + NOISE * STEP ** (2 * spread) * rng.normal(size=len(rows)))
         others = [column for column in columns if column != "method"]
         rows["condition"] = rows[others].astype(str).agg(",".join, axis=1) if others else "only"
         if "problem" not in rows:
@@ -238,7 +238,7 @@ def verdict(key, claim, results, printed=None) -> pd.Series:
 def columns_alone(monkeypatch):
     """Every metric is a column of the runs, and draws are few."""
     monkeypatch.setattr(metrics, "METRICS", {name: metric._replace(compute=None) for name, metric in metrics.METRICS.items()})
-    monkeypatch.setattr(statistics, "DRAWS", 400)
+    monkeypatch.setattr(statistics, "DRAWS", 200)
 
 
 @pytest.mark.parametrize(("key", "identity"), GENERATED)
