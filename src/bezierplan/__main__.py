@@ -26,6 +26,12 @@ def main(words: list[str]) -> None:
     contract.set_defaults(do=lambda given: check_planner(given.planner, given.settings))
     keeper = commands.add_parser("outcome", help="copy the outcome of results/full to docs/outcome and into the README")
     keeper.set_defaults(do=lambda given: keep_outcome())
+    commands.add_parser("plan", help="one path on a map, checked by exact geometry", add_help=False)
+    if words[:1] == ["plan"]:
+        from bezierplan.commands import plan
+
+        plan.main(argparse.ArgumentParser(prog="python -m bezierplan plan"), words[1:])
+        return
     given = parser.parse_args(words)
     try:
         given.do(given)

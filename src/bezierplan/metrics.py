@@ -445,9 +445,7 @@ METRICS: dict[str, Metric] = {
         True,
         partial(_of_path, _bending),
     ),
-    "max_turn": Metric(
-        "degrees", f"largest change of heading between parts of {BENDING_PART:g} u", True, partial(_of_path, _max_turn)
-    ),
+    "max_turn": Metric("degrees", f"largest change of heading between parts of {BENDING_PART:g} u", True, partial(_of_path, _max_turn)),
     "corners": Metric("-", "joints of a path's pieces at which its heading changes", True, partial(_of_path, _corners)),
     "length_over_polygon": Metric("-", "length / length of the control polygon", True, partial(_of_path, _length_over_polygon)),
     "distinct_points": Metric("-", "control points that differ from each other", False, partial(_of_path, _distinct_points)),

@@ -166,20 +166,21 @@ def plan(
 ) -> Plan:
     """Shortest curve through control points on a lattice of cells (elhoseny2017, Algorithms 1 and 2).
 
-    mutation: every gene changes with the probability mutation_rate, one gene of a chromosome does, or one gene always does (one_flip); or a
-    chromosome, with that probability, loses a control point, gets another one, or has one shifted (shift).
-    diversity: no rule at all (the plain algorithm); more offspring as long as the mean Q of the pool is above eta, at most most_batches
-    times an iteration (Algorithm 2); only children whose mean Q to the pool is at most 1 - eta (relaxing); no child equal to another
-    chromosome of the pool (unique). eta changes by the factor eta_decay from one iteration to the next. gene_lattice: 21 x 21 points, or
-    every cell. point_order: control points are joined in the order of their projection on the line from start to target, ties from its left
-    to its right, in the order of the genes, or in that of their distance from the start over free cells (geodesic). first_population: random
-    chromosomes, or the inner nodes of ways along random road maps (`prm`) of roadmap_nodes and roadmap_neighbours, of which there are at
-    most most_roadmaps; random chromosomes stand in for those that are missing. first_points: the most control points of a random chromosome. first_draws: for each of the
-    first population. replacements: draws for an invalid child. least_distance: between two control points, in cells. curve: a single Bezier
-    curve, or quadratic pieces that meet half-way between the points (composite). fitness_length: what the fitness is the inverse of, the
-    length of the sampled curve or a length that counts cells (`cell_length`). invalid: what becomes of a curve that touches occupied cells;
-    with penalty cells each are added to its length. survival: the best of parents and offspring, or of the offspring alone (generational).
-    offspring: what joins the pool, the children of a crossover and beside them their mutants (both), or the mutants alone.
+    mutation: every gene changes with the probability mutation_rate, one gene of a chromosome does, or one gene always does (one_flip);
+    or a chromosome, with that probability, loses a control point, gets another one, or has one shifted (shift). diversity: no rule at
+    all (the plain algorithm); more offspring as long as the mean Q of the pool is above eta, at most most_batches times an iteration
+    (Algorithm 2); only children whose mean Q to the pool is at most 1 - eta (relaxing); no child equal to another chromosome of the
+    pool (unique). eta changes by the factor eta_decay from one iteration to the next. gene_lattice: 21 x 21 points, or every cell.
+    point_order: control points are joined in the order of their projection on the line from start to target, ties from its left to its
+    right, in the order of the genes, or in that of their distance from the start over free cells (geodesic). first_population: random
+    chromosomes, or the inner nodes of ways along random road maps (`prm`) of roadmap_nodes and roadmap_neighbours, of which there are
+    at most most_roadmaps; random chromosomes stand in for those that are missing. first_points: the most control points of a random
+    chromosome. first_draws: for each of the first population. replacements: draws for an invalid child. least_distance: between two
+    control points, in cells. curve: a single Bezier curve, or quadratic pieces that meet half-way between the points (composite).
+    fitness_length: what the fitness is the inverse of, the length of the sampled curve or a length that counts cells (`cell_length`).
+    invalid: what becomes of a curve that touches occupied cells; with penalty cells each are added to its length. survival: the best of
+    parents and offspring, or of the offspring alone (generational). offspring: what joins the pool, the children of a crossover and
+    beside them their mutants (both), or the mutants alone.
 
     The planner's own test: no cell that the sampled curve touches is occupied. Extra columns: distinct_chromosomes in the population and
     mean_q of the pool, means over the iterations; extra_batches of offspring; valid_share of the children.
