@@ -75,7 +75,7 @@ def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, st
                 layouts[key] = random_circles.layout(job["workspaces"][home], f"{job['study']}/{home}", description["layout"], ends)
             workspace = random_circles.first(layouts[key], description["obstacles"])
         if "scenario" in description:
-            description = description | _scenario(job["workspaces"][home], description["scenario"], workspace, folder)
+            description = description | scenario(job["workspaces"][home], description["scenario"], workspace, folder)
         problems[name] = build(name, description, workspace)
     return problems, {name: description["workspace"] for name, description in job["problems"].items()}
 
@@ -84,8 +84,8 @@ def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, st
 _SAME_OPTIMUM = 1e-3
 
 
-def _scenario(description: dict, number: int, workspace: Grid, folder: Path) -> dict:
-    """Start and target of a scenario. Raises ValueError if it does not fit the map, or our lattice path has another length than printed."""
+def scenario(description: dict, number: int, workspace: Grid, folder: Path) -> dict:
+    """Start and target of a scenario. Raises ValueError if it does not fit the map, or its length is not ours."""
     from bezierplan.exact import bounds
 
     found = files.scenario(description, number, workspace, folder)

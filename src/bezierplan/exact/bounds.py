@@ -20,8 +20,9 @@ from bezierplan.workspaces.lattice import CORNERS, STEPS, Corners
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
-# A graph has an entry for every pair of nodes; more nodes than this would need gigabytes.
+# A graph has an entry for every pair of nodes; with more nodes than this a search that keeps no pairs takes its place.
 MOST_NODES = 5000
+MOST_POLYGON_NODES = 500
 
 # Start and target are put on a lattice of at most this many points a cell, so that visibility is decided with whole numbers.
 _FINEST_LATTICE = 2**20
@@ -80,7 +81,7 @@ def shortest_path(problem: Problem, squeeze: Literal["open", "closed"] = "open")
     with a common denominator of at most 2**20 are off by up to 5e-7 cells there. Lengths are those of the points themselves. Around circles
     the length is a sum of closed forms, and the polyline is up to `POLYLINE_EXCESS` longer.
 
-    Raises ValueError for an unknown squeeze rule, and for a grid or polygons with more than `MOST_NODES` corners.
+    Raises ValueError for an unknown squeeze rule, and for the rule `closed` on a grid with more than `MOST_NODES` corners.
     """
     blocked = region(problem.workspace)
     for point in (problem.start, problem.target):
@@ -239,6 +240,13 @@ def _shortest_in_graph(points: np.ndarray, visible: np.ndarray) -> Bound:
     _, nodes = _dijkstra(graph, 0, 1)
     if not len(nodes):
         return _no_path()
+    return _along(points, nodes)
+
+
+def _along(points: np.ndarray, nodes: np.ndarray) -> Bound:
+    """The polyline along some of the points (n, 2), without repeated ones; no path without nodes."""
+    if not len(nodes):
+        return _no_path()
     path = points[nodes]
     moving = np.any(np.diff(path, axis=0) != 0, axis=1)
     path = np.concatenate([path[:1], path[1:][moving]]) if moving.any() else path[:2]
@@ -260,8 +268,14 @@ def _shortest_on_grid(problem: Problem, blocked: GridRegion, squeeze: str) -> Bo
     ends = from_origin(np.array([problem.start, problem.target], dtype=float), blocked)
     scale = _lattice(ends / blocked.cell, min(_FINEST_LATTICE, _LARGEST_WHOLE // max(cells.shape)))
     lattice = np.concatenate([np.rint(ends / blocked.cell * scale).astype(np.int64), corners * scale])
-    _refuse_large(len(lattice))
     slopes = np.concatenate([[0, 0], slopes])
+    if len(lattice) > MOST_NODES and squeeze == "open":
+        most = _least_over_cells(problem)
+        if math.isinf(most):
+            return _no_path()
+        nodes = _search_grid(np.concatenate([ends / blocked.cell, corners]), lattice, slopes, cells, scale, most)
+        return _moved(_along(np.concatenate([ends, corners * blocked.cell]), nodes), blocked.origin)
+    _refuse_large(len(lattice))
     quadrants = np.concatenate([np.zeros((2, 2), dtype=np.int64), quadrants])
     visible = _visible_on_grid(lattice, slopes, quadrants, cells, scale, squeeze == "closed")
     return _moved(_shortest_in_graph(np.concatenate([ends, corners * blocked.cell]), visible), blocked.origin)
@@ -321,13 +335,77 @@ def _visible_on_grid(
             if dx == 0 and dy == 0:
                 # The two nodes of a closed pinch lie in one place and do not see each other.
                 visible[i, j] = quadrants[i, 0] == 0 or quadrants[j, 0] == 0
-            elif dx == 0:
-                visible[i, j] = _sees_along_column(nodes[i, 0], min(nodes[i, 1], nodes[j, 1]), abs(dy), cells, scale, closed)
-            elif dy == 0:
-                visible[i, j] = _sees_along_column(nodes[i, 1], min(nodes[i, 0], nodes[j, 0]), abs(dx), cells.T, scale, closed)
             else:
-                visible[i, j] = _sees_across(nodes[i, 0], nodes[i, 1], dx, dy, cells, scale, closed)
+                visible[i, j] = _sees(nodes[i], nodes[j], cells, scale, closed)
     return visible
+
+
+@njit(cache=True)
+def _sees(one: np.ndarray, other: np.ndarray, cells: np.ndarray, scale: int, closed: bool) -> bool:
+    """Whether the segment between two different points of the lattice is free."""
+    dx, dy = other[0] - one[0], other[1] - one[1]
+    if dx == 0:
+        return _sees_along_column(one[0], min(one[1], other[1]), abs(dy), cells, scale, closed)
+    if dy == 0:
+        return _sees_along_column(one[1], min(one[0], other[0]), abs(dx), cells.T, scale, closed)
+    return _sees_across(one[0], one[1], dx, dy, cells, scale, closed)
+
+
+def _least_over_cells(problem: Problem) -> float:
+    """Length in cells of the shortest way over the centres of free cells, start and target joined to those of their own cells: no shortest
+    path is longer. Infinite without one, for then there is no path at all; but not if start or target lies on an occupied cell's side.
+    """
+    grid = problem.workspace
+    start, target = (grid.cell_of(*end) for end in (problem.start, problem.target))
+    if grid.occupied[start] or grid.occupied[target]:
+        return np.finfo(float).max
+    ends = sum(
+        math.dist(end, grid.centre(row * grid.occupied.shape[1] + column)) for end, (row, column) in zip(problem[2:], (start, target))
+    )
+    return lattice_path(grid.occupied, start, target, math.sqrt(2), "free").length + ends / grid.cell
+
+
+@njit(cache=True)
+def _search_grid(points, lattice, slopes, cells, scale, most):
+    """The nodes of a shortest path from node 0 to node 1 by the algorithm A*, none without a path; pairs are tested when they matter.
+
+    points: (n, 2) in cells, lattice: (n, 2) the same in whole numbers. most: in cells, a length that the path does not exceed.
+    """
+    ahead = np.hypot(points[:, 0] - points[1, 0], points[:, 1] - points[1, 1])
+    length = np.full(len(points), np.inf)
+    before = np.full(len(points), -1)
+    left = np.flatnonzero(np.hypot(points[:, 0] - points[0, 0], points[:, 1] - points[0, 1]) + ahead <= most * (1 + 1e-9))
+    length[0] = 0.0
+    while len(left) > 0:
+        best = 0
+        for k in range(len(left)):
+            if length[left[k]] + ahead[left[k]] < length[left[best]] + ahead[left[best]]:
+                best = k
+        i = left[best]
+        if i == 1 or length[i] == np.inf:
+            break
+        left[best] = left[-1]
+        left = left[:-1]
+        for j in left:
+            dx, dy = lattice[j, 0] - lattice[i, 0], lattice[j, 1] - lattice[i, 1]
+            if slopes[i] * dx * dy < 0 or slopes[j] * dx * dy < 0:
+                continue
+            so_far = length[i] + math.sqrt((points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2)
+            if so_far >= length[j] or so_far + ahead[j] > most * (1 + 1e-9):
+                continue
+            if (dx == 0 and dy == 0) or _sees(lattice[i], lattice[j], cells, scale, False):
+                length[j] = so_far
+                before[j] = i
+    return _way_back(before, length[1])
+
+
+@njit(cache=True)
+def _way_back(before, length):
+    """The nodes from node 0 to node 1, by the node before each; none if the length is infinite."""
+    nodes = [1]
+    while before[nodes[-1]] >= 0:
+        nodes.append(before[nodes[-1]])
+    return np.array(nodes[::-1]) if length < np.inf else np.empty(0, dtype=np.int64)
 
 
 @njit(cache=True)
@@ -398,7 +476,8 @@ def _shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
     nodes = np.concatenate([anywhere, blocked.edges[corner, 2:]])
     before = np.concatenate([anywhere, begin[corner]])
     after = np.concatenate([anywhere, blocked.edges[blocked.following[corner], 2:]])
-    _refuse_large(len(nodes))
+    if len(nodes) > MOST_POLYGON_NODES:
+        return _along(nodes, _search_polygons(nodes, before, after, blocked))
     return _shortest_in_graph(nodes, _visible_among_polygons(nodes, before, after, blocked))
 
 
@@ -419,6 +498,38 @@ def _visible_among_polygons(nodes: np.ndarray, before: np.ndarray, after: np.nda
                 segment[0, 1, axis] = nodes[j, axis]
             visible[i, j] = not _crosses(nodes[i], nodes[j], region.edges) and first_collision(segment, region)[0] == math.inf
     return visible
+
+
+@njit(cache=True)
+def _search_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion) -> np.ndarray:
+    """The nodes of a shortest path from node 0 to node 1 by the algorithm A*, none without a path; pairs are tested when they matter:
+    a node's way to all others waits in a heap, and is tested when it is the most promising one.
+    """
+    came_by = np.full(len(nodes), -1)
+    settled = np.zeros(len(nodes), dtype=np.bool_)
+    ahead = np.hypot(nodes[:, 0] - nodes[1, 0], nodes[:, 1] - nodes[1, 1])
+    segment = np.empty((1, 2, 2))
+    heap = [(ahead[0], 0.0, -1, 0)]
+    while len(heap) > 0:
+        _, length, tail, i = heapq.heappop(heap)
+        if settled[i]:
+            continue
+        if tail >= 0:
+            for axis in range(2):
+                segment[0, 0, axis] = nodes[tail, axis]
+                segment[0, 1, axis] = nodes[i, axis]
+            if _crosses(nodes[tail], nodes[i], region.edges) or first_collision(segment, region)[0] < math.inf:
+                continue
+        settled[i] = True
+        came_by[i] = tail
+        if i == 1:
+            return _way_back(came_by, length)
+        for j in range(len(nodes)):
+            if settled[j] or not (_is_taut(nodes, i, j, before, after) and _is_taut(nodes, j, i, before, after)):
+                continue
+            so_far = length + math.hypot(nodes[j, 0] - nodes[i, 0], nodes[j, 1] - nodes[i, 1])
+            heapq.heappush(heap, (so_far + ahead[j], so_far, i, j))
+    return np.empty(0, dtype=np.int64)
 
 
 @njit(cache=True)

@@ -146,7 +146,7 @@ def data(
     if explicit is not None:
         path = Path(explicit["curve"], np.array(explicit["points"], dtype=float))
         start, target = path.points[list(curves.ends(path.curve))]
-        return _table({"start": [start], "target": [target]} | _drawn(path, control))
+        return table({"start": [start], "target": [target]} | _drawn(path, control))
     if hue is not None:
         own = results.runs.groupby(hue)
         frames = [data(results._replace(runs=runs), pick=pick, control="none").assign(**{hue: value}) for value, runs in own]
@@ -160,7 +160,7 @@ def data(
         drawn |= _drawn(path, control)
         if not run["feasible"]:
             drawn["collision"] = [curves.point_at(path, run["collision_at"])]
-    frame = _table(drawn).assign(**names)
+    frame = table(drawn).assign(**names)
     return frame[[*names, "part", "x", "y"]]
 
 
@@ -176,7 +176,7 @@ def _drawn(path: Path, control: str) -> dict[str, np.ndarray]:
     return drawn | {"path": steps(path)}
 
 
-def _table(drawn: dict[str, Sequence]) -> pd.DataFrame:
+def table(drawn: dict[str, Sequence]) -> pd.DataFrame:
     """Points (n, 2) by part as rows."""
     import pandas as pd
 
@@ -205,7 +205,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
         note = _draw_side_by_side(axes, frame, scene, panel)
     else:
         note = "" if "explicit" in panel else _note(frame, workspace.unit, scene.narrow)
-        _draw_parts(axes, frame, narrow=scene.narrow, clip="view" in panel)
+        draw_parts(axes, frame, narrow=scene.narrow, clip="view" in panel)
     if "view" in panel:
         axes.axis(panel["view"])
     if scene.narrow:
@@ -220,17 +220,17 @@ def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict)
     lengths = []
     for value, look in zip(values, style.lines(values)):
         own = frame[frame[hue] == value]
-        _draw_parts(axes, own[own["part"] == "collision"], narrow=scene.narrow, clip="view" in panel)
+        draw_parts(axes, own[own["part"] == "collision"], narrow=scene.narrow, clip="view" in panel)
         path = own[own["part"] == "path"]
         name = style.printed(value, hue, scene.labels)
         axes.plot(path["x"], path["y"], zorder=3, **look | {"marker": "", "label": name})
         lengths.append(f"{name} {own['length'].iloc[0]:.1f}" if len(path) else f"{name} no path")
     once = frame[frame["part"].isin(["start", "target", "bound"])].drop_duplicates(["part", "x", "y"])
-    _draw_parts(axes, once, narrow=scene.narrow, clip="view" in panel)
+    draw_parts(axes, once, narrow=scene.narrow, clip="view" in panel)
     return f"lengths ({scene.unit}): {', '.join(lengths)}"
 
 
-def _draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> None:
+def draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> None:
     """Draw the points of each part; what lies beyond the panel only if they are not clipped."""
     for part, look in _LOOK.items():
         points = frame.loc[frame["part"] == part, ["x", "y"]]
