@@ -2,12 +2,12 @@
 
 from pathlib import Path as File
 
-from bezierplan import cell_length, curves
-from bezierplan.exact import bounds
-from bezierplan.exact.checker import check
-from bezierplan.exact.region import region
-from bezierplan.problem import Plan, Problem
+from bezierplan.geometry import bounds, cell_length, curves
+from bezierplan.geometry.checker import check
+from bezierplan.geometry.region import region
+from bezierplan.planners import Plan
 from bezierplan.workspaces import random_field
+from bezierplan.workspaces.problem import Problem
 
 # The six benchmark maps of elhoseny2017.
 BENCHMARK_MAPS = File(__file__).resolve().parents[1] / "config" / "studies" / "elhoseny2017" / "workspaces"

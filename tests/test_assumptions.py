@@ -5,9 +5,11 @@ from functools import cache
 
 import pytest
 
-from bezierplan import problems, running
-from bezierplan.exact.region import region
-from bezierplan.study import alternatives, job, methods_changed, methods_of_claims, problems_job, reading, tried, with_alternative
+from bezierplan.geometry.region import region
+from bezierplan.running import execution, problems
+from bezierplan.study import reading
+from bezierplan.study.alternatives import alternatives, methods_changed, methods_of_claims, tried, with_alternative
+from bezierplan.study.jobs import job, problems_job
 
 STUDIES = reading.load(reading.read_config({}))
 # What a run finds beside its extra columns, as opposed to the settings that it was given.
@@ -22,10 +24,10 @@ def found(study, experiment, method):
     made, _ = problems.build_all(problems_job(study, experiment, "smoke"), study.folder)
     blocked = region(made[name].workspace)
     rows = []
-    for condition in list(running.conditions([name], described["vary"]))[:1]:
+    for condition in list(execution.conditions([name], described["vary"]))[:1]:
         for repeat in range(REPEATS):
-            plan = running.run(described, condition, repeat, made[name])
-            row = running.row(described, condition, repeat, plan, made[name], blocked)
+            plan = execution.run(described, condition, repeat, made[name])
+            row = execution.row(described, condition, repeat, plan, made[name], blocked)
             rows.append({key: row[key] for key in (*FOUND, *plan.extra)})
     return json.dumps(rows)
 

@@ -7,12 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezierplan import curves
-from bezierplan.exact import checker
-from bezierplan.exact.region import region
-from bezierplan.planners import bca
-from bezierplan.problem import Problem, planner_settings, setting_fault
+from bezierplan.geometry import checker, curves
+from bezierplan.geometry.region import region
+from bezierplan.planners import bca, planner_settings, setting_fault
 from bezierplan.workspaces.grid import Grid, from_lines
+from bezierplan.workspaces.problem import Problem
 
 SETTINGS = {
     "curve": "bezier",

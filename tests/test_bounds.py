@@ -13,15 +13,15 @@ import scipy
 import shapely
 from fields import BENCHMARK_MAPS
 
-from bezierplan.exact.bounds import Bound, centre_path, lattice_path, least_length, shortest_path
-from bezierplan.exact.checker import check
-from bezierplan.exact.region import region
-from bezierplan.problem import Problem
+from bezierplan.geometry.bounds import Bound, centre_path, lattice_path, least_length, shortest_path
+from bezierplan.geometry.checker import check
+from bezierplan.geometry.region import region
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.lattice import STEPS, neighbours
 from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.problem import Problem
 
 DATA = Path(__file__).parent / "data"
 MAPS = DATA / "maps"
@@ -410,7 +410,7 @@ def test_the_search_of_large_grids_gives_the_path_of_the_whole_graph(monkeypatch
         problem = Problem("", grid, (1.25, -1.75), (15.75, 12.75))
         whole = shortest_path(problem)
         with monkeypatch.context() as patched:
-            patched.setattr("bezierplan.exact.bounds.MOST_NODES", 0)
+            patched.setattr("bezierplan.geometry.bounds.MOST_NODES", 0)
             found = shortest_path(problem)
         assert found.length == whole.length
         if math.isfinite(whole.length):
@@ -418,7 +418,7 @@ def test_the_search_of_large_grids_gives_the_path_of_the_whole_graph(monkeypatch
 
 
 def test_the_search_among_many_polygons_gives_the_path_of_the_whole_graph(monkeypatch):
-    monkeypatch.setattr("bezierplan.exact.bounds.MOST_POLYGON_NODES", 0)
+    monkeypatch.setattr("bezierplan.geometry.bounds.MOST_POLYGON_NODES", 0)
     for row in reference("shortest_path"):
         assert shortest_path(imr_problem(row["map"])).length == pytest.approx(float(row["value"]), abs=1e-5)
 

@@ -9,11 +9,11 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
-from bezierplan import curves
-from bezierplan.planners import chaotic_pso
-from bezierplan.problem import Problem, planner_settings, setting_fault
-from bezierplan.search import chaotic_maps
+from bezierplan.geometry import curves
+from bezierplan.planners import chaotic_pso, planner_settings, setting_fault
+from bezierplan.planners.parts import chaotic_maps
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.problem import Problem
 
 SETTINGS = {
     "curve": "bezier",

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from fields import BENCHMARK_MAPS
 
-from bezierplan.curves import bernstein
-from bezierplan.exact.checker import check
-from bezierplan.exact.region import region
+from bezierplan.geometry.checker import check
+from bezierplan.geometry.curves import bernstein
+from bezierplan.geometry.region import region
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid, from_lines
@@ -376,8 +376,8 @@ def test_grids_and_circles_are_checked_without_heavy_libraries(blocked):
         "import sys, numpy as np",
         "from bezierplan.workspaces.circles import Circles",
         "from bezierplan.workspaces.grid import Grid",
-        "from bezierplan.exact.checker import check",
-        "from bezierplan.exact.region import region",
+        "from bezierplan.geometry.checker import check",
+        "from bezierplan.geometry.region import region",
         f"check(np.zeros((1, 2, 2)), region({blocked}))",
         "print(*{'shapely', 'scipy.sparse', 'pandas'} & set(sys.modules))",
     ]

@@ -8,15 +8,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan import metrics
-from bezierplan.analysis import claim_tests, claim_verdicts, claims, statistics
+from bezierplan.analysis import claim_tests, claim_verdicts, claims, metrics, statistics
 from bezierplan.analysis.claim_effects import Finding
 from bezierplan.analysis.claim_verdicts import Marked
+from bezierplan.analysis.metrics import Metric
 from bezierplan.analysis.results import Results
-from bezierplan.checked import Fault
-from bezierplan.metrics import Metric
-from bezierplan.problem import Problem
+from bezierplan.study.checked import Fault
 from bezierplan.workspaces.grid import from_lines
+from bezierplan.workspaces.problem import Problem
 
 GRID = from_lines(["..", ".."], 1.0, "m")
 PROBLEMS = {name: Problem(name, GRID, (0.5, 0.5), (1.5, 1.5)) for name in ("first", "second")}

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from bezierplan import checked
-from bezierplan.metrics import METRICS
-from bezierplan.model import Model, keys, parsed
+from bezierplan.analysis.metrics import METRICS
+from bezierplan.study import checked
 from bezierplan.study import claims as study_claims
+from bezierplan.study.model import Model, keys, parsed
 
 STUDIES = Path(__file__).parents[1] / "config" / "studies"
 CLAIMS = {"song2016": 10, "tharwat2018": 41, "ma2020": 21, "meledje": 10, "elhoseny2017": 24}

@@ -13,15 +13,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan import metrics
-from bezierplan.analysis import claim_comparisons, claims, statistics
+from bezierplan.analysis import claim_comparisons, claims, metrics, statistics
 from bezierplan.analysis.claim_comparisons import Material
 from bezierplan.analysis.claim_published import listed
+from bezierplan.analysis.papers import elhoseny2017, ma2020, song2016, tharwat2018
 from bezierplan.analysis.results import Results
-from bezierplan.problem import Problem
-from bezierplan.studies import elhoseny2017, ma2020, song2016, tharwat2018
 from bezierplan.study import reading
 from bezierplan.workspaces.grid import from_lines
+from bezierplan.workspaces.problem import Problem
 
 STUDIES = Path(__file__).parents[1] / "config" / "studies"
 KEYS = ("song2016", "elhoseny2017", "tharwat2018", "ma2020", "meledje")

@@ -10,8 +10,8 @@ from hypothesis.extra import numpy as hnp
 from scipy.integrate import quad
 from scipy.interpolate import BSpline, CubicHermiteSpline, CubicSpline
 
-from bezierplan import curves
-from bezierplan.problem import Path
+from bezierplan.geometry import curves
+from bezierplan.workspaces.problem import Path
 
 coordinates = st.floats(-100, 100, allow_subnormal=False)
 

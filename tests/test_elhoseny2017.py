@@ -8,11 +8,10 @@ import pandas as pd
 import pytest
 from faults import told
 
-from bezierplan import checked
 from bezierplan.analysis import audit
+from bezierplan.analysis.papers import elhoseny2017
 from bezierplan.analysis.results import Results
-from bezierplan.studies import elhoseny2017
-from bezierplan.study import reading
+from bezierplan.study import checked, reading
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "elhoseny2017"
 PUBLISHED = {file.stem: audit.read_published(str(file)) for file in sorted((FOLDER / "published").glob("*.csv"))}

@@ -12,15 +12,15 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from bezierplan.curves import bernstein, bezier_pieces, least_points
-from bezierplan.exact.bounds import centre_path, lattice_path, least_length, shortest_path
-from bezierplan.exact.checker import check
-from bezierplan.exact.region import region
-from bezierplan.problem import Path, Problem
+from bezierplan.geometry.bounds import centre_path, lattice_path, least_length, shortest_path
+from bezierplan.geometry.checker import check
+from bezierplan.geometry.curves import bernstein, bezier_pieces, least_points
+from bezierplan.geometry.region import region
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.problem import Path, Problem
 
 MAPS = File(__file__).parent / "data" / "maps"
 KINDS = ("circles", "cells", "polygons")

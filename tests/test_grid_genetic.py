@@ -6,11 +6,10 @@ import numpy as np
 import pytest
 from fields import assert_path_fits, drawn
 
-from bezierplan import cell_length, curves
-from bezierplan.exact import bounds
-from bezierplan.planners import grid_genetic
-from bezierplan.problem import Problem, planner_settings, setting_fault
+from bezierplan.geometry import bounds, cell_length, curves
+from bezierplan.planners import grid_genetic, planner_settings, setting_fault
 from bezierplan.workspaces.grid import Grid, from_lines
+from bezierplan.workspaces.problem import Problem
 
 SETTINGS = {
     "population": 60,

@@ -6,12 +6,11 @@ from pathlib import Path as File
 import numpy as np
 import pytest
 
-from bezierplan import curves
-from bezierplan.exact import bounds, checker
-from bezierplan.exact.region import region
-from bezierplan.planners import ant_colony
-from bezierplan.problem import Problem, planner_module
+from bezierplan.geometry import bounds, checker, curves
+from bezierplan.geometry.region import region
+from bezierplan.planners import ant_colony, planner_module
 from bezierplan.workspaces.grid import from_lines
+from bezierplan.workspaces.problem import Problem
 
 MAPS = File(__file__).parent / "data" / "maps" / "ma2020"
 

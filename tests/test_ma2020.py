@@ -7,15 +7,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan import checked, curves, problems
 from bezierplan.analysis import audit
+from bezierplan.analysis.papers import ma2020
 from bezierplan.analysis.results import Results
-from bezierplan.exact import bounds, checker
-from bezierplan.exact.region import region
-from bezierplan.planners import bca
-from bezierplan.problem import Path, planner_module, planner_settings
-from bezierplan.studies import ma2020
+from bezierplan.geometry import bounds, checker, curves
+from bezierplan.geometry.region import region
+from bezierplan.planners import bca, planner_module, planner_settings
+from bezierplan.running import problems
+from bezierplan.study import checked
 from bezierplan.workspaces import files
+from bezierplan.workspaces.problem import Path
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "ma2020"
 STUDY = checked.read(FOLDER / "experiments.yaml")

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from bezierplan import problems
-from bezierplan.exact import bounds
+from bezierplan.geometry import bounds
+from bezierplan.running import problems
 from bezierplan.workspaces import files
 
 YAML = "image: room.png\nresolution: 0.5\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"

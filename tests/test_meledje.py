@@ -9,13 +9,14 @@ import pandas as pd
 import pytest
 import shapely
 
-from bezierplan import checked, problems, running
-from bezierplan.checked import Fault
-from bezierplan.exact import bounds
-from bezierplan.figures import drawing
+from bezierplan.analysis.papers import meledje
+from bezierplan.figures.panels import drawing
+from bezierplan.geometry import bounds
 from bezierplan.planners import node_genetic
-from bezierplan.studies import meledje
-from bezierplan.study import job, problems_job, reading
+from bezierplan.running import execution, problems
+from bezierplan.study import checked, reading
+from bezierplan.study.checked import Fault
+from bezierplan.study.jobs import job, problems_job
 from bezierplan.workspaces import files, grid
 from bezierplan.workspaces.ground import centres, cheapest, edge_energy, ground_of, obstacles_met
 
@@ -271,7 +272,7 @@ def test_an_own_map_of_any_size_needs_configuration_alone(tmp_path):
     study = own_study(tmp_path)
     made, _ = problems.build_all(problems_job(study, "tries", "full"), study.folder)
     for method in ("proposed", "repaired"):
-        runs, times = running.run_chunk(made, job(study, "tries", method, "full", 0))
+        runs, times = execution.run_chunk(made, job(study, "tries", method, "full", 0))
         table = runs.to_pandas()
         assert len(table) == len(times) == 3
         assert table["optimal"].dtype == bool

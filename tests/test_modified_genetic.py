@@ -6,18 +6,17 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy
 
-from bezierplan import cell_length
-from bezierplan.curves import bezier_pieces
-from bezierplan.exact import bounds
-from bezierplan.exact.checker import check as certified
-from bezierplan.exact.region import region
+from bezierplan.geometry import bounds, cell_length
+from bezierplan.geometry.checker import check as certified
+from bezierplan.geometry.curves import bezier_pieces
+from bezierplan.geometry.region import region
 from bezierplan.planners import modified_genetic as planner
-from bezierplan.problem import Problem
-from bezierplan.search import diversity, gene_lists
-from bezierplan.search.sorting import ascending
+from bezierplan.planners.parts import diversity, gene_lists
+from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.problem import Problem
 
 SETTINGS = {
     "population": 60,

@@ -11,15 +11,15 @@ from hypothesis import strategies as st
 from scipy.sparse import csr_array
 from scipy.sparse.csgraph import dijkstra
 
-from bezierplan import curves
-from bezierplan.exact.checker import check
-from bezierplan.exact.region import region
-from bezierplan.planners import node_genetic
-from bezierplan.problem import Problem, planner_settings, setting_fault
+from bezierplan.geometry import curves
+from bezierplan.geometry.checker import check
+from bezierplan.geometry.region import region
+from bezierplan.planners import node_genetic, planner_settings, setting_fault
 from bezierplan.workspaces import files
 from bezierplan.workspaces import ground as ground_of_cells
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.ground import cheapest, edge_energy, ground_of, obstacles_met
+from bezierplan.workspaces.problem import Problem
 
 MAPS = File(__file__).parents[1] / "config" / "studies" / "meledje" / "workspaces"
 # Least energies from the lower left to the upper right corner, by a program of its own.

@@ -17,7 +17,7 @@ PLANNER = """
 import numpy as np
 import nearby
 from bezierplan import curves
-from bezierplan.problem import Path, Plan
+from bezierplan.planners import Path, Plan
 
 workspaces = ("circles",)
 

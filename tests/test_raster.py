@@ -12,14 +12,14 @@ from fields import BENCHMARK_MAPS
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezierplan import problems
-from bezierplan.exact import bounds
-from bezierplan.exact.checker import check
-from bezierplan.exact.region import region
-from bezierplan.figures import workspace as picture
-from bezierplan.problem import Problem
+from bezierplan.figures.panels import workspace as picture
+from bezierplan.geometry import bounds
+from bezierplan.geometry.checker import check
+from bezierplan.geometry.region import region
+from bezierplan.running import problems
 from bezierplan.workspaces import files, raster
 from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.problem import Problem
 
 # Cells of 0.1 m whose centre lies in an obstacle or on its edge, counted with another program.
 OCCUPIED_CENTRES = {

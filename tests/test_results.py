@@ -5,8 +5,8 @@ import pandas as pd
 import pytest
 
 from bezierplan.analysis import audit, results
-from bezierplan.problem import Problem
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.problem import Problem
 
 DISC = Problem("disc", Circles((-5.0, 5.0, -5.0, 5.0), np.array([[0.0, 0.0]]), np.array([1.0]), "m"), (-2.0, 0.0), (2.0, 0.0))
 BOUND = 2 * np.sqrt(3) + np.pi / 3

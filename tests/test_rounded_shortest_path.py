@@ -10,16 +10,16 @@ from fields import BENCHMARK_MAPS, drawn
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezierplan import curves
-from bezierplan.exact.bounds import shortest_path
-from bezierplan.exact.checker import check
-from bezierplan.exact.region import region
+from bezierplan.geometry import curves
+from bezierplan.geometry.bounds import shortest_path
+from bezierplan.geometry.checker import check
+from bezierplan.geometry.region import region
 from bezierplan.planners import rounded_shortest_path
-from bezierplan.problem import Problem
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.problem import Problem
 
 MAPS = ["back_and_forth", "bugtrap1", "complex2", "gaps", "hidden_U", "square_spiral"]
 # An arc of 45 degrees is curved by up to this much more than its circle, relatively.

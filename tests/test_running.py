@@ -7,15 +7,15 @@ import textwrap
 import numpy as np
 import pytest
 
-from bezierplan import running, watchdog
 from bezierplan.commands.digest import row_text
-from bezierplan.problem import Problem
+from bezierplan.running import execution, watchdog
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.problem import Problem
 
 PROBLEM = Problem("disc", Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 8.0]]), np.array([1.0]), "m"), (1.0, 5.0), (9.0, 5.0))
 PLANNER = """
 import numpy as np
-from bezierplan.problem import Path, Plan
+from bezierplan.planners import Path, Plan
 
 made = []
 
@@ -45,28 +45,28 @@ def job(folder, **changed):
 
 def test_rows_stand_in_order_and_do_not_depend_on_it(tmp_path, monkeypatch):
     given = job(tmp_path)
-    runs, times = running.run_chunk({"disc": PROBLEM}, given)
+    runs, times = execution.run_chunk({"disc": PROBLEM}, given)
     assert runs["id"].to_pylist() == [f"study/bends/disc,bend={bend}/bend/{repeat}" for bend in (0.0, 1.0, 2.0) for repeat in range(4, 10)]
     assert times["id"].to_pylist() == runs["id"].to_pylist()
-    monkeypatch.setattr(running, "_order", lambda job, conditions, repeats: [(k, n) for k in range(conditions) for n in repeats])
-    again, _ = running.run_chunk({"disc": PROBLEM}, given)
+    monkeypatch.setattr(execution, "_order", lambda job, conditions, repeats: [(k, n) for k in range(conditions) for n in repeats])
+    again, _ = execution.run_chunk({"disc": PROBLEM}, given)
     assert list(map(row_text, again.to_pylist())) == list(map(row_text, runs.to_pylist()))
 
 
 def test_conditions_take_turns(tmp_path):
-    order = running._order(job(tmp_path), 3, range(4, 10))
+    order = execution._order(job(tmp_path), 3, range(4, 10))
     assert sorted(order) == [(k, repeat) for k in range(3) for repeat in range(4, 10)]
-    assert order == running._order(job(tmp_path), 3, range(4, 10))
-    assert order != running._order(job(tmp_path, method="other"), 3, range(4, 10))
+    assert order == execution._order(job(tmp_path), 3, range(4, 10))
+    assert order != execution._order(job(tmp_path, method="other"), 3, range(4, 10))
     assert len({k for k, _ in order[:6]}) > 1
     # No condition is always first.
-    assert {running._order(job(tmp_path, method=f"m{n}"), 3, range(4, 10))[0][0] for n in range(20)} == {0, 1, 2}
+    assert {execution._order(job(tmp_path, method=f"m{n}"), 3, range(4, 10))[0][0] for n in range(20)} == {0, 1, 2}
 
 
 def test_deterministic_planner_is_run_once_a_condition(tmp_path):
     given = job(tmp_path)
     (tmp_path / "bend.py").write_text(PLANNER.replace("made = []", "deterministic = True\nmade = []").replace("rng.random()", "1.0"))
-    runs, times = running.run_chunk({"disc": PROBLEM}, given)
+    runs, times = execution.run_chunk({"disc": PROBLEM}, given)
     assert runs["repeat"].to_pylist() == [*range(4, 10)] * 3
     assert len(set(times["cpu_s"].to_pylist())) <= 3
     assert runs["objective"].to_pylist() == [objective for objective in (5.0, 6.0, 7.0) for _ in range(6)]
@@ -80,7 +80,7 @@ def warm_up(seconds):
         taken.append(seconds[min(len(taken), len(seconds) - 1)])
         return None, taken[-1], taken[-1]
 
-    running._warm_up(once)
+    execution._warm_up(once)
     return len(taken)
 
 

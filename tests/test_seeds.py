@@ -5,9 +5,9 @@ import hashlib
 import numpy as np
 import pytest
 
-from bezierplan import running
-from bezierplan.problem import Problem
+from bezierplan.running import execution
 from bezierplan.workspaces.grid import from_lines
+from bezierplan.workspaces.problem import Problem
 
 JOB = {
     "study": "paper",
@@ -24,7 +24,7 @@ JOB = {
 
 
 def first_number(seeds, problem="p", x=1, repeat=0, **changes):
-    return running.generator(JOB | {"seeds": seeds} | changes, running.Condition(problem, {"x": x}), repeat).random()
+    return execution.generator(JOB | {"seeds": seeds} | changes, execution.Condition(problem, {"x": x}), repeat).random()
 
 
 CHANGES = {
@@ -49,7 +49,7 @@ def test_a_seed_depends_on_what_its_rule_names_and_on_nothing_else(seeds, withou
 @pytest.mark.parametrize("repeat", [7, 999, 1000, 12345])
 def test_a_seed_is_the_sha256_of_the_name_of_its_run(repeat):
     name = f"paper/first/p,x=1/mine/{repeat}"
-    assert running.run_id(JOB, running.Condition("p", {"x": 1}), repeat) == name
+    assert execution.run_id(JOB, execution.Condition("p", {"x": 1}), repeat) == name
     seed = int(hashlib.sha256(name.encode()).hexdigest(), 16)
     assert first_number("own", repeat=repeat) == np.random.default_rng(seed).random()
 
@@ -61,7 +61,7 @@ def test_no_two_repeats_share_their_numbers(seeds):
 
 PLANNER = """
 import numpy as np
-from bezierplan.problem import Path, Plan
+from bezierplan.planners import Path, Plan
 
 def plan(problem, rng):
     middle = rng.uniform(0.5, 1.5, 2)
@@ -80,7 +80,7 @@ PROBLEMS = {name: Problem(name, from_lines(["....", "...."], 1.0, "cell"), (0.5,
 
 
 def test_a_chunk_is_every_condition_with_all_its_repeats(job):
-    runs, times = (table.to_pandas() for table in running.run_chunk(PROBLEMS, job))
+    runs, times = (table.to_pandas() for table in execution.run_chunk(PROBLEMS, job))
     expected = [f"paper/first/{problem},x={x}/mine/{repeat}" for problem in "pqr" for x in (1, 2) for repeat in (4, 5, 6)]
     assert runs["id"].to_list() == times["id"].to_list() == expected
     assert runs["repeat"].to_list() == [4, 5, 6] * 6
@@ -92,7 +92,7 @@ def test_a_chunk_is_every_condition_with_all_its_repeats(job):
 
 
 def test_runs_that_repeat_exactly_are_done_once():
-    runs, times = (table.to_pandas() for table in running.run_chunk(PROBLEMS, JOB | {"seeds": "own"}))
+    runs, times = (table.to_pandas() for table in execution.run_chunk(PROBLEMS, JOB | {"seeds": "own"}))
     assert runs["repeat"].to_list() == [0, 1, 2] * 6
     assert runs["length"].to_numpy() == pytest.approx(np.hypot(3, 1))
     assert runs["feasible"].all()

@@ -7,13 +7,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan import checked, metrics, problems
-from bezierplan.analysis import audit
+from bezierplan.analysis import audit, metrics
+from bezierplan.analysis.papers import song2016, tharwat2018
 from bezierplan.analysis.results import Results
 from bezierplan.planners import chaotic_pso
-from bezierplan.search import chaotic_maps
-from bezierplan.studies import song2016, tharwat2018
-from bezierplan.study import checks, reading
+from bezierplan.planners.parts import chaotic_maps
+from bezierplan.running import problems
+from bezierplan.study import checked, checks, reading
 from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
 

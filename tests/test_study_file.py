@@ -7,10 +7,9 @@ from pathlib import Path
 import pytest
 from faults import told
 
-from bezierplan import running
-from bezierplan import study as studies
-from bezierplan.checked import Fault
-from bezierplan.study import keys, reading
+from bezierplan.running import execution
+from bezierplan.study import jobs, keys, reading
+from bezierplan.study.checked import Fault
 
 SONG = Path(__file__).parents[1] / "config" / "studies" / "song2016"
 
@@ -244,14 +243,14 @@ def test_settings_of_a_problem_stand_between_those_of_the_study_and_of_a_method(
     assert place in file.read_text()
     file.write_text(file.read_text().replace(place, place + " settings: {genes: 5, samples: 7, generations: 9},", 1))
     study = reading.load([folder])["song2016"]
-    job = studies.job(study, "routes", "smooth", "smoke", 0)
-    first, second = (running.settings_in(job, running.Condition(problem, {})) for problem in ("0_15", "0_255"))
+    job = jobs.job(study, "routes", "smooth", "smoke", 0)
+    first, second = (execution.settings_in(job, execution.Condition(problem, {})) for problem in ("0_15", "0_255"))
     assert (first["genes"], first["generations"], first["samples"]) == (6, 100, 601)
     assert second == first | {"genes": 5, "generations": 9}  # the method has samples of its own
-    assert running.settings_in(job, running.Condition("0_255", {"genes": 4}))["genes"] == 4
-    assert "settings" not in studies.job(study, "routes", "shortest_path", "smoke", 0)["problems"]["0_255"]
-    assert "On 0 to 255: genes 5, samples 7, generations 9" in studies.caption(study, "table1", "smoke")
-    assert all("settings" not in problem for problem in studies.problems_job(study, "routes", "smoke")["problems"].values())
+    assert execution.settings_in(job, execution.Condition("0_255", {"genes": 4}))["genes"] == 4
+    assert "settings" not in jobs.job(study, "routes", "shortest_path", "smoke", 0)["problems"]["0_255"]
+    assert "On 0 to 255: genes 5, samples 7, generations 9" in jobs.caption(study, "table1", "smoke")
+    assert all("settings" not in problem for problem in jobs.problems_job(study, "routes", "smoke")["problems"].values())
 
 
 def test_tables_of_keys_are_those_of_the_models():

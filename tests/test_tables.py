@@ -7,11 +7,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan import metrics
-from bezierplan.analysis import comparison, listing, statistics, tables
+from bezierplan.analysis import comparison, listing, metrics, statistics, tables
 from bezierplan.analysis.results import Results
-from bezierplan.problem import Problem
 from bezierplan.workspaces.grid import from_lines
+from bezierplan.workspaces.problem import Problem
 
 GRID = from_lines(["..", ".."], 1.0, "m")
 PROBLEMS = {name: Problem(name, GRID, (0.5, 0.5), (1.5, 1.5)) for name in ("long", "brief")}

@@ -9,9 +9,9 @@ import pytest
 from docutils.core import publish_parts
 from snakemake.iocontainers import OutputFiles
 
-from bezierplan import log, targets
-from bezierplan.checked import Fault
-from bezierplan.study import reading
+from bezierplan.running import log
+from bezierplan.study import reading, targets
+from bezierplan.study.checked import Fault
 
 STUDIES = reading.load(reading.read_config({"studies": ["song2016"]}))
 SONG = STUDIES["song2016"]

@@ -6,13 +6,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan import checked, metrics, problems, running, sheet
-from bezierplan.analysis import results
-from bezierplan.figures import landscape, tracks
+from bezierplan.analysis import metrics, results
+from bezierplan.figures import sheet
+from bezierplan.figures.panels import landscape, tracks
 from bezierplan.planners import chaotic_pso
-from bezierplan.problem import Problem
-from bezierplan.search import penalised
+from bezierplan.planners.parts import penalised
+from bezierplan.running import execution, problems
+from bezierplan.study import checked
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.problem import Problem
 
 SETTINGS = checked.read(File(__file__).parents[1] / "config" / "studies" / "tharwat2018" / "experiments.yaml")["settings"]
 FIELD = Problem("field", Circles((-10.0, 10.0, -10.0, 10.0), np.array([[2.0, 3.0]]), np.array([1.0]), "m"), (0.0, 0.0), (4.0, 6.0))
@@ -40,7 +42,7 @@ def surface(found: results.Results) -> pd.DataFrame:
 
 @pytest.fixture(scope="module")
 def found() -> results.Results:
-    table, _ = running.run_chunk({"field": FIELD}, JOB)
+    table, _ = execution.run_chunk({"field": FIELD}, JOB)
     bounds = problems.bounds_of({"field": FIELD}).to_pandas()
     runs = table.to_pandas()
     runs["path_points"] = runs["path_points"].map(list)

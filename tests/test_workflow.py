@@ -116,12 +116,12 @@ EDITS = {
     ),
     # The audit reads the study's own file, which tries the operators.
     "code of an operator": (
-        "src/bezierplan/search/genetic.py",
+        "src/bezierplan/planners/parts/genetic.py",
         "wheel = np.cumsum(fitness)",
         "wheel = np.cumsum(fitness + 0)",
         runs(2, GENETIC) | ARTEFACTS_OF_RUNS | {"audit": 1},
     ),
-    "a docstring": ("src/bezierplan/search/genetic.py", '"""', '"""Once more. ', {}),
+    "a docstring": ("src/bezierplan/planners/parts/genetic.py", '"""', '"""Once more. ', {}),
     "a comment in a script": ("workflow/scripts/runs.py", "    import pyarrow", "    # A comment.\n    import pyarrow", {}),
     "code of a script": (
         "workflow/scripts/table.py",
@@ -129,12 +129,12 @@ EDITS = {
         "    0\n    compared = ",
         {name: 1 for name in TABLES if name != "claims"},
     ),
-    "how a job is logged": ("src/bezierplan/log.py", "PR_SET_PDEATHSIG = 1", "PR_SET_PDEATHSIG = 1 + 0", {}),
+    "how a job is logged": ("src/bezierplan/running/log.py", "PR_SET_PDEATHSIG = 1", "PR_SET_PDEATHSIG = 1 + 0", {}),
     "a title": ("config/studies/song2016/artefacts.yaml", "title: ", "title: The same, ", {}),
-    "a comment": ("src/bezierplan/search/genetic.py", "# A draw next to 1", "# Hence a draw next to 1", {}),
+    "a comment": ("src/bezierplan/planners/parts/genetic.py", "# A draw next to 1", "# Hence a draw next to 1", {}),
     # Convergence shares code with the kind `lines`, which reads the units of metrics.
-    "a metric": ("src/bezierplan/metrics.py", "FINE_SAMPLES = 4001", "FINE_SAMPLES = 4002", TABLES | {"figure figure4": 1}),
-    "a kind of figure": ("src/bezierplan/figures/convergence.py", "return", "0\n    return", {"figure figure4": 1}),
+    "a metric": ("src/bezierplan/analysis/metrics.py", "FINE_SAMPLES = 4001", "FINE_SAMPLES = 4002", TABLES | {"figure figure4": 1}),
+    "a kind of figure": ("src/bezierplan/figures/panels/convergence.py", "return", "0\n    return", {"figure figure4": 1}),
     "a setting of one method": (EXPERIMENTS, "samples: 701", "samples: 1401", runs(2, ["nonsmooth"]) | TABLES),
     "a setting of all methods": (EXPERIMENTS, "penalty: 10.0", "penalty: 11.0", runs(2, GENETIC) | ARTEFACTS_OF_RUNS),
     "a published number": ("config/studies/song2016/published/table1.csv", "225.4982", "225.5982", OF_PUBLISHED),
@@ -268,7 +268,7 @@ RUN_ONCE = """
 import numba
 import numpy as np
 from bezierplan.planners import binary_genetic
-from bezierplan.problem import Problem
+from bezierplan.planners import Problem
 from bezierplan.workspaces.grid import Grid
 grid = Grid(np.zeros((16, 16), dtype=bool), 10.0, "unit")
 settings = dict(curve="polyline", genes=6, samples=71, spacing="parameter", population=10, generations=20, crossover_probability=0.5,
@@ -290,7 +290,7 @@ def test_edited_operator_is_never_served_from_an_old_cache(tree):
 
     before = run_once()
     assert run_once() == before
-    edit(tree / "src/bezierplan/search/genetic.py", "gene = cut // bits", "gene = (cut // bits + 1) % len(one)")
+    edit(tree / "src/bezierplan/planners/parts/genetic.py", "gene = cut // bits", "gene = (cut // bits + 1) % len(one)")
     after = run_once()
     shutil.rmtree(tree / ".cache")
     assert run_once() == after != before

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from fields import BENCHMARK_MAPS
 
-from bezierplan import problems
+from bezierplan.running import problems
 from bezierplan.workspaces import files, random_circles
 
 MAPS = Path(__file__).parent / "data" / "maps"

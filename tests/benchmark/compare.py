@@ -30,10 +30,10 @@ from pymoo.optimize import minimize
 from pyswarms.single import GlobalBestPSO
 
 from bezierplan.planners import chaotic_pso
-from bezierplan.problem import Problem
-from bezierplan.search import penalised
+from bezierplan.planners.parts import penalised
 from bezierplan.study import reading
 from bezierplan.workspaces import files
+from bezierplan.workspaces.problem import Problem
 
 SEEDS = 200
 GOOD = 8.0

@@ -5,9 +5,10 @@ import itertools
 import numpy as np
 from timing import cpu_seconds
 
-from bezierplan.problem import Problem, planner_module
+from bezierplan.planners import planner_module
 from bezierplan.study import reading
 from bezierplan.workspaces import random_field
+from bezierplan.workspaces.problem import Problem
 
 
 def benchmark_fields() -> None:

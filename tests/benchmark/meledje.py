@@ -7,12 +7,12 @@ from geometry import random_grid
 from timing import cpu_seconds
 
 from bezierplan.planners import node_genetic
-from bezierplan.problem import Problem
 from bezierplan.study import reading
 from bezierplan.workspaces import files
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.ground import Ground, cheapest, ground_of, obstacles_met
 from bezierplan.workspaces.ground import _ground as ground_tables
+from bezierplan.workspaces.problem import Problem
 
 
 def benchmark_node_genetic() -> None:

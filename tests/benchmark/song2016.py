@@ -5,11 +5,11 @@ import numpy as np
 from numba import njit
 from timing import cpu_seconds
 
-from bezierplan import curves
+from bezierplan.geometry import curves
 from bezierplan.planners import binary_genetic
-from bezierplan.problem import Problem
 from bezierplan.study import reading
 from bezierplan.workspaces import files
+from bezierplan.workspaces.problem import Problem
 
 
 @njit(cache=True)

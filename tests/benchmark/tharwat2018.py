@@ -4,9 +4,9 @@ import numpy as np
 from timing import cpu_seconds
 
 from bezierplan.planners import chaotic_pso
-from bezierplan.problem import Problem
 from bezierplan.study import reading
 from bezierplan.workspaces import files
+from bezierplan.workspaces.problem import Problem
 
 
 def benchmark_chaotic_pso() -> None:

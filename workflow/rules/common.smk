@@ -1,4 +1,4 @@
-# The configuration, checked, and what rules share. What a job reads and depends on is in src/bezierplan/targets.py.
+# The configuration, checked, and what rules share. What a job reads and depends on is in src/bezierplan/study/targets.py.
 import os
 import re
 import shlex
@@ -14,8 +14,7 @@ os.environ.update(PYTHONPATH=SOURCE, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="
 # Snakemake puts the path of its interpreter into shell commands as it stands; here the folder may have any name.
 sys.executable = shlex.quote(sys.executable)
 
-from bezierplan import checked, study as studies, targets
-from bezierplan.study import reading
+from bezierplan.study import alternatives, checked, experiments, reading, targets
 
 try:
     STUDIES = reading.load(reading.read_config(config))
@@ -33,7 +32,7 @@ def one_of(names):
 
 
 wildcard_constraints:
-    scale=one_of(studies.SCALES),
+    scale=one_of(experiments.SCALES),
     study=one_of(STUDIES),
     experiment=one_of(name for study in STUDIES.values() for name in study.experiments),
     method=one_of(name for study in STUDIES.values() for name in study.methods),
@@ -41,7 +40,7 @@ wildcard_constraints:
     table=one_of(name for study in STUDIES.values() for name in study.compared()),
     listing=one_of(name for study in STUDIES.values() for name in study.tables.keys() - study.compared().keys()),
     figure=one_of(name for study in STUDIES.values() for name in study.figures),
-    alternative=one_of(name for study in STUDIES.values() for name in studies.tried(study)),
+    alternative=one_of(name for study in STUDIES.values() for name in alternatives.tried(study)),
 
 
 def studies_with(tables):

@@ -1,6 +1,6 @@
 """Hold a paper's own numbers against each other and against exact bounds."""
 
-from bezierplan import log
+from bezierplan.running import log
 
 with log.job(snakemake) as output:
     import importlib

@@ -1,6 +1,6 @@
 """Judge the claims of a study."""
 
-from bezierplan import log
+from bezierplan.running import log
 
 with log.job(snakemake) as output:
     import importlib

@@ -1,6 +1,6 @@
 """Make a figure from the data that it draws, which are written first and read back."""
 
-from bezierplan import log
+from bezierplan.running import log
 
 with log.job(snakemake) as output:
     import importlib
@@ -8,8 +8,8 @@ with log.job(snakemake) as output:
 
     import pandas as pd
 
-    from bezierplan import sheet
     from bezierplan.analysis import results
+    from bezierplan.figures import sheet
     from bezierplan.workspaces import files
 
     job, inputs = snakemake.params.job, snakemake.input

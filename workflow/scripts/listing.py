@@ -1,6 +1,6 @@
 """Make a table that shows no runs."""
 
-from bezierplan import log
+from bezierplan.running import log
 
 with log.job(snakemake) as output:
     import importlib

@@ -1,6 +1,6 @@
 """Set the verdicts under each alternative beside those with all values in force."""
 
-from bezierplan import log
+from bezierplan.running import log
 
 with log.job(snakemake) as output:
     import pandas as pd

@@ -1,6 +1,6 @@
 """Gather the numbers and claims of all studies."""
 
-from bezierplan import log
+from bezierplan.running import log
 
 with log.job(snakemake) as output:
     from pathlib import Path

@@ -1,6 +1,6 @@
 """Make a table and its comparison with the published numbers."""
 
-from bezierplan import log
+from bezierplan.running import log
 
 with log.job(snakemake) as output:
     from bezierplan.analysis import comparison, results, tables

@@ -8,12 +8,11 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan import metrics
-from bezierplan.analysis import claim_effects, claim_tests, comparison
+from bezierplan.analysis import claim_effects, claim_tests, comparison, metrics
 from bezierplan.analysis.claim_effects import Comparison
 from bezierplan.analysis.claim_published import listed, printed, rows_of_cell
 from bezierplan.analysis.results import Results, pick, select
-from bezierplan.checked import Fault
+from bezierplan.study.checked import Fault
 
 REST = "rest"
 # What one unit of a comparison has one value of; several, and their runs would be mixed without a word.

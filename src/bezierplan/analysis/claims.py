@@ -74,13 +74,12 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-from bezierplan import metrics
-from bezierplan.analysis import claim_comparisons, claim_effects, claim_published, claim_tests, claim_verdicts
+from bezierplan.analysis import claim_comparisons, claim_effects, claim_published, claim_tests, claim_verdicts, metrics
 from bezierplan.analysis.claim_comparisons import Material, Untestable
 from bezierplan.analysis.claim_effects import Comparison, Finding
 from bezierplan.analysis.claim_published import listed
 from bezierplan.analysis.results import Results
-from bezierplan.checked import Fault, closest
+from bezierplan.study.checked import Fault, closest
 
 CLAIM_COLUMNS = [
     *("study", "id", "variant", "decides", "finding", "place", "statement", "verdict", "holds", "where_it_holds", "published"),

@@ -33,8 +33,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bezierplan import metrics
-from bezierplan.analysis import statistics, tables
+from bezierplan.analysis import metrics, statistics, tables
 from bezierplan.analysis.results import Results
 
 LEAST_POWER = 0.5

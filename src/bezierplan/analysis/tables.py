@@ -14,8 +14,7 @@ from collections.abc import Sequence
 import numpy as np
 import pandas as pd
 
-from bezierplan import metrics
-from bezierplan.analysis import statistics
+from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.results import Results, select
 
 _WORDS = ("value", "statistic")

@@ -4,8 +4,8 @@ import sys
 from argparse import ArgumentParser
 from typing import Any
 
-from bezierplan import checked, contract
-from bezierplan.study import reading
+from bezierplan.running import contract
+from bezierplan.study import checked, reading
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:

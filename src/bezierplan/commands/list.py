@@ -3,7 +3,9 @@
 from argparse import ArgumentParser
 
 from bezierplan.commands import add_studies
-from bezierplan.study import SCALES, Study, reading
+from bezierplan.study import reading
+from bezierplan.study.definition import Study
+from bezierplan.study.experiments import SCALES
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:

@@ -8,13 +8,15 @@ from typing import Any
 
 import numpy as np
 
-from bezierplan import checked, curves, problems
-from bezierplan.checked import Fault, closest
-from bezierplan.exact import bounds, checker
-from bezierplan.exact.region import region
-from bezierplan.metrics import CURVATURE_SAMPLES
-from bezierplan.problem import Path, Plan, Problem, Workspace, known_planners, planner_module, planner_settings, setting_fault
+from bezierplan.analysis.metrics import CURVATURE_SAMPLES
+from bezierplan.geometry import bounds, checker, curves
+from bezierplan.geometry.region import region
+from bezierplan.planners import Plan, known_planners, planner_module, planner_settings, setting_fault
+from bezierplan.running import problems
+from bezierplan.study import checked
+from bezierplan.study.checked import Fault, closest
 from bezierplan.workspaces import files
+from bezierplan.workspaces.problem import Path, Problem, Workspace
 
 KINDS = {".geojson": "polygons", ".json": "polygons", ".yaml": "ros_map", ".yml": "ros_map", ".map": "moving_ai", ".txt": "grid"}
 """Suffix of a map file -> the kind of workspace that it is read as."""
@@ -257,8 +259,8 @@ def _draw(out: File, problem: Problem, path: Path, check: checker.Check, shortes
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
-    from bezierplan import style
-    from bezierplan.figures import paths, workspace
+    from bezierplan.figures import style
+    from bezierplan.figures.panels import paths, workspace
 
     with mpl.rc_context(style.SETTINGS):
         figure = Figure(figsize=(style.NARROW, style.NARROW), layout="constrained")

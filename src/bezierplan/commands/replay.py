@@ -6,13 +6,16 @@ from typing import Any
 
 import pandas as pd
 
-from bezierplan import problems, running, sheet
 from bezierplan.analysis import results
-from bezierplan.checked import Fault, closest
 from bezierplan.commands import add_studies
 from bezierplan.commands.digest import read_rows, row_text
-from bezierplan.exact.region import region
-from bezierplan.study import Study, job, problems_job, reading
+from bezierplan.figures import sheet
+from bezierplan.geometry.region import region
+from bezierplan.running import execution, problems
+from bezierplan.study import reading
+from bezierplan.study.checked import Fault, closest
+from bezierplan.study.definition import Study
+from bezierplan.study.jobs import job, problems_job
 
 SHOWN = ("objective", "length", "bound", "claimed_feasible", "feasible", "collision_at", "collision_depth", "clearance", "evaluations")
 
@@ -48,16 +51,16 @@ def replay(name: str, studies: dict[str, Study]) -> results.Results:
     _named(method, dict.fromkeys(study.methods_of(experiment)), f"{name}: method")
     # Scale and chunk matter to neither the seed nor the settings of a run.
     described = job(study, experiment, method, "full", 0)
-    conditions = {each.name: each for each in running.conditions(list(described["problems"]), described["vary"])}
+    conditions = {each.name: each for each in execution.conditions(list(described["problems"]), described["vary"])}
     condition = _named(condition_name, conditions, f"{name}: condition")
     if not repeat.isdecimal():
         raise Fault(f"{name}: repeat: {repeat}; expected a whole number")
 
     made, _ = problems.build_all(problems_job(study, experiment, "full"), study.folder)
     problem = {condition.problem: made[condition.problem]}
-    plan = running.run(described, condition, int(repeat), made[condition.problem])
+    plan = execution.run(described, condition, int(repeat), made[condition.problem])
     try:
-        row = running.row(described, condition, int(repeat), plan, made[condition.problem], region(made[condition.problem].workspace))
+        row = execution.row(described, condition, int(repeat), plan, made[condition.problem], region(made[condition.problem].workspace))
     except RuntimeError as error:
         raise Fault(str(error)) from None
     return results.joined(pd.DataFrame([row]), problem, problems.bounds_of(problem).to_pandas())

@@ -13,10 +13,11 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numba import njit
 
-from bezierplan.cell_length import is_free_leg
-from bezierplan.problem import Path, Plan, Problem, Range
-from bezierplan.search.genetic import roulette
-from bezierplan.search.sorting import ascending
+from bezierplan.geometry.cell_length import is_free_leg
+from bezierplan.planners import Plan, Range
+from bezierplan.planners.parts.genetic import roulette
+from bezierplan.planners.parts.sorting import ascending
+from bezierplan.workspaces.problem import Path, Problem
 
 workspaces = ("grid",)
 exact = True

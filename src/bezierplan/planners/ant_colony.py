@@ -10,9 +10,10 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from numba import njit
 
-from bezierplan.problem import Path, Plan, Problem, Range
-from bezierplan.search.cell_paths import length, put, step_between
+from bezierplan.planners import Plan, Range
+from bezierplan.planners.parts.cell_paths import length, put, step_between
 from bezierplan.workspaces.lattice import Corners, Lattice, lattice, points
+from bezierplan.workspaces.problem import Path, Problem
 
 workspaces = ("grid",)
 exact = True

@@ -13,10 +13,11 @@ from typing import Annotated, Literal, NamedTuple, get_args
 import numpy as np
 from numba import njit
 
-from bezierplan import curves
-from bezierplan.problem import Path, Plan, Problem, Range
-from bezierplan.search.genetic import check_pairs, complement_bit, roulette, swap_tails
+from bezierplan.geometry import curves
+from bezierplan.planners import Plan, Range
+from bezierplan.planners.parts.genetic import check_pairs, complement_bit, roulette, swap_tails
 from bezierplan.workspaces.grid import ON_LINE, embed
+from bezierplan.workspaces.problem import Path, Problem
 
 workspaces = ("grid",)
 

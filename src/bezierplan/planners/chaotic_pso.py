@@ -16,10 +16,11 @@ from typing import Annotated, Any, Literal, NamedTuple, get_args
 import numpy as np
 from numba import njit
 
-from bezierplan import curves
-from bezierplan.problem import Path, Plan, Problem, Range
-from bezierplan.search import chaotic_maps, penalised
-from bezierplan.search.penalised import FEASIBLE, Objective, Penalty
+from bezierplan.geometry import curves
+from bezierplan.planners import Plan, Range
+from bezierplan.planners.parts import chaotic_maps, penalised
+from bezierplan.planners.parts.penalised import FEASIBLE, Objective, Penalty
+from bezierplan.workspaces.problem import Path, Problem
 
 logger = logging.getLogger(__name__)
 

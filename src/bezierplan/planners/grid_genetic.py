@@ -13,9 +13,10 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numba import njit
 
-from bezierplan.problem import Path, Plan, Problem, Range
-from bezierplan.search.genetic import roulette
-from bezierplan.search.sorting import ascending
+from bezierplan.planners import Plan, Range
+from bezierplan.planners.parts.genetic import roulette
+from bezierplan.planners.parts.sorting import ascending
+from bezierplan.workspaces.problem import Path, Problem
 
 workspaces = ("grid",)
 exact = True

@@ -15,12 +15,13 @@ from typing import Annotated, Literal, NamedTuple, get_args
 import numpy as np
 from numba import njit
 
-from bezierplan.cell_length import cells4, cells8, occupied_cells, parts, polyline_length, sample, touched_cells
+from bezierplan.geometry.cell_length import cells4, cells8, occupied_cells, parts, polyline_length, sample, touched_cells
+from bezierplan.planners import Plan, Range
+from bezierplan.planners.parts import gene_lists
+from bezierplan.planners.parts.gene_lattice import Field, field_of, polygon
+from bezierplan.planners.parts.genetic import check_pairs
 from bezierplan.planners.prm import road_map
-from bezierplan.problem import Path, Plan, Problem, Range
-from bezierplan.search import gene_lists
-from bezierplan.search.genetic import check_pairs
-from bezierplan.workspaces.gene_lattice import Field, field_of, polygon
+from bezierplan.workspaces.problem import Path, Problem
 
 workspaces = ("grid",)
 

@@ -12,10 +12,11 @@ from typing import Annotated, Literal, NamedTuple, get_args
 import numpy as np
 from numba import njit
 
-from bezierplan.problem import Path, Plan, Problem, Range
-from bezierplan.search.genetic import check_pairs, roulette
+from bezierplan.planners import Plan, Range
+from bezierplan.planners.parts.genetic import check_pairs, roulette
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.ground import Ground, centres, edge_energy, free_neighbours, ground_of, least_energy, obstacles_met
+from bezierplan.workspaces.problem import Path, Problem
 
 workspaces = ("grid",)
 exact = True

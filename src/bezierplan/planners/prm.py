@@ -12,10 +12,11 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from numba import njit
 
-from bezierplan.cell_length import is_free_leg
-from bezierplan.problem import Path, Plan, Problem, Range
+from bezierplan.geometry.cell_length import is_free_leg
+from bezierplan.planners import Plan, Range
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.problem import Path, Problem
 
 workspaces = ("circles", "grid")
 exact = True

@@ -13,12 +13,12 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numba import njit
 
-from bezierplan import curves
-from bezierplan.exact import bounds
-from bezierplan.exact.checker import first_collision
-from bezierplan.exact.region import from_origin, region
-from bezierplan.problem import Path, Plan, Problem, Range
+from bezierplan.geometry import bounds, curves
+from bezierplan.geometry.checker import first_collision
+from bezierplan.geometry.region import from_origin, region
+from bezierplan.planners import Plan, Range
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.problem import Path, Problem
 
 exact = True
 deterministic = True

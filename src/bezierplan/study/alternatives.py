@@ -4,9 +4,9 @@ import dataclasses
 import itertools
 from typing import Any
 
-from bezierplan.model import one_or_list
 from bezierplan.study.claims import Assumption, Check, Claim
 from bezierplan.study.definition import Study
+from bezierplan.study.model import one_or_list
 
 
 def alternatives(study: Study) -> dict[str, tuple[str, Any]]:

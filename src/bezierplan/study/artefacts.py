@@ -4,9 +4,23 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
-from bezierplan import figures
-from bezierplan.model import Experiment, Function, Line, Metric, Model, Name, Names, Statistic, Where, Whole, listed, one_of, one_or_list
+from bezierplan.figures.panels import Panel, kinds
 from bezierplan.study.experiments import File
+from bezierplan.study.model import (
+    Experiment,
+    Function,
+    Line,
+    Metric,
+    Model,
+    Name,
+    Names,
+    Statistic,
+    Where,
+    Whole,
+    listed,
+    one_of,
+    one_or_list,
+)
 
 PublishedFile = Annotated[File, Names("published")]
 # A column of the runs table, `value` or `statistic`.
@@ -24,7 +38,7 @@ class Table(Model):
 class TableValue(Model):
     """An entry of a table's `values`."""
 
-    metric: Metric = Field(description="the name of a metric (`src/bezierplan/metrics.py`)")
+    metric: Metric = Field(description="the name of a metric (`src/bezierplan/analysis/metrics.py`)")
     statistic: listed(Statistic, single=True) = Field(
         description="the name of a statistic (`src/bezierplan/analysis/statistics.py`) or a list of names; `unstated` where the "
         "paper does not say, "
@@ -68,7 +82,7 @@ class FunctionTable(Table):
 
     kind: Literal["function"] = Field(description="function")
     function: Function = Field(
-        description="the name of a function of `src/bezierplan/studies/<study>.py`, called with all published tables by file name"
+        description="the name of a function of `src/bezierplan/analysis/papers/<study>.py`, called with all published tables by file name"
     )
 
 
@@ -90,7 +104,7 @@ class Figure(Model):
 
     title: Line = Field(description="one line")
     columns: Literal[1, 2, 3, 4, 5] = Field(description="panels side by side, 1 to 5")
-    panels: list[Annotated[figures.Panel, one_of("kind", figures.kinds())]] = Field(description="a list of panels", min_length=1)
+    panels: list[Annotated[Panel, one_of("kind", kinds())]] = Field(description="a list of panels", min_length=1)
 
 
 class ArtefactsFile(Model):

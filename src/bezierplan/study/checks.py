@@ -7,23 +7,24 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, partial
 from typing import Any
 
-from bezierplan import metrics, problems
-from bezierplan.analysis import statistics
-from bezierplan.checked import Fault, closest
-from bezierplan.model import Model, named, one_or_list
-from bezierplan.problem import Problem, planner_module
-from bezierplan.running import conditions, settings_in
+from bezierplan.analysis import metrics, statistics
+from bezierplan.planners import planner_module
+from bezierplan.running import problems
+from bezierplan.running.execution import conditions, settings_in
 from bezierplan.study import published
 from bezierplan.study.alternatives import alternatives, concerned, methods_changed, with_alternative
 from bezierplan.study.artefacts import Comparison, Pivot, Table
+from bezierplan.study.checked import Fault, closest
 from bezierplan.study.claims import Assumption, Check, Claim
 from bezierplan.study.definition import Study, files_of, relative
 from bezierplan.study.design import Design, in_first_variant
 from bezierplan.study.experiments import WORKSPACES
 from bezierplan.study.files import inside
 from bezierplan.study.jobs import job
+from bezierplan.study.model import Model, named, one_or_list
 from bezierplan.study.planner_checks import asked, check_complete, check_settings, loaded
 from bezierplan.workspaces import files
+from bezierplan.workspaces.problem import Problem
 
 
 def check(study: Study) -> None:

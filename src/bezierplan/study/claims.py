@@ -8,7 +8,7 @@ from typing import Annotated, Any, Literal
 from annotated_types import MinLen
 from pydantic import Field, model_validator
 
-from bezierplan.model import (
+from bezierplan.study.model import (
     Column,
     Experiment,
     Flag,
@@ -262,7 +262,7 @@ class Asked(Check):
     """What a function of the study's module finds."""
 
     test: Literal["function"] = Field(description="function")
-    name: Function = Field(description="the name of a function of `src/bezierplan/studies/<study>.py`")
+    name: Function = Field(description="the name of a function of `src/bezierplan/analysis/papers/<study>.py`")
     effect: Line = Field(description="what its effect measures, in words")
     effect_unit: Line = Field(description="the unit of its effect, - for a number without unit")
     experiment: listed(Experiment, least=2, single=True) = Field(None, description=EXPERIMENT)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from bezierplan.problem import planner_module, planner_settings
+from bezierplan.planners import planner_module, planner_settings
 from bezierplan.study.artefacts import Figure, Pivot, Table
 from bezierplan.study.claims import Assumption, Claim
 from bezierplan.study.experiments import Experiment, Method, Problem, Workspace
@@ -115,7 +115,7 @@ class Study:
 
     def module(self) -> str | None:
         """The module with what only this study needs, or None."""
-        name = f"bezierplan.studies.{self.key}"
+        name = f"bezierplan.analysis.papers.{self.key}"
         return name if importlib.util.find_spec(name) else None
 
 

@@ -3,14 +3,14 @@
 from functools import cache
 from typing import Any
 
-from bezierplan.checked import Fault, closest
-from bezierplan.metrics import METRICS
-from bezierplan.model import one_or_list
-from bezierplan.problem import PLACE
-from bezierplan.running import RUN_COLUMNS, conditions, settings_in
+from bezierplan.analysis.metrics import METRICS
+from bezierplan.planners import PLACE
+from bezierplan.running.execution import RUN_COLUMNS, conditions, settings_in
+from bezierplan.study.checked import Fault, closest
 from bezierplan.study.claims import Check, Claim
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import job
+from bezierplan.study.model import one_or_list
 
 Row = dict[str, Any]
 

@@ -5,7 +5,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
 
-from bezierplan.model import (
+from bezierplan.study.model import (
     Count,
     Line,
     Model,

@@ -6,12 +6,12 @@ What a script gets to see is a job: plain values only, so that Snakemake can tel
 import itertools
 from typing import Any
 
-from bezierplan.model import one_or_list
-from bezierplan.problem import PLACE
+from bezierplan.planners import PLACE
 from bezierplan.study.alternatives import experiments_of_claims
 from bezierplan.study.artefacts import Comparison
 from bezierplan.study.claims import Claim
 from bezierplan.study.definition import Study
+from bezierplan.study.model import one_or_list
 
 
 def problems_job(study: Study, experiment: str, scale: str) -> dict:

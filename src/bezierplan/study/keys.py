@@ -7,10 +7,10 @@ from functools import partial
 
 from pydantic.fields import FieldInfo
 
-from bezierplan import figures
-from bezierplan.digest import PACKAGE
-from bezierplan.model import Model, keys
+from bezierplan.figures import panels
+from bezierplan.running.digest import PACKAGE
 from bezierplan.study import artefacts, claims, experiments
+from bezierplan.study.model import Model, keys
 
 README = PACKAGE.parents[1] / "config" / "README.md"
 
@@ -27,7 +27,7 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
         ("A **table** has `title`, one line, `kind`, and by kind", artefacts.TABLES),
         ("An entry of a table's `values`", artefacts.TableValue),
         ("A **figure**", artefacts.Figure),
-        ("A panel has `kind`, perhaps `title`, one line above it, and by kind", figures.kinds()),
+        ("A panel has `kind`, perhaps `title`, one line above it, and by kind", panels.kinds()),
     ],
     "claims": [
         ("A claim", claims.Claim),

@@ -6,9 +6,9 @@ from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
-from bezierplan.checked import Fault, closest
-from bezierplan.problem import known_planners, planner_module, planner_settings, setting_fault
-from bezierplan.running import RUN_COLUMNS
+from bezierplan.planners import known_planners, planner_module, planner_settings, setting_fault
+from bezierplan.running.execution import RUN_COLUMNS
+from bezierplan.study.checked import Fault, closest
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import WORKSPACES
 from bezierplan.study.files import inside

@@ -3,10 +3,9 @@
 import csv
 import io
 
-from bezierplan import metrics
-from bezierplan.analysis import statistics
-from bezierplan.checked import Fault, closest, text_of
+from bezierplan.analysis import metrics, statistics
 from bezierplan.study.artefacts import Pivot
+from bezierplan.study.checked import Fault, closest, text_of
 from bezierplan.study.definition import relative
 from bezierplan.study.design import Design
 

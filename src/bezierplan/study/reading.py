@@ -6,16 +6,16 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
-from bezierplan import checked
-from bezierplan.checked import Fault, closest
-from bezierplan.digest import PACKAGE
-from bezierplan.model import Model, parsed
+from bezierplan.running.digest import PACKAGE
+from bezierplan.study import checked
 from bezierplan.study.artefacts import ArtefactsFile, ConfigFile
+from bezierplan.study.checked import Fault, closest
 from bezierplan.study.checks import check
 from bezierplan.study.claims import AssumptionsFile, ClaimsFile
 from bezierplan.study.definition import Study, relative
 from bezierplan.study.experiments import ExperimentsFile
 from bezierplan.study.files import inside
+from bezierplan.study.model import Model, parsed
 
 M = TypeVar("M", bound=Model)
 

@@ -20,13 +20,13 @@ from pathlib import Path
 
 import numpy as np
 
-from bezierplan.text_file import read_text
 from bezierplan.workspaces import grid, moving_ai, random_field, raster, ros
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.limits import check_bounds, check_gaps, check_numbers
 from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.text_file import read_text
 
 Workspace = Grid | Circles | Polygons
 

@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.text_file import read_text
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.text_file import read_text
 
 FREE, OCCUPIED = ".GS", "@OTW"
 

@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from bezierplan import checked
-from bezierplan.text_file import read_text
+from bezierplan.study import checked
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.limits import check_numbers
+from bezierplan.workspaces.text_file import read_text
 
 MOST_PIXELS = 16_000_000
 """Most pixels of an image unless the description says otherwise: 4,000 x 4,000."""
