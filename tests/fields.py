@@ -1,11 +1,16 @@
-"""Random fields of cells for tests of planners, and what holds for every path that is found in one."""
+"""Fields and maps for tests of planners, and what holds for every path that is found in a random field."""
 
-from bezierplan import cell_length, curves
-from bezierplan.exact import bounds
-from bezierplan.exact.checker import check
-from bezierplan.exact.region import region
-from bezierplan.problem import Plan, Problem
+from pathlib import Path as File
+
+from bezierplan.geometry import bounds, cell_length, curves
+from bezierplan.geometry.checker import check
+from bezierplan.geometry.region import region
+from bezierplan.planners import Plan
 from bezierplan.workspaces import random_field
+from bezierplan.workspaces.problem import Problem
+
+# The six benchmark maps of elhoseny2017.
+BENCHMARK_MAPS = File(__file__).resolve().parents[1] / "config" / "studies" / "elhoseny2017" / "workspaces"
 
 
 def drawn(number: int, radius: float = 0.06, obstacles: int = 25, side: int = 100) -> Problem:

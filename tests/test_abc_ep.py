@@ -6,13 +6,12 @@ import numpy as np
 import pytest
 from fields import assert_path_fits, drawn
 
-from bezierplan import cell_length, curves
-from bezierplan.exact import bounds
-from bezierplan.planners import abc_ep
-from bezierplan.problem import Problem, planner_settings, setting_fault
+from bezierplan.geometry import bounds, cell_length, curves
+from bezierplan.planners import abc_ep, planner_settings, setting_fault
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid, from_lines
+from bezierplan.workspaces.problem import Problem
 
 SETTINGS = {
     "sources": 20,

@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
-from bezierplan import answer, problems, running
-from bezierplan.exact.region import region
-from bezierplan.problem import Path, Plan, Problem
+from bezierplan.geometry.region import region
+from bezierplan.planners import Plan
+from bezierplan.running import answer, execution, problems
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.problem import Path, Problem
 
 PROBLEM = Problem("disc", Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 8.0]]), np.array([1.0]), "m"), (1.0, 5.0), (9.0, 5.0))
 LINE = np.array([PROBLEM.start, PROBLEM.target])
@@ -23,7 +24,7 @@ JOB = {
     "seeds": "own",
     "repeats": [0, 1],
 }
-CONDITION = running.Condition("disc", {"profile": "a"})
+CONDITION = execution.Condition("disc", {"profile": "a"})
 
 
 def path(points, curve="polyline"):
@@ -75,7 +76,7 @@ LIES = {
 
 
 def row(plan):
-    return running.row(JOB, CONDITION, 0, plan, PROBLEM, region(PROBLEM.workspace))
+    return execution.row(JOB, CONDITION, 0, plan, PROBLEM, region(PROBLEM.workspace))
 
 
 @pytest.mark.parametrize("lie", LIES)
@@ -88,7 +89,7 @@ def test_lie_is_refused_by_run_and_field(lie):
     assert "\n" not in message
 
 
-@pytest.mark.parametrize("name", sorted(running.TAKEN))
+@pytest.mark.parametrize("name", sorted(execution.TAKEN))
 def test_no_column_is_overwritten(name):
     with pytest.raises(RuntimeError, match=f"extra: {name}: a column or setting has this name already"):
         row(PLAN._replace(extra={name: True}))
@@ -96,12 +97,12 @@ def test_no_column_is_overwritten(name):
 
 def test_names_that_are_taken_are_those_that_are_joined():
     bounds = problems.bounds_of({"disc": PROBLEM}).column_names
-    assert set(bounds) <= running.TAKEN
-    assert {"cpu_s", "wall_s"} <= running.TAKEN
+    assert set(bounds) <= execution.TAKEN
+    assert {"cpu_s", "wall_s"} <= execution.TAKEN
 
 
 def test_honest_answers_pass():
-    assert not answer.fault(PLAN, PROBLEM, running.TAKEN)
+    assert not answer.fault(PLAN, PROBLEM, execution.TAKEN)
     found = row(PLAN)
     assert found["feasible"]
     assert found["tries"] == 1

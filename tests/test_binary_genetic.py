@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezierplan import curves
+from bezierplan.geometry import curves
 from bezierplan.planners import binary_genetic
-from bezierplan.problem import Problem
 from bezierplan.workspaces.grid import Grid, from_lines
+from bezierplan.workspaces.problem import Problem
 
 SETTINGS = {
     "curve": "piecewise_quadratic",

@@ -4,22 +4,24 @@ import csv
 import itertools
 import json
 import math
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 import scipy
 import shapely
+from fields import BENCHMARK_MAPS
 
-from bezierplan.exact.bounds import Bound, centre_path, lattice_path, least_length, shortest_path
-from bezierplan.exact.checker import check
-from bezierplan.exact.region import region
-from bezierplan.problem import Problem
+from bezierplan.geometry.bounds import Bound, centre_path, lattice_path, least_length, shortest_path
+from bezierplan.geometry.checker import check
+from bezierplan.geometry.region import region
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.lattice import STEPS, neighbours
 from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.problem import Problem
 
 DATA = Path(__file__).parent / "data"
 MAPS = DATA / "maps"
@@ -35,7 +37,7 @@ def reference(quantity):
 
 
 def imr_problem(name):
-    text = (MAPS / "imr" / f"{name}.geojson").read_text()
+    text = (BENCHMARK_MAPS / f"{name}.geojson").read_text()
     properties = json.loads(text)["properties"]
     return Problem(name, polygons_from_geojson(text, "m"), tuple(properties["start"]), tuple(properties["target"]))
 
@@ -388,3 +390,44 @@ def test_the_least_length_of_a_feasible_path():
     turning = Bound(2.0, np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.0], [1.0, 1.0]]))
     assert 2.0 - least_length(turning) == pytest.approx(2e-9 + 1e-8 * math.pi / 2, abs=1e-15)
     assert least_length(Bound(math.inf, np.empty((0, 2)))) == math.inf
+
+
+def blocks(side, share, largest, rng):
+    """Random blocks of cells, start and target free in opposite corners."""
+    occupied = np.zeros((side, side), dtype=bool)
+    while occupied.mean() < share:
+        height, width = rng.integers(1, largest + 1, 2)
+        row, column = rng.integers(0, side - height + 1), rng.integers(0, side - width + 1)
+        occupied[row : row + height, column : column + width] = True
+    occupied[:2, :2] = occupied[-2:, -2:] = False
+    return occupied
+
+
+def test_the_search_of_large_grids_gives_the_path_of_the_whole_graph(monkeypatch):
+    rng = np.random.default_rng(1)
+    for _ in range(25):
+        grid = Grid(blocks(30, 0.25, 4, rng), 0.5, "m", (1.0, -2.0))
+        problem = Problem("", grid, (1.25, -1.75), (15.75, 12.75))
+        whole = shortest_path(problem)
+        with monkeypatch.context() as patched:
+            patched.setattr("bezierplan.geometry.bounds.MOST_NODES", 0)
+            found = shortest_path(problem)
+        assert found.length == whole.length
+        if math.isfinite(whole.length):
+            assert_is_path(found, problem)
+
+
+def test_the_search_among_many_polygons_gives_the_path_of_the_whole_graph(monkeypatch):
+    monkeypatch.setattr("bezierplan.geometry.bounds.MOST_POLYGON_NODES", 0)
+    for row in reference("shortest_path"):
+        assert shortest_path(imr_problem(row["map"])).length == pytest.approx(float(row["value"]), abs=1e-5)
+
+
+def test_a_grid_of_a_million_cells_is_ordinary():
+    grid = Grid(blocks(1000, 0.2, 30, np.random.default_rng(2)), 1.0, "cell")
+    problem = on_cells(grid.occupied, (0.5, 0.5), (999.5, 999.5))
+    begin = time.process_time()
+    bound = shortest_path(problem)
+    assert time.process_time() - begin < 10
+    assert math.dist(problem.start, problem.target) < bound.length < 1.2 * math.dist(problem.start, problem.target)
+    assert check(pieces(bound), region(grid)).feasible

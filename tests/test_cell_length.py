@@ -5,10 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from bezierplan import cell_length, curves
-from bezierplan.exact import bounds
-from bezierplan.problem import Path
+from bezierplan.geometry import bounds, cell_length, curves
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.problem import Path
 
 
 def field(side):

@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from bezierplan import curves
-from bezierplan.problem import Path
-from bezierplan.search import cell_paths
+from bezierplan.geometry import curves
+from bezierplan.planners.parts import cell_paths
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.lattice import STEPS, lattice, points
+from bezierplan.workspaces.problem import Path
 
 ROWS, COLUMNS = 7, 9
 seeds = st.integers(0, 10_000)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezierplan.search.chaotic_maps import MAPS, Parameters, random_start, sequence
+from bezierplan.planners.parts.chaotic_maps import MAPS, Parameters, random_start, sequence
 
 PARAMETERS = Parameters(singer_mu=1.07, singer_x4=13.302875, sine_a=4.0, piecewise_p=0.4, sinusoidal_a=2.3)
 CHAOTIC = MAPS[:8]

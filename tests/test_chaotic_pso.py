@@ -9,11 +9,11 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
-from bezierplan import curves
-from bezierplan.planners import chaotic_pso
-from bezierplan.problem import Problem, planner_settings, setting_fault
-from bezierplan.search import chaotic_maps
+from bezierplan.geometry import curves
+from bezierplan.planners import chaotic_pso, planner_settings, setting_fault
+from bezierplan.planners.parts import chaotic_maps
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.problem import Problem
 
 SETTINGS = {
     "curve": "bezier",
@@ -200,7 +200,7 @@ UNUSED = np.random.default_rng(0)
 def swarm(where, x):
     """The swarm of no iterations that starts at x (particles, 6)."""
     field, rules = np.full(6, 10.0), chaotic_pso._Rules(10, 1.5, 1.5, 1.0, 1.0, 0, 0, False, 0, True)
-    objective = chaotic_pso._objective(where, SETTINGS)
+    objective = chaotic_pso._objective(where, chaotic_pso.Settings(**SETTINGS))
     return chaotic_pso.Swarm(*chaotic_pso._swarm(UNUSED, x, np.empty((0, 1, 1)), -field, field, field, objective, rules), 0, 0)
 
 

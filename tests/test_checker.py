@@ -8,10 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fields import BENCHMARK_MAPS
 
-from bezierplan.curves import bernstein
-from bezierplan.exact.checker import check
-from bezierplan.exact.region import region
+from bezierplan.geometry.checker import check
+from bezierplan.geometry.curves import bernstein
+from bezierplan.geometry.region import region
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid, from_lines
@@ -265,7 +266,7 @@ def test_an_obstacle_between_two_samples_is_found(kind):
     assert not check(pieces, thin).feasible
 
 
-@pytest.mark.parametrize("file", sorted((MAPS / "imr").glob("*.geojson")), ids=lambda file: file.stem)
+@pytest.mark.parametrize("file", sorted(BENCHMARK_MAPS.glob("*.geojson")), ids=lambda file: file.stem)
 def test_a_stored_shortest_path_is_free(file):
     text = file.read_text()
     path = re.search(r'"shortest_path": (\[.*?\]\s*\])', text, re.DOTALL)
@@ -375,8 +376,8 @@ def test_grids_and_circles_are_checked_without_heavy_libraries(blocked):
         "import sys, numpy as np",
         "from bezierplan.workspaces.circles import Circles",
         "from bezierplan.workspaces.grid import Grid",
-        "from bezierplan.exact.checker import check",
-        "from bezierplan.exact.region import region",
+        "from bezierplan.geometry.checker import check",
+        "from bezierplan.geometry.region import region",
         f"check(np.zeros((1, 2, 2)), region({blocked}))",
         "print(*{'shapely', 'scipy.sparse', 'pandas'} & set(sys.modules))",
     ]

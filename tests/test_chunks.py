@@ -9,22 +9,23 @@ import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
 
-from bezierplan import problems, study
 from bezierplan.analysis import results
-from bezierplan.problem import Problem
+from bezierplan.running import problems
+from bezierplan.study import definition, jobs
 from bezierplan.workspaces.grid import from_lines
+from bezierplan.workspaces.problem import Problem
 
 
 def study_of(**experiment):
     """A study of one experiment, and of nothing else."""
-    empty = {field.name: {} for field in fields(study.Study)} | {"key": "s", "folder": Path(), "title": "A study", "claims": []}
-    return study.Study(**empty | {"experiments": {"first": experiment}})
+    empty = {field.name: {} for field in fields(definition.Study)} | {"key": "s", "folder": Path(), "title": "A study", "claims": []}
+    return definition.Study(**empty | {"experiments": {"first": experiment}})
 
 
 @pytest.mark.parametrize(("repeats", "chunk", "count"), [(10, 4, 3), (8, 4, 2), (1, 4, 1), (9, 3, 3), (100, 1, 100), (4, 5, 1)])
 def test_chunks_hold_all_repeats_and_no_chunk_more(repeats, chunk, count):
     own = study_of(repeats={"full": repeats}, chunk={"full": chunk})
-    assert list(study.chunks(own, "first", "full")) == list(range(count))
+    assert list(jobs.chunks(own, "first", "full")) == list(range(count))
 
 
 @pytest.mark.parametrize(
@@ -34,7 +35,7 @@ def test_runs_are_pairs_where_methods_share_their_random_numbers(seeds, paired):
     """Runs of two methods with seeds of their own have nothing to do with each other."""
     own = study_of(repeats={"full": 10}, **seeds)
     claims = [{"id": "C1", "checks": [{"test": "lower", "experiment": "first"}]}]
-    assert study.claims_job(own, claims)["paired"] == {"first": paired}
+    assert jobs.claims_job(own, claims)["paired"] == {"first": paired}
 
 
 def test_results_are_cut_at_the_number_of_repeats(tmp_path):

@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bezierplan import contract, running, study_file
-from bezierplan.checked import Fault
-from bezierplan.exact import bounds, checker
-from bezierplan.exact.region import region
-from bezierplan.problem import known_planners
-from bezierplan.study import job
+from bezierplan.geometry import bounds, checker
+from bezierplan.geometry.region import region
+from bezierplan.planners import known_planners
+from bezierplan.running import contract, execution
+from bezierplan.study import reading
+from bezierplan.study.checked import Fault
+from bezierplan.study.jobs import job
 
 ROOT = Path(__file__).parents[1]
 STUDIES = ("song2016", "elhoseny2017", "tharwat2018", "ma2020", "meledje")
@@ -21,12 +22,12 @@ STUDIES = ("song2016", "elhoseny2017", "tharwat2018", "ma2020", "meledje")
 def settings_in_force() -> dict[str, dict]:
     """Planner -> its settings in the first experiment of a study that runs it."""
     found = {}
-    for study in study_file.load([ROOT / "config" / "studies" / name for name in STUDIES]).values():
+    for study in reading.load([ROOT / "config" / "studies" / name for name in STUDIES]).values():
         for experiment in study.experiments:
             for method in study.methods_of(experiment):
                 described = job(study, experiment, method, "smoke", 0)
-                condition = next(running.conditions(list(described["problems"]), described["vary"]))
-                found.setdefault(study.planner(method), running.settings_in(described, condition))
+                condition = next(execution.conditions(list(described["problems"]), described["vary"]))
+                found.setdefault(study.planner(method), execution.settings_in(described, condition))
     return found
 
 
@@ -40,8 +41,8 @@ from typing import Annotated, Literal
 import numpy as np
 from numba import njit
 
-from bezierplan.exact import bounds
-from bezierplan.problem import Path, Plan, Range
+from bezierplan.geometry import bounds
+from bezierplan.planners import Path, Plan, Range
 
 KEPT = np.random.default_rng(0)
 

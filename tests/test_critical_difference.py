@@ -6,11 +6,11 @@ import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
-from bezierplan import sheet
 from bezierplan.analysis.results import Results
-from bezierplan.figures import boxes, critical_difference
-from bezierplan.problem import Problem
+from bezierplan.figures import sheet
+from bezierplan.figures.panels import boxes, critical_difference
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.problem import Problem
 
 FIELD = Problem("field", Circles((-9.0, 9.0, -9.0, 9.0), np.array([[0.0, 3.0]]), np.array([1.0]), "m"), (-1.0, 0.0), (1.0, 0.0))
 

@@ -10,8 +10,8 @@ from hypothesis.extra import numpy as hnp
 from scipy.integrate import quad
 from scipy.interpolate import BSpline, CubicHermiteSpline, CubicSpline
 
-from bezierplan import curves
-from bezierplan.problem import Path
+from bezierplan.geometry import curves
+from bezierplan.workspaces.problem import Path
 
 coordinates = st.floats(-100, 100, allow_subnormal=False)
 
@@ -22,6 +22,8 @@ def paths(draw, kinds=curves.CURVES):
     count = draw(st.integers(curves.least_points(curve), 9))
     if curve == "ferguson":
         count -= count % 2
+    if curve == "cubic_chain":
+        count -= (count - 1) % 3
     return Path(curve, draw(hnp.arrays(float, (count, 2), elements=coordinates)))
 
 
@@ -177,6 +179,20 @@ def test_curvature_jumps_without_limit_at_the_corner_of_a_polyline():
 def test_too_few_control_points_are_refused(curve):
     with pytest.raises(ValueError, match="at least"):
         curves.piece_matrix(curve, curves.least_points(curve) - 1)
+
+
+def test_a_cubic_chain_is_its_pieces():
+    points = np.random.default_rng(0).normal(size=(7, 2))
+    path = Path("cubic_chain", points)
+    assert np.array_equal(curves.bezier_pieces(path), np.stack([points[:4], points[3:]]))
+    assert np.array_equal(curves.piece_matrix("cubic_chain", 7) @ points, curves.bezier_pieces(path))
+    assert curves.length(path) == pytest.approx(sum(curves.length(Path("bezier", each)) for each in (points[:4], points[3:])), rel=1e-12)
+
+
+@pytest.mark.parametrize("count", [5, 6])
+def test_a_cubic_chain_needs_3_k_and_1_control_points(count):
+    with pytest.raises(ValueError, match=r"3 k \+ 1"):
+        curves.piece_matrix("cubic_chain", count)
 
 
 def test_a_ferguson_curve_needs_pairs_of_a_point_and_a_tangent():

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 SOURCE = Path(__file__).parents[1] / "src"
-ASK = "from bezierplan.digest import source_digest; print(source_digest(*{modules!r}))"
+ASK = "from bezierplan.running.digest import source_digest; print(source_digest(*{modules!r}))"
 
 
 @pytest.fixture
@@ -26,45 +26,45 @@ def append(file, text):
 
 
 def test_comment_and_layout_do_not_count(tree):
-    before = digest(tree, "bezierplan.running")
-    append(tree / "bezierplan" / "running.py", "\n\n# a comment\n")
-    assert digest(tree, "bezierplan.running") == before
+    before = digest(tree, "bezierplan.running.execution")
+    append(tree / "bezierplan" / "running" / "execution.py", "\n\n# a comment\n")
+    assert digest(tree, "bezierplan.running.execution") == before
 
 
 def test_docstrings_do_not_count(tree):
-    before = digest(tree, "bezierplan.running")
-    file = tree / "bezierplan" / "running.py"
+    before = digest(tree, "bezierplan.running.execution")
+    file = tree / "bezierplan" / "running" / "execution.py"
     text = file.read_text()
     assert '    """One row of the runs table' in text
     file.write_text('"""New words.' + text.removeprefix('"""').replace('    """One row', '    """New words. One row'))
-    assert digest(tree, "bezierplan.running") == before
+    assert digest(tree, "bezierplan.running.execution") == before
 
 
 def test_code_of_a_module_that_is_imported_by_way_of_others_counts(tree):
-    before = digest(tree, "bezierplan.running"), digest(tree, "bezierplan.search.genetic")
+    before = digest(tree, "bezierplan.running.execution"), digest(tree, "bezierplan.planners.parts.genetic")
     append(tree / "bezierplan" / "workspaces" / "grid.py", "\nNEW = 1\n")
-    assert digest(tree, "bezierplan.running") != before[0]
-    assert digest(tree, "bezierplan.search.genetic") == before[1]
+    assert digest(tree, "bezierplan.running.execution") != before[0]
+    assert digest(tree, "bezierplan.planners.parts.genetic") == before[1]
 
 
 def test_package_above_a_module_counts(tree):
-    before = digest(tree, "bezierplan.search.genetic")
+    before = digest(tree, "bezierplan.planners.parts.genetic")
     append(tree / "bezierplan" / "search" / "__init__.py", "\nNEW = 1\n")
-    assert digest(tree, "bezierplan.search.genetic") != before
+    assert digest(tree, "bezierplan.planners.parts.genetic") != before
 
 
 def test_planner_is_named_to_it(tree):
-    before = digest(tree, "bezierplan.running")
+    before = digest(tree, "bezierplan.running.execution")
     append(tree / "bezierplan" / "planners" / "binary_genetic.py", "\nNEW = 1\n")
-    assert digest(tree, "bezierplan.running") == before
-    assert digest(tree, "bezierplan.running", "bezierplan.planners.binary_genetic") != before
+    assert digest(tree, "bezierplan.running.execution") == before
+    assert digest(tree, "bezierplan.running.execution", "bezierplan.planners.binary_genetic") != before
 
 
 def test_own_planner_counts_with_what_it_imports(tree, tmp_path):
     planner = tmp_path / "mine.py"
-    planner.write_text("from bezierplan.search import genetic\n")
+    planner.write_text("from bezierplan.planners.parts import genetic\n")
     before = digest(tree, str(planner))
-    append(tree / "bezierplan" / "search" / "genetic.py", "\nNEW = 1\n")
+    append(tree / "bezierplan" / "planners" / "parts" / "genetic.py", "\nNEW = 1\n")
     after = digest(tree, str(planner))
     append(planner, "NEW = 1\n")
     assert len({before, after, digest(tree, str(planner))}) == 3
@@ -88,15 +88,15 @@ def test_modules_beside_an_own_planner_count(tree, tmp_path):
 
 
 def test_how_a_job_is_logged_does_not_count(tree):
-    before = digest(tree, "bezierplan.running")
+    before = digest(tree, "bezierplan.running.execution")
     for name in ("log", "digest", "kernel_cache"):
         append(tree / "bezierplan" / f"{name}.py", "\nNEW = 1\n")
-    assert digest(tree, "bezierplan.running") == before
+    assert digest(tree, "bezierplan.running.execution") == before
 
 
 KERNELS = """
 import numpy as np
-from bezierplan.search import genetic
+from bezierplan.planners.parts import genetic
 genetic.roulette(np.random.default_rng(0), np.ones(4), 3)
 print(sum(genetic.roulette.stats.cache_hits.values()), genetic.roulette.stats.cache_path)
 """
@@ -112,9 +112,9 @@ def kernel(tree):
 def test_a_kernel_outlives_an_edit_that_cannot_change_it(tree):
     first, folder = kernel(tree)
     assert (first, Path(folder).parent) == (0, tree.parent / ".cache" / "kernels")
-    file = tree / "bezierplan" / "search" / "genetic.py"
+    file = tree / "bezierplan" / "planners" / "parts" / "genetic.py"
     file.write_text("# a comment that moves all lines\n" + file.read_text())
-    append(tree / "bezierplan" / "running.py", "\nNEW = 1\n")
+    append(tree / "bezierplan" / "running" / "execution.py", "\nNEW = 1\n")
     assert kernel(tree) == (1, folder)
     append(file, "\nNEW = 1\n")
     again, other = kernel(tree)

@@ -6,10 +6,10 @@ import pytest
 from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 
-from bezierplan import sheet
-from bezierplan.figures import along_path, bars, boxes, convergence, lines
-from bezierplan.problem import Problem
+from bezierplan.figures import sheet
+from bezierplan.figures.panels import along_path, bars, boxes, convergence, lines
 from bezierplan.workspaces.grid import from_lines
+from bezierplan.workspaces.problem import Problem
 
 GRID = from_lines(["..", ".."], 1.0, "m")
 SCENE = sheet.Scene({"first": {"across": Problem("across", GRID, (0.5, 0.5), (1.5, 1.5))}}, {}, {}, "m")

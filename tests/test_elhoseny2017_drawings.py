@@ -7,14 +7,15 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan import cell_length, curves, study, study_file
-from bezierplan.exact.checker import check
-from bezierplan.exact.region import region
-from bezierplan.figures import drawing
-from bezierplan.problem import Path
-from bezierplan.studies import elhoseny2017
+from bezierplan.analysis.papers import elhoseny2017
+from bezierplan.figures.panels import drawing
+from bezierplan.geometry import cell_length, curves
+from bezierplan.geometry.checker import check
+from bezierplan.geometry.region import region
+from bezierplan.study import jobs, reading
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.problem import Path
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "elhoseny2017"
 PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
@@ -85,10 +86,10 @@ def test_mutation_changes_one_digit():
 
 
 def test_figures_may_show_controls_by_name():
-    own = study_file.load(study_file.read_config({"studies": ["elhoseny2017"]}))["elhoseny2017"]
-    assert study.methods_of(own, "figure7", "fields100") == ["straight_line"]
-    assert study.methods_of(own, "figure10", "fields100") == ["prm", "abc_ep", "ga", "mga"]
-    assert study.caption(own, "figure7", "full").startswith(own.figures["figure7"]["title"])
+    own = reading.load(reading.read_config({"studies": ["elhoseny2017"]}))["elhoseny2017"]
+    assert jobs.methods_of(own, "figure7", "fields100") == ["straight_line"]
+    assert jobs.methods_of(own, "figure10", "fields100") == ["prm", "abc_ep", "ga", "mga"]
+    assert jobs.caption(own, "figure7", "full").startswith(own.figures["figure7"]["title"])
 
 
 def curve_of(marks):

@@ -7,19 +7,20 @@ from pathlib import Path as File
 import numpy as np
 import pytest
 import shapely
+from fields import BENCHMARK_MAPS
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from bezierplan.curves import bernstein, bezier_pieces, least_points
-from bezierplan.exact.bounds import centre_path, lattice_path, least_length, shortest_path
-from bezierplan.exact.checker import check
-from bezierplan.exact.region import region
-from bezierplan.problem import Path, Problem
+from bezierplan.geometry.bounds import centre_path, lattice_path, least_length, shortest_path
+from bezierplan.geometry.checker import check
+from bezierplan.geometry.curves import bernstein, bezier_pieces, least_points
+from bezierplan.geometry.region import region
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.problem import Path, Problem
 
 MAPS = File(__file__).parent / "data" / "maps"
 KINDS = ("circles", "cells", "polygons")
@@ -131,9 +132,9 @@ def random_workspaces(kind, rng):
     if kind == "cells":
         song = from_lines((MAPS / "song2016.txt").read_text().splitlines(), 10.0, "m")
         return [song, Grid(rng.random((12, 12)) < 0.25, 1.0, "m"), Grid(rng.random((20, 20)) < 0.1, 0.1, "m")]
-    complex2 = polygons_from_geojson((MAPS / "imr" / "complex2.geojson").read_text(), "m")
+    complex2 = polygons_from_geojson((BENCHMARK_MAPS / "complex2.geojson").read_text(), "m")
     triangles = tuple((rng.uniform(1, 19, 2) + rng.uniform(-3, 3, (3, 2)),) for _ in range(8))
-    spiral = polygons_from_geojson((MAPS / "imr" / "square_spiral.geojson").read_text(), "m")
+    spiral = polygons_from_geojson((BENCHMARK_MAPS / "square_spiral.geojson").read_text(), "m")
     return [complex2, Polygons((0.0, 20.0, 0.0, 20.0), triangles, "m"), spiral]
 
 

@@ -7,7 +7,7 @@ from test_lattice_planners import environment, plan
 
 from bezierplan.planners import fish_swarm_genetic
 from bezierplan.planners.fish_swarm_genetic import _ARRIVED, _DEAD, _SWIMMING, _follow, _release, _Swarm
-from bezierplan.search import cell_paths
+from bezierplan.planners.parts import cell_paths
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.lattice import lattice
 

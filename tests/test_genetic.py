@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from bezierplan.search.genetic import complement_bit, redraw_gene, roulette, swap_tails
+from bezierplan.planners.parts.genetic import complement_bit, redraw_gene, roulette, swap_tails
 
 BITS = 8
 chromosomes = st.lists(st.integers(0, 255), min_size=6, max_size=6).map(lambda genes: np.array(genes, dtype=np.int64))

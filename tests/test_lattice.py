@@ -9,12 +9,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezierplan import curves
-from bezierplan.exact import checker
-from bezierplan.exact.region import region
-from bezierplan.problem import Path
+from bezierplan.geometry import checker, curves
+from bezierplan.geometry.region import region
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.lattice import Corners, lattice, neighbours, points
+from bezierplan.workspaces.problem import Path
 
 RULES = get_args(Corners)
 OPEN = Grid(np.zeros((4, 5), dtype=bool), 2.0, "unit")

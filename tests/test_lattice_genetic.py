@@ -8,10 +8,10 @@ import pytest
 from test_lattice_planners import environment, plan
 
 from bezierplan.planners import lattice_genetic
-from bezierplan.problem import Problem
-from bezierplan.search import cell_paths
+from bezierplan.planners.parts import cell_paths
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.lattice import lattice
+from bezierplan.workspaces.problem import Problem
 
 OPEN = Problem("test", Grid(np.zeros((8, 8), dtype=bool), 1.0, "unit"), (0.0, 0.0), (8.0, 8.0))
 

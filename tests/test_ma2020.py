@@ -7,18 +7,19 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan import checked, curves, problems
 from bezierplan.analysis import audit
+from bezierplan.analysis.papers import ma2020
 from bezierplan.analysis.results import Results
-from bezierplan.exact import bounds, checker
-from bezierplan.exact.region import region
-from bezierplan.planners import bca
-from bezierplan.problem import Path, planner_module, planner_settings
-from bezierplan.studies import ma2020
+from bezierplan.geometry import bounds, checker, curves
+from bezierplan.geometry.region import region
+from bezierplan.planners import bca, planner_module, planner_settings
+from bezierplan.running import problems
+from bezierplan.study import checked
 from bezierplan.workspaces import files
+from bezierplan.workspaces.problem import Path
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "ma2020"
-STUDY = checked.read(FOLDER / "experiments.yaml", "experiments")
+STUDY = checked.read(FOLDER / "experiments.yaml")
 PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
 
 
@@ -240,14 +241,3 @@ def test_continuous_curvature(points, feasible, mark, count):
     found = ma2020.continuous_curvature({"experiment": "environments"}, results(points, feasible), {})
     assert (found[0], found[2], found[3]) == (mark, None, count)
     assert count == 0 or found[1] == 0
-
-
-def test_assumptions_are_the_values_in_force():
-    assumptions = checked.read(FOLDER / "assumptions.yaml", "assumptions")["assumptions"]
-    governed = [assumption for assumption in assumptions if "setting" in assumption]
-    assert len(governed) >= 14
-    for assumption in governed:
-        setting, default = assumption["setting"], assumption["default"]
-        for method, value in default.items() if isinstance(default, dict) else [("bca", default), ("bca_q", default)]:
-            assert (STUDY["settings"] | STUDY["methods"][method].get("settings", {}))[setting] == value, assumption["id"]
-        assert assumption["claims"], assumption["id"]

@@ -8,9 +8,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bezierplan import metrics
-from bezierplan.problem import Problem
+from bezierplan.analysis import metrics
 from bezierplan.workspaces.grid import from_lines
+from bezierplan.workspaces.problem import Problem
 
 # One occupied cell, x and y from 10 to 20.
 GRID = from_lines(["....", "....", ".#..", "...."], 10.0, "unit")

@@ -1,6 +1,6 @@
 """Planners of a reader's own, with modules of the reader's own beside them."""
 
-from bezierplan.problem import planner_module
+from bezierplan.planners import planner_module
 
 PLANNER = """
 import json

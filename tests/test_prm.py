@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 from fields import assert_path_fits, drawn
 
-from bezierplan import curves
-from bezierplan.exact.checker import check
-from bezierplan.exact.region import region
-from bezierplan.planners import prm
-from bezierplan.problem import Problem, planner_settings, setting_fault
+from bezierplan.geometry import curves
+from bezierplan.geometry.checker import check
+from bezierplan.geometry.region import region
+from bezierplan.planners import planner_settings, prm, setting_fault
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import from_lines
+from bezierplan.workspaces.problem import Problem
 
 SETTINGS = {"nodes": 50, "links": "visible", "neighbours": 10, "d_min": 0.0}
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from bezierplan import problems
-from bezierplan.exact import bounds
+from bezierplan.geometry import bounds
+from bezierplan.running import problems
 from bezierplan.workspaces import random_blocks
 
 MAP = {"kind": "random_blocks", "largest_block": 4, "clear_ends": 2, "corners": "none", "unit": "cell"}

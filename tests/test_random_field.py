@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from bezierplan import problems
-from bezierplan.exact import bounds
-from bezierplan.exact.region import blocks, region
+from bezierplan.geometry import bounds
+from bezierplan.geometry.region import blocks, region
+from bezierplan.running import problems
 from bezierplan.workspaces import files, random_field
 from bezierplan.workspaces.circles import Circles
 

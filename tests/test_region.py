@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezierplan.exact.checker import check
-from bezierplan.exact.region import blocks, region
+from bezierplan.geometry.checker import check
+from bezierplan.geometry.region import blocks, region
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.polygons import Polygons

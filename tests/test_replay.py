@@ -2,18 +2,20 @@
 
 import pytest
 
-from bezierplan import problems, replay, running, study_file
-from bezierplan.checked import Fault
-from bezierplan.study import job, problems_job
+from bezierplan.commands import replay
+from bezierplan.running import execution, problems
+from bezierplan.study import reading
+from bezierplan.study.checked import Fault
+from bezierplan.study.jobs import job, problems_job
 
-STUDIES = study_file.load(study_file.read_config({"studies": ["song2016"]}))
+STUDIES = reading.load(reading.read_config({"studies": ["song2016"]}))
 
 
 def test_run_made_again_equals_the_row_of_its_chunk(tmp_path):
     study = STUDIES["song2016"]
     described = job(study, "routes", "straight_line", "smoke", 0)
     made, _ = problems.build_all(problems_job(study, "routes", "smoke"), study.folder)
-    runs, _ = running.run_chunk(made, described)
+    runs, _ = execution.run_chunk(made, described)
     for row in runs.to_pylist():
         assert replay.equal(replay.replay(row["id"], STUDIES).runs.iloc[0], row)
 

@@ -6,14 +6,17 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan import checked, metrics, problems, running, sheet
-from bezierplan.analysis import results
-from bezierplan.figures import landscape, tracks
+from bezierplan.analysis import metrics, results
+from bezierplan.figures import sheet
+from bezierplan.figures.panels import landscape, tracks
 from bezierplan.planners import chaotic_pso
-from bezierplan.problem import Problem
+from bezierplan.planners.parts import penalised
+from bezierplan.running import execution, problems
+from bezierplan.study import checked
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.problem import Problem
 
-SETTINGS = checked.read(File(__file__).parents[1] / "config" / "studies" / "tharwat2018" / "experiments.yaml", "experiments")["settings"]
+SETTINGS = checked.read(File(__file__).parents[1] / "config" / "studies" / "tharwat2018" / "experiments.yaml")["settings"]
 FIELD = Problem("field", Circles((-10.0, 10.0, -10.0, 10.0), np.array([[2.0, 3.0]]), np.array([1.0]), "m"), (0.0, 0.0), (4.0, 6.0))
 JOB = {
     "study": "study",
@@ -39,7 +42,7 @@ def surface(found: results.Results) -> pd.DataFrame:
 
 @pytest.fixture(scope="module")
 def found() -> results.Results:
-    table, _ = running.run_chunk({"field": FIELD}, JOB)
+    table, _ = execution.run_chunk({"field": FIELD}, JOB)
     bounds = problems.bounds_of({"field": FIELD}).to_pandas()
     runs = table.to_pandas()
     runs["path_points"] = runs["path_points"].map(list)
@@ -62,12 +65,12 @@ def test_ways_are_those_of_the_runs(found):
     ways = [tracks.data(found, by="homotopy", runs=1, point=point).query("part == 'way'") for point in range(5)]
     points = np.stack([way[["x", "y"]].to_numpy() for way in ways], axis=1)
     run = found.runs.set_index("id").loc[ways[0]["run"].iloc[0]]
-    again = chaotic_pso._objective(FIELD, JOB["settings"])
+    again = chaotic_pso._objective(FIELD, chaotic_pso.Settings(**JOB["settings"]))
     buffers = [np.empty(SETTINGS["samples"]) for _ in range(3)]
     for best, position in zip(run["history"], points[:, 1:-1]):
-        length = chaotic_pso._length(position.T.ravel(), again, *buffers)
-        violation, _ = chaotic_pso._violation(buffers[0], buffers[1], again.circles, buffers[2])
-        assert chaotic_pso._fitness(length, violation, again) == pytest.approx(best, rel=1e-12)
+        length = penalised.length(position.T.ravel(), again, *buffers)
+        violation, _ = penalised.violation(buffers[0], buffers[1], again.circles, buffers[2])
+        assert penalised.fitness(length, violation, again) == pytest.approx(best, rel=1e-12)
     np.testing.assert_array_equal(points[-1].ravel(), run["path_points"])
 
 

@@ -11,7 +11,7 @@ ROOT = Path(__file__).parents[1]
 PLANNER = """
 import numpy as np
 from numba import njit
-from bezierplan.problem import Path, Plan
+from bezierplan.planners import Path, Plan
 
 workspaces = ("circles",)
 

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from fields import BENCHMARK_MAPS
 
-from bezierplan import problems
+from bezierplan.running import problems
 from bezierplan.workspaces import files, random_circles
 
 MAPS = Path(__file__).parent / "data" / "maps"
@@ -176,11 +177,12 @@ def test_circle_fault_is_told(fault):
 def descriptions():
     yield {"kind": "circles", "unit": "m", "bounds": [-1, 1, -1, 1], "circles": [[0.1, 0.2, 0.3], [1 / 3, 0, 0.1]]}
     yield {"kind": "grid", "unit": "cell", "file": "song2016.txt", "cell": 10}
-    for file in sorted((MAPS / "imr").glob("*.geojson")):
-        yield {"kind": "polygons", "unit": "m", "file": f"imr/{file.name}"}
+    for file in sorted(BENCHMARK_MAPS.glob("*.geojson")):
+        yield {"kind": "polygons", "unit": "m", "file": str(file)}
+        yield {"kind": "raster", "unit": "m", "file": str(file), "cell": 0.4, "rule": "overlap"}
 
 
-@pytest.mark.parametrize("description", list(descriptions()), ids=lambda each: each.get("file", each["kind"]))
+@pytest.mark.parametrize("description", list(descriptions()), ids=lambda each: f"{each['kind']} {Path(each.get('file', '')).stem}")
 def test_text_gives_a_workspace_back_bit_by_bit(description):
     text = files.to_json(files.load(description, MAPS))
     assert files.to_json(files.from_json(text)) == text

@@ -7,14 +7,13 @@ from pathlib import Path
 import numpy as np
 from timing import cpu_seconds
 
-from bezierplan import curves
-from bezierplan.exact import bounds, checker
-from bezierplan.exact.region import region
-from bezierplan.problem import Path as Curve
-from bezierplan.problem import Problem, Workspace
+from bezierplan.geometry import bounds, checker, curves
+from bezierplan.geometry.region import region
 from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.problem import Path as Curve
+from bezierplan.workspaces.problem import Problem, Workspace
 
 
 def random_grid(side: int, rng: np.random.Generator) -> Grid:
@@ -40,7 +39,7 @@ def workspaces() -> Iterator[tuple[str, Workspace]]:
         yield f"circles {count}", random_discs(count, rng)
     for side in (16, 20, 100, 200):
         yield f"cells {side} x {side}", random_grid(side, rng)
-    for file in sorted((Path(__file__).parents[1] / "data" / "maps" / "imr").glob("*.geojson")):
+    for file in sorted((Path(__file__).parents[2] / "config/studies/elhoseny2017/workspaces").glob("*.geojson")):
         yield f"polygons {file.stem}", files.polygons_from_geojson(file.read_text(), "m")
 
 

@@ -5,8 +5,8 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from bezierplan import problems, running, study_file
-from bezierplan import study as studies
+from bezierplan.running import execution, problems
+from bezierplan.study import definition, jobs, reading
 
 RUNS = 5
 
@@ -22,7 +22,7 @@ def _milliseconds(run: Callable[[int], object]) -> float:
     return float(np.median(taken))
 
 
-def _methods(study: studies.Study) -> Iterator[tuple[str, str]]:
+def _methods(study: definition.Study) -> Iterator[tuple[str, str]]:
     """Every method with the first experiment that it takes part in; controls are the same everywhere and left out."""
     seen = set(study.controls)
     for experiment, description in study.experiments.items():
@@ -35,11 +35,11 @@ def _methods(study: studies.Study) -> Iterator[tuple[str, str]]:
 def benchmark_runs() -> None:
     """Each method of each study on the first condition of its first experiment."""
     print(f"\n{'a run':44}{'median ms':>12}   under")
-    for key, study in study_file.load(study_file.read_config({})).items():
+    for key, study in reading.load(reading.read_config({})).items():
         for experiment, method in _methods(study):
-            job = studies.job(study, experiment, method, "smoke", 0)
-            made, _ = problems.build_all(studies.problems_job(study, experiment, "smoke"), study.folder)
-            condition = next(running.conditions(list(job["problems"]), job["vary"]))
+            job = jobs.job(study, experiment, method, "smoke", 0)
+            made, _ = problems.build_all(jobs.problems_job(study, experiment, "smoke"), study.folder)
+            condition = next(execution.conditions(list(job["problems"]), job["vary"]))
             problem = made[condition.problem]
-            taken = _milliseconds(lambda number: running.run(job, condition, number, problem))  # noqa: B023
+            taken = _milliseconds(lambda number: execution.run(job, condition, number, problem))  # noqa: B023
             print(f"  {key + ' ' + method:42}{taken:12.2f}   {condition.name}", flush=True)

@@ -1,18 +1,18 @@
 """Make a figure from the data that it draws, which are written first and read back."""
 
-from bezierplan import log
+from bezierplan.running import log
 
-with log.job(snakemake.log[0]):
+with log.job(snakemake) as output:
     import importlib
     from pathlib import Path
 
     import pandas as pd
 
-    from bezierplan import sheet
     from bezierplan.analysis import results
+    from bezierplan.figures import sheet
     from bezierplan.workspaces import files
 
-    job, inputs, output = snakemake.params.job, snakemake.input, snakemake.output
+    job, inputs = snakemake.params.job, snakemake.input
     found = results.read_all(inputs.runs, job["repeats"], inputs.problems, inputs.bounds)
     published = results.read_published(inputs.published)
     found = {name: each._replace(published=published, jobs=job["jobs"].get(name)) for name, each in found.items()}

@@ -1,12 +1,12 @@
 """Run a method on every condition of an experiment, one block of repeats."""
 
-from bezierplan import log
+from bezierplan.running import log
 
-with log.job(snakemake.log[0]):
+with log.job(snakemake) as output:
     import pyarrow.parquet as parquet
 
-    from bezierplan import problems, running
+    from bezierplan.running import execution, problems
 
-    runs, times = running.run_chunk(problems.read(snakemake.input.problems), snakemake.params.job)
-    parquet.write_table(runs, snakemake.output.runs)
-    parquet.write_table(times, snakemake.output.times)
+    runs, times = execution.run_chunk(problems.read(snakemake.input.problems), snakemake.params.job)
+    parquet.write_table(runs, output.runs)
+    parquet.write_table(times, output.times)

@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 import pyarrow.parquet as parquet
 
-from bezierplan import problems as problem_files
-from bezierplan.problem import Path, Problem
+from bezierplan.running import problems as problem_files
+from bezierplan.workspaces.problem import Path, Problem
 
 
 class Results(NamedTuple):

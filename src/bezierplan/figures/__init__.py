@@ -1,1 +1,1 @@
-"""One file a kind of picture: `data` makes the table that is drawn, `draw` draws it."""
+"""Figures: sheets of panels, one file a kind of panel, and their style."""

@@ -1,1 +1,121 @@
-"""One file an algorithm. The file's name is the planner's name; its function is `plan`; its keyword-only arguments are its settings."""
+"""Planners, one file each, and their interface.
+
+A planner is a module with a function
+
+    plan(problem, rng, *, <settings>) -> Plan
+
+whose keyword-only arguments are its settings, all without default values: annotated with `bool`, `int`, `float`, `Literal[...]`, or
+`Annotated[int, Range(...)]`. It may also have `workspaces`, the kinds of workspace that it serves; `exact = True`, if its own test of
+feasibility is meant to agree with the certified one; `keeps_best = False`, if its result can be worse than the best path that it met;
+`deterministic = True`, if it draws no random number; `check(settings)`, which raises ValueError for settings that do not fit together;
+`serves(problem)`, which raises it for a problem that it cannot plan; `track(problem, rng, **settings)`, the control points
+(iterations + 1, n, 2) of the best path after each iteration of the run that `plan` makes of the same arguments, for figures that show how
+a run came to its path.
+"""
+
+import importlib
+import importlib.util
+import inspect
+import math
+import sys
+import typing
+from functools import cache
+from pathlib import Path as File
+from types import ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from bezierplan.workspaces.problem import Path, Problem
+
+__all__ = ["Path", "Plan", "Problem", "Range", "known_planners", "planner_module", "planner_settings", "setting_fault"]
+
+
+class Plan(NamedTuple):
+    """What a planner answers.
+
+    path: None if it found nothing to show. objective: its own final value, in its own rule. claimed_feasible: its own test of the path.
+    evaluations: paths whose objective it asked for. history: its best objective so far after generation 0, 1, ..., (generations + 1,).
+    stop: why it ended. extra: further columns of the runs table, by name.
+    """
+
+    path: Path | None
+    objective: float
+    claimed_feasible: bool
+    evaluations: int
+    history: np.ndarray
+    stop: str
+    extra: dict[str, float | bool]
+
+
+class Range(NamedTuple):
+    """Limits of a setting's value, both included."""
+
+    low: float = -math.inf
+    high: float = math.inf
+
+    def __str__(self) -> str:
+        if math.isinf(self.high):
+            return f"at least {self.low:g}"
+        return f"from {self.low:g} to {self.high:g}"
+
+
+PLACE = ("workspace", "reference", "route", "side", "layout", "obstacles")
+"""Keys of a described problem that are columns of the runs table."""
+
+
+@cache
+def planner_module(planner: str) -> ModuleType:
+    """The module of a planner: `name` is planners/name.py of this package, `folder/name.py` a file of the reader's own, which can import
+    the modules beside it, at its top.
+
+    Raises ModuleNotFoundError or FileNotFoundError if there is none.
+    """
+    if not planner.endswith(".py"):
+        return importlib.import_module(f"bezierplan.planners.{planner}")
+    spec = importlib.util.spec_from_file_location(File(planner).stem, planner)
+    module = importlib.util.module_from_spec(spec)
+    folder = File(planner).resolve().parent
+    known = set(sys.modules)
+    sys.path.append(str(folder))  # last, so that no file of a reader hides a library
+    try:
+        spec.loader.exec_module(module)
+    finally:
+        sys.path.remove(str(folder))
+        # Modules of the same name may lie beside the planners of another study.
+        beside = {file.stem for file in folder.iterdir()}
+        for name in [name for name in sys.modules.keys() - known if name.split(".")[0] in beside]:
+            del sys.modules[name]
+    return module
+
+
+def known_planners() -> list[str]:
+    """Names of the planners of this package."""
+    return sorted(file.stem for file in File(__file__).parent.glob("*.py") if file.stem != "__init__")
+
+
+@cache
+def planner_settings(module: ModuleType) -> dict[str, Any]:
+    """Settings of a planner: name -> annotation, in the order of its signature. Not to be changed."""
+    hints = typing.get_type_hints(module.plan, include_extras=True)
+    parameters = inspect.signature(module.plan).parameters.values()
+    return {p.name: hints[p.name] for p in parameters if p.kind is inspect.Parameter.KEYWORD_ONLY}
+
+
+def setting_fault(annotation: Any, value: Any) -> str | None:
+    """What would be right instead of a setting's value, or None if the value is right."""
+    limits = Range()
+    if type(None) in typing.get_args(annotation):
+        annotation = next(part for part in typing.get_args(annotation) if part is not type(None))
+    if typing.get_origin(annotation) is typing.Annotated:
+        annotation, limits = typing.get_args(annotation)
+    if typing.get_origin(annotation) is typing.Literal:
+        choices = typing.get_args(annotation)
+        return None if value in choices else "one of " + ", ".join(map(str, choices))
+    number = {bool: "true or false", int: "a whole number", float: "a number"}[annotation]
+    accepted = (int, float) if annotation is float else annotation
+    if not isinstance(value, accepted) or (isinstance(value, bool) and annotation is not bool):
+        return number
+    if annotation is not bool and not limits.low <= value <= limits.high:
+        return f"{number} {limits}"
+    return None

@@ -9,10 +9,11 @@ from typing import Annotated, Literal
 import numpy as np
 from numba import njit
 
-from bezierplan.problem import Path, Plan, Problem, Range
-from bezierplan.search import cell_paths
-from bezierplan.search.genetic import check_pairs, redraw_gene, roulette, swap_tails
+from bezierplan.planners import Plan, Range
+from bezierplan.planners.parts import cell_paths
+from bezierplan.planners.parts.genetic import check_pairs, redraw_gene, roulette, swap_tails
 from bezierplan.workspaces.lattice import Corners, Lattice, lattice, points
+from bezierplan.workspaces.problem import Path, Problem
 
 workspaces = ("grid",)
 exact = True

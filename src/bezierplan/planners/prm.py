@@ -12,10 +12,11 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from numba import njit
 
-from bezierplan.cell_length import is_free_leg
-from bezierplan.problem import Path, Plan, Problem, Range
+from bezierplan.geometry.cell_length import is_free_leg
+from bezierplan.planners import Plan, Range
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.problem import Path, Problem
 
 workspaces = ("circles", "grid")
 exact = True
@@ -43,17 +44,28 @@ def plan(
 
     Fewer nodes of one generator are the first of more. Extra column: roads, the number of links.
     """
+    length, way, roads = road_map(problem, rng, nodes, None if links == "visible" else neighbours, d_min)
+    path = Path("polyline", way) if len(way) else None
+    found = path is not None
+    history = np.array([length])
+    return Plan(path, length, claimed_feasible=found, evaluations=1, history=history, stop="direct", extra={"roads": roads})
+
+
+def road_map(
+    problem: Problem, rng: np.random.Generator, nodes: int, neighbours: int | None, d_min: float = 0.0
+) -> tuple[float, np.ndarray, int]:
+    """Length and points (n, 2) of the shortest way along a random road map, infinite and none if there is no way, and the number of links.
+
+    neighbours: how many of a node's nearest it may be linked with, None for all.
+    """
     workspace = problem.workspace
     low, high, is_free, sees = _on_grid(workspace, d_min) if isinstance(workspace, Grid) else _among_circles(workspace, d_min)
     points = np.concatenate([[problem.start, problem.target], _free_points(rng, nodes, low, high, is_free)])
-    one, other = _pairs(points, None if links == "visible" else neighbours)
+    one, other = _pairs(points, neighbours)
     seen = sees(points[one], points[other])
     one, other = one[seen], other[seen]
     length, way = _shortest_way(points, one, other)
-    path = Path("polyline", points[way]) if way else None
-    found = path is not None
-    history = np.array([length])
-    return Plan(path, length, claimed_feasible=found, evaluations=1, history=history, stop="direct", extra={"roads": len(one)})
+    return length, points[way], len(one)
 
 
 class _Field(NamedTuple):

@@ -6,9 +6,10 @@ import math
 
 import numpy as np
 
-from bezierplan.cell_length import DIAGONAL
-from bezierplan.exact import bounds
-from bezierplan.problem import Path, Plan, Problem
+from bezierplan.geometry import bounds
+from bezierplan.geometry.cell_length import DIAGONAL
+from bezierplan.planners import Plan
+from bezierplan.workspaces.problem import Path, Problem
 
 workspaces = ("grid",)
 deterministic = True

@@ -4,8 +4,9 @@ import math
 
 import numpy as np
 
-from bezierplan.exact import bounds
-from bezierplan.problem import Path, Plan, Problem
+from bezierplan.geometry import bounds
+from bezierplan.planners import Plan
+from bezierplan.workspaces.problem import Path, Problem
 
 exact = True
 

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from bezierplan.problem import Path, Plan, Problem
+from bezierplan.planners import Plan
+from bezierplan.workspaces.problem import Path, Problem
 
 deterministic = True
 

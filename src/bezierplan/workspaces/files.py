@@ -5,6 +5,9 @@ A description is a mapping with `kind` and `unit` and, by kind,
     grid      file (lines of . and #, top row first), cell (side of a cell), perhaps heights (a file of numbers, top row first)
     circles   bounds [x low, x high, y low, y high], circles [[x, y, radius], ...]
     polygons  file (`geojson`: features with properties.role `border`, one rectangle, and `obstacle`)
+    raster    file as of polygons, cell (side of a cell), rule (`overlap` or `centre`: which cells are occupied)
+    ros_map   file (YAML of ROS's map_server, beside its image), perhaps robot_radius, most_pixels
+    moving_ai file (`.map`), perhaps scenarios (`.scen`)
 
 Coordinates are numbers of the unit, at most 1e5 in size.
 """
@@ -17,13 +20,13 @@ from pathlib import Path
 
 import numpy as np
 
-from bezierplan.text_file import read_text
-from bezierplan.workspaces import grid, random_field
+from bezierplan.workspaces import grid, moving_ai, random_field, raster, ros
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.limits import check_bounds, check_gaps, check_numbers
 from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.text_file import read_text
 
 Workspace = Grid | Circles | Polygons
 
@@ -39,10 +42,16 @@ def load(description: dict, folder: Path) -> Workspace:
     kind, unit = description["kind"], description["unit"]
     if kind == "circles":
         return _circles(description["bounds"], description["circles"], unit)
+    if kind in ("ros_map", "moving_ai"):
+        with _naming(description["file"]):
+            options = {key: description[key] for key in ("robot_radius", "most_pixels") if key in description}
+            return (ros if kind == "ros_map" else moving_ai).read(folder / description["file"], unit, **options)
     text = _text(description, "file", folder)
     with _naming(description["file"]):
         if kind == "polygons":
             return polygons_from_geojson(text, unit)
+        if kind == "raster":
+            return raster.from_polygons(polygons_from_geojson(text, unit), float(description["cell"]), description["rule"])
         workspace = grid.from_lines(text.splitlines(), float(description["cell"]), unit)
         check_numbers(np.array(workspace.bounds), f"cell: {description['cell']}: the border")
     if "heights" not in description:
@@ -50,6 +59,23 @@ def load(description: dict, folder: Path) -> Workspace:
     text = _text(description, "heights", folder)
     with _naming(description["heights"]):
         return replace(workspace, heights=grid.heights_from_lines(text.splitlines(), workspace.occupied.shape))
+
+
+def sources(description: dict, folder: Path) -> list[Path]:
+    """The files that a workspace is read from. Raises ValueError for a YAML file of `ros_map` that names no image."""
+    named = [folder / description[key] for key in ("file", "heights", "scenarios") if key in description]
+    if description["kind"] == "ros_map":
+        with _naming(description["file"]):
+            named.append(ros.image_of(named[0]))
+    return named
+
+
+def scenario(description: dict, number: int, workspace: Grid, folder: Path) -> moving_ai.Scenario:
+    """A numbered scenario of a workspace of kind `moving_ai`. Raises ValueError, naming the file and what would be right."""
+    if "scenarios" not in description:
+        raise ValueError(f"scenario: {number}: the workspace has no scenarios; expected a .scen file there")
+    with _naming(description["scenarios"]):
+        return moving_ai.scenario(folder / description["scenarios"], number, workspace, Path(description["file"]).name)
 
 
 def _text(description: dict, key: str, folder: Path) -> str:
@@ -86,19 +112,28 @@ def _circles(bounds: list[float], circles: list[list[float]], unit: str) -> Circ
 
 
 def to_json(workspace: Workspace) -> str:
-    """A workspace as text; `from_json` gives it back, bit by bit. A field is its circles, whatever the number of its cells."""
-    if isinstance(workspace, Grid) and workspace.drawn:
+    """A workspace as text; `from_json` gives it back, bit by bit. A random field is its circles, whatever the number of its cells."""
+    if isinstance(workspace, Grid) and isinstance(workspace.drawn, Circles):
         content = _circles_content(workspace.drawn) | {"kind": "random_field"}
+    elif isinstance(workspace, Grid) and workspace.drawn:
+        cells = {"cell": workspace.cell, "rows": grid.to_lines(workspace), "origin": workspace.origin}
+        content = _polygons_content(workspace.drawn) | cells | {"kind": "raster"}
     elif isinstance(workspace, Grid):
         content = {"kind": "grid", "cell": workspace.cell, "rows": grid.to_lines(workspace)}
+        if workspace.origin != (0.0, 0.0):
+            content["origin"] = workspace.origin
         if workspace.heights is not None:
             content["heights"] = workspace.heights.tolist()
     elif isinstance(workspace, Circles):
         content = _circles_content(workspace)
     else:
-        obstacles = [[ring.tolist() for ring in rings] for rings in workspace.obstacles]
-        content = {"kind": "polygons", "bounds": workspace.bounds, "obstacles": obstacles}
+        content = _polygons_content(workspace)
     return json.dumps(content | {"unit": workspace.unit})
+
+
+def _polygons_content(polygons: Polygons) -> dict:
+    obstacles = [[ring.tolist() for ring in rings] for rings in polygons.obstacles]
+    return {"kind": "polygons", "bounds": polygons.bounds, "obstacles": obstacles}
 
 
 def _circles_content(circles: Circles) -> dict:
@@ -111,12 +146,16 @@ def from_json(text: str) -> Workspace:
     content = json.loads(text)
     unit = content["unit"]
     if content["kind"] == "grid":
-        flat = grid.from_lines(content["rows"], content["cell"], unit)
+        flat = replace(grid.from_lines(content["rows"], content["cell"], unit), origin=tuple(content.get("origin", (0.0, 0.0))))
         return replace(flat, heights=np.array(content["heights"])) if "heights" in content else flat
     bounds = tuple(content["bounds"])
-    if content["kind"] == "polygons":
+    if content["kind"] in ("polygons", "raster"):
         obstacles = tuple(tuple(np.array(ring) for ring in rings) for rings in content["obstacles"])
-        return Polygons(bounds, obstacles, unit)
+        polygons = Polygons(bounds, obstacles, unit)
+        if content["kind"] == "polygons":
+            return polygons
+        cells = grid.from_lines(content["rows"], content["cell"], unit)
+        return replace(cells, origin=tuple(content["origin"]), drawn=polygons)
     table = np.array(content["circles"], dtype=float).reshape(-1, 3)
     circles = Circles(bounds, table[:, :2], table[:, 2], unit)
     return random_field.from_circles(circles) if content["kind"] == "random_field" else circles

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.polygons import Polygons
 
 # A coordinate this close below a grid line, in cells, counts as on it. Centres of cells put many samples of a curve exactly on grid
 # lines, where rounding alone would decide; with this margin every program gives the same cell: the one above or to the right.
@@ -23,7 +24,8 @@ class Grid:
     """Cells of a rectangle.
 
     occupied: bool (rows, columns), row 0 at the bottom. cell: side of a cell, in units. unit: name of the unit of length. origin: x, y of
-    the lower left corner, in units. drawn: the circles that the cells were drawn from, if they were; only pictures show them.
+    the lower left corner, in units. drawn: what the cells were drawn from, if they were: circles, which only pictures show, or polygons,
+    which then are the obstacles of the certified check and of the exact bounds (`raster`).
     heights: of the ground of each cell, in units (rows, columns), where it is not flat; only some planners look at them.
     """
 
@@ -31,7 +33,7 @@ class Grid:
     cell: float
     unit: str
     origin: tuple[float, float] = (0.0, 0.0)
-    drawn: Circles | None = None
+    drawn: Circles | Polygons | None = None
     heights: np.ndarray | None = None
 
     @property

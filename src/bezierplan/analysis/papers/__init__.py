@@ -1,0 +1,1 @@
+"""What only one paper needs: one file a paper, with its audit and the claims that no kind of test fits."""

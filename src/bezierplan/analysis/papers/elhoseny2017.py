@@ -1,0 +1,430 @@
+"""elhoseny2017: the worked example of the Q statistic, claims on printed numbers, an audit of its tables and text, the radius of the
+obstacles that fits the printed lengths, and its drawings.
+
+Numbers of equations, sections, tables and figures are the paper's.
+"""
+
+import itertools
+import math
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from bezierplan.analysis.results import Results, select
+from bezierplan.geometry.cell_length import DIAGONAL, occupied_cells, samples, touched_cells
+from bezierplan.geometry.region import region
+from bezierplan.planners.parts.diversity import q_of_rows, q_statistic
+from bezierplan.workspaces import random_field
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.problem import Path
+
+# Section 3.3.1 prints these Q statistics, the mean to two decimals, and these counts N11, N00, N10, N01 of the first pair.
+SAID_Q = {("S1", "S2"): 0.0, ("S1", "S3"): 0.0, ("S2", "S3"): -1 / 3}
+SAID_MEAN_Q = -0.11
+SAID_COUNTS = {"N11": 3, "N00": 2, "N10": 3, "N01": 2}
+
+# Sections 3.3 and 4.2.2.
+ETA, ETA_DECAY, ITERATIONS = 0.8, 0.99, 80
+
+
+def solutions(published: dict[str, pd.DataFrame]) -> dict[str, np.ndarray]:
+    """Table 1: the genes (10,) of each solution."""
+    return {name: rows.sort_values("gene")["value"].to_numpy() for name, rows in published["table1"].groupby("solution")}
+
+
+def counts(one: np.ndarray, other: np.ndarray) -> dict[str, int]:
+    """Section 3.3: the numbers of genes that have these values in one solution and in the other."""
+    return {f"N{a}{b}": int(((one == a) & (other == b)).sum()) for a, b in ((1, 1), (0, 0), (1, 0), (0, 1))}
+
+
+def q_table(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
+    """Table 1 with what follows from it: genes of the solutions, counts and Q (equation 10) of their pairs, and the mean Q."""
+    genes = solutions(published)
+    rows = [{"solutions": name, **{f"gene {gene}": value for gene, value in enumerate(values, 1)}} for name, values in genes.items()]
+    pairs = [
+        {"solutions": f"{one}, {other}", **counts(genes[one], genes[other]), "Q": q_of_rows(genes[one], genes[other])}
+        for one, other in itertools.combinations(genes, 2)
+    ]
+    mean = {"solutions": "mean", "Q": np.mean([pair["Q"] for pair in pairs])}
+    whole = [column for row in rows + pairs for column in row if column not in ("solutions", "Q")]
+    table = pd.DataFrame([*rows, *pairs, mean])
+    return table.astype(dict.fromkeys(whole, "Int64")).round({"Q": 4})
+
+
+def q_example(check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]) -> tuple[str, float, None, int]:
+    """Claim C20: do the Q statistics of Table 1 agree with the text? The effect is the largest difference from a printed value."""
+    genes = solutions(published)
+    found = {pair: q_of_rows(genes[pair[0]], genes[pair[1]]) for pair in SAID_Q}
+    mean = float(np.mean(list(found.values())))
+    differences = [abs(found[pair] - said) for pair, said in SAID_Q.items()]
+    holds = max(differences) < 1e-12 and round(mean, 2) == SAID_MEAN_Q
+    return "+" if holds else "-", max(*differences, abs(mean - SAID_MEAN_Q)), None, len(found)
+
+
+def printed_over_bound(check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]) -> tuple[str, float, None, int]:
+    """Claim C23: is no printed length of a rival larger than such fields explain?
+
+    A path that never turns back in x or in y counts at most two cells for every cell of the side. Shortest paths among such obstacles do
+    not turn back, so a printed mean above that is more than the fields explain. The effect is the largest printed length over the mean of
+    the least path of cells in our fields; the units are the fields.
+    """
+    ratios, explained, fields = [], [], 0
+    for name, table in (("fields100", "table2"), ("fields200", "table3")):
+        problems = select(results[name].runs, check.get("where", {})).drop_duplicates("problem")
+        fields += len(problems)
+        least = problems.groupby(["route", "obstacles"])["bound8"].mean()
+        rivals = published[table][published[table]["method"] != "mga"]
+        printed = rivals.set_index(["route", "obstacles"])["value"]
+        ratios.append((printed / least.reindex(printed.index)).max())
+        explained.append(bool((printed <= 2 * problems["side"].iloc[0]).all()))
+    return "+" if all(explained) else "-", float(max(ratios)), None, fields
+
+
+def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
+    """What of the printed numbers does not fit the text, other tables or the rule by which lengths are counted.
+
+    A straight diagonal counts 1.5 cells for each of the side, which no path between opposite corners falls below; a path that never turns
+    back counts at most 2. Sentences of Section 4.6 stand beside the tables: PRM the longest, the proposed method cheaper than all others
+    in all cases. Two tables print times of methods of the same name. Section 3.3.1 counts pairs of its example, and Section 3.3 has eta
+    decrease linearly to 0.
+    """
+    rows = []
+    for table, side in (("table2", 100), ("table3", 200)):
+        cells = published[table]
+        for row in cells.itertuples():
+            rule = f"no path between opposite corners counts less than {DIAGONAL:g} cells for each of the side"
+            rows.append(_row(table, _place(row), rule, row.value, DIAGONAL * side, row.value >= DIAGONAL * side))
+            rule = "a path that never turns back counts at most 2 cells for each of the side"
+            rows.append(_row(table, _place(row), rule, row.value, 2 * side, row.value <= 2 * side))
+        for (route, obstacles), column in cells.groupby(["route", "obstacles"]):
+            lengths = column.set_index("method")["value"]
+            place = f"route={route}, obstacles={obstacles}"
+            others = lengths.drop("prm").max()
+            rows.append(
+                _row(table, f"{place}, method=prm", "the text has PRM the longest", lengths["prm"], others, lengths["prm"] > others)
+            )
+            least = lengths.drop("mga").min()
+            rule = "the text has the proposed method the shortest"
+            rows.append(_row(table, f"{place}, method=mga", rule, lengths["mga"], least, lengths["mga"] < least))
+            if table == "table2":
+                rivals = lengths.drop(["mga", "ga"]).min()
+                rule = "the text has GA second"
+                rows.append(_row(table, f"{place}, method=ga", rule, lengths["ga"], rivals, lengths["mga"] < lengths["ga"] < rivals))
+    means = {
+        name: published[name].query("statistic == 'mean'").set_index(["method", "obstacles"])["value"].sort_index()
+        for name in ("table5", "table6")
+    }
+    for table, times in means.items():
+        for (method, obstacles), time in times.drop("mga").items():
+            ours = times["mga", obstacles]
+            rule = "the text has the proposed method cheaper than all others in all cases"
+            rows.append(_row(table, f"method=mga, obstacles={obstacles}, beside {method}", rule, ours, time, ours < time))
+    for obstacles, time in means["table5"]["mga"].items():
+        other = means["table6"]["mga", obstacles]
+        rule = "Tables 5 and 6 print the same time of the proposed method"
+        rows.append(_row("table5", f"method=mga, obstacles={obstacles}", rule, time, other, time == other))
+        time, other = means["table5"]["mga_plain", obstacles], means["table6"]["ga", obstacles]
+        rule = "Tables 5 and 6 print the same time of what both call GA"
+        rows.append(_row("table5", f"method=GA, obstacles={obstacles}", rule, time, other, time == other))
+    genes = solutions(published)
+    for name, found in counts(genes["S1"], genes["S2"]).items():
+        rows.append(
+            _row("table1", f"S1, S2: {name}", "the text counts as it defines", SAID_COUNTS[name], found, SAID_COUNTS[name] == found)
+        )
+    said = q_statistic(SAID_COUNTS["N11"], SAID_COUNTS["N00"], SAID_COUNTS["N10"], SAID_COUNTS["N01"])
+    rows.append(_row("table1", "S1, S2: Q", "Q of the counts in the text is the printed one", SAID_Q["S1", "S2"], said, said == 0))
+    last = ETA * ETA_DECAY**ITERATIONS
+    rows.append(_row("text", "3.3, 4.2.2", f"eta decreases to 0 over the {ITERATIONS} iterations", 0.0, round(last, 4), last < 0.005))
+    half = ETA * (1 - ETA_DECAY ** (ITERATIONS // 2))
+    rule = "eta decreases linearly: half of the way in half of the iterations"
+    rows.append(_row("text", "3.3, 4.2.2", rule, 0.5, round(half / (ETA - last), 4), abs(half / (ETA - last) - 0.5) < 0.005))
+    return rows
+
+
+def _row(item: str, place: str, rule: str, printed: float, limit: float, consistent: bool) -> dict:
+    return {"item": item, "place": place, "rule": rule, "printed": printed, "limit": limit, "consistent": bool(consistent)}
+
+
+def _place(row: tuple) -> str:
+    """Which cell of Table 2 or 3 a printed number is."""
+    return f"route={row.route}, obstacles={row.obstacles}, method={row.method}"
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# The radius of the obstacles, which the paper does not give, from its lengths
+
+
+def printed_times(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
+    """Table 6, for Figure 11; columns: method, obstacles and cpu_s, in seconds on a machine that the paper does not name."""
+    return published["table6"].rename(columns={"value": "cpu_s"})[["method", "obstacles", "cpu_s"]]
+
+
+LARGER_SIDES = (100, 200, 500, 1000, 2000)
+# The workspace and the problem `gravel` of the study.
+GRAVEL = {"radius": 0.004, "clear_ends": 2.0, "unit": "cell"}
+GRAVEL_FIELD = {"side": 500, "start": [0, 0], "target": [500, 500]}
+MORE_OBSTACLES = (25, 50, 100, 200, 400)
+
+
+def memory() -> pd.DataFrame:
+    """What empty fields of some sides take in memory, and one side's with many obstacles; columns: side, obstacles, held (what is),
+    megabytes.
+
+    The occupied cells serve all planners; the certified check has them once more, with all edges and corners of cells.
+    """
+    empty = [(side, 0, Circles((0.0, side, 0.0, side), np.empty((0, 2)), np.empty(0), "cell")) for side in LARGER_SIDES]
+    fields = [(side, count, random_field.from_circles(circles)) for side, count, circles in empty]
+    for count in MORE_OBSTACLES:
+        described = GRAVEL_FIELD | {"obstacles": count, "layout": 0}
+        fields.append((GRAVEL_FIELD["side"], count, random_field.field(GRAVEL, described, "elhoseny2017/gravel")))
+    rows = []
+    for side, count, grid in fields:
+        checked = sum(array.nbytes for array in region(grid) if isinstance(array, np.ndarray))
+        for held, size in (("occupied cells", grid.occupied.nbytes), ("certified check", checked)):
+            rows.append({"side": side, "obstacles": count, "held": held, "megabytes": size / 1e6})
+    return pd.DataFrame(rows)
+
+
+RADII = (0.015, 0.02, 0.025, 0.03, 0.04, 0.05, 0.06)  # shares of the side
+SIDES = {"table2": 100, "table3": 200}
+OBSTACLES = (5, 10, 15, 20, 25)
+
+
+def expected_length(side: int, radius: float, obstacles: np.ndarray | int) -> np.ndarray | float:
+    """Mean of `cells4` of paths between opposite corners that never turn back, in cells; radius: a share of the side.
+
+    Such a path counts 2 cells for each of the side, but 1.5 along the free diagonal. A circle whose centre is uniform in the square leaves
+    the diagonal free with the probability (1 - sqrt(2) radius)^2: the share of the square that is further from it than the radius.
+    """
+    free = (1 - np.sqrt(2) * radius) ** (2 * np.asarray(obstacles))
+    return side * (2 - (2 - DIAGONAL) * free)
+
+
+def _printed_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
+    """Lengths of the proposed method in Tables 2 and 3; columns: side, route, obstacles and value, in cells."""
+    tables = [published[table].assign(side=side) for table, side in SIDES.items()]
+    rows = pd.concat(tables, ignore_index=True)
+    return rows.loc[rows["method"] == "mga", ["side", "route", "obstacles", "value"]]
+
+
+def _errors(printed: pd.DataFrame, side: int, radius: float) -> tuple[float, float]:
+    """Mean absolute difference of the printed lengths of a side from the expected ones, in cells, and as a share of their mean."""
+    own = printed[printed["side"] == side]
+    error = float((own["value"] - expected_length(side, radius, own["obstacles"])).abs().mean())
+    return error, error / own["value"].mean()
+
+
+def radius_fit(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
+    """The printed lengths of the proposed method, those expected with obstacles of some radii, and how far these are off.
+
+    The last rows have the radius of least error, the mean over both sides of the errors relative to the mean length, among all thousandths
+    of the side.
+    """
+    printed = _printed_lengths(published)
+    errors = radius_errors(published).groupby("radius")["relative_error"].mean()
+    best = float(errors.idxmin())
+    rows = []
+    for (side, route), own in printed.groupby(["side", "route"]):
+        lengths = own.set_index("obstacles")["value"]
+        rows.append({"lengths": f"printed, {route}", "side": side, **{f"{n} obstacles": lengths[n] for n in OBSTACLES}})
+    for name, radius in [("expected", radius) for radius in RADII] + [("least error", best)]:
+        for side in SIDES.values():
+            cells, share = _errors(printed, side, radius)
+            expected = {f"{n} obstacles": round(expected_length(side, radius, n), 1) for n in OBSTACLES}
+            error = {"mean error (cell)": round(cells, 2), "mean error / mean length": round(share, 4)}
+            rows.append({"lengths": name, "radius / side": radius, "side": side, **expected, **error})
+    columns = ["lengths", "radius / side", "side", *(f"{n} obstacles" for n in OBSTACLES), "mean error (cell)", "mean error / mean length"]
+    return pd.DataFrame(rows)[columns]
+
+
+def radius_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
+    """Printed and expected lengths against the number of obstacles; columns: side, lengths (which), obstacles, cells4 (in cells)."""
+    printed = _printed_lengths(published).rename(columns={"value": "cells4"})
+    printed["lengths"] = "printed, " + printed.pop("route").str.replace("case", "Case ")
+    counts = np.arange(min(OBSTACLES), max(OBSTACLES) + 1)
+    expected = [
+        pd.DataFrame({"side": side, "lengths": f"R = {radius:g} N", "obstacles": counts, "cells4": expected_length(side, radius, counts)})
+        for side in SIDES.values()
+        for radius in (0.015, 0.025, 0.05)
+    ]
+    return pd.concat([printed, *expected], ignore_index=True)
+
+
+def radius_errors(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
+    """How far the expected lengths are off, against the radius; columns: radius (a share of the side), side, relative_error."""
+    printed = _printed_lengths(published)
+    return pd.DataFrame(
+        [
+            {"radius": thousandths / 1000, "side": side, "relative_error": _errors(printed, side, thousandths / 1000)[1]}
+            for side in SIDES.values()
+            for thousandths in range(5, 81)
+        ]
+    )
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Drawings
+
+
+# Section 2.2.1: the parents of the example.
+PARENTS = ("0011", "0000")
+
+
+def crossover_and_mutation() -> pd.DataFrame:
+    """Figure 1: marks of the sixteen chromosomes of four digits, once with what crossover makes of the parents of Section 2.2.1, and once
+    with what mutation makes of the first; column operator.
+
+    The first two digits decide the row and the last two the column, so that neighbours differ in one digit.
+    """
+    rows, columns = ("10", "00", "01", "11"), ("00", "01", "11", "10")
+    at = {row + column: (i, -j) for i, column in enumerate(columns) for j, row in enumerate(rows)}
+    one, other = PARENTS
+    crossed = {head[:cut] + tail[cut:] for cut in range(1, 4) for head, tail in ((one, other), (other, one))}
+    mutated = {one[:digit] + "10"[int(one[digit])] + one[digit + 1 :] for digit in range(4)}
+    marks = []
+    for operator, parents, children in (("crossover", PARENTS, crossed), ("mutation", PARENTS[:1], mutated)):
+        for chromosome, (x, y) in at.items():
+            role = "accent" if chromosome in parents else "muted" if chromosome in children else "none"
+            label = {"accent": "parent", "muted": "possible child", "none": None}[role]
+            box = {"mark": "cell", "group": chromosome, "role": role, "x": x, "y": y, "width": 0.92, "height": 0.92, "label": label}
+            marks.append(box | {"operator": operator})
+        words = {"mark": "text", "role": "note", "operator": operator}
+        marks += [words | {"x": x, "y": y, "text": " ".join(chromosome)} for chromosome, (x, y) in at.items()]
+    x, y = at[one]
+    for child in sorted(mutated):
+        towards = np.subtract(at[child], (x, y))
+        arrow = {"mark": "arrow", "role": "second", "group": f"to {child}", "operator": "mutation"}
+        tail, head = ((x, y) + share * towards for share in (0.3, 0.68))
+        marks += [arrow | {"x": tail[0], "y": tail[1]}, arrow | {"x": head[0], "y": head[1]}]
+    frame = np.add([[-0.5, 0.5], [3.5, 0.5], [3.5, -0.5], [-0.5, -0.5], [-0.5, 0.5]], (0, at[one][1]))
+    border = {"mark": "line", "role": "first", "group": "subspace", "label": "subspace 00 of the parents", "operator": "crossover"}
+    return pd.DataFrame([*marks, *(border | {"x": x, "y": y} for x, y in frame)])
+
+
+class Verdict(NamedTuple):
+    """What Section 3.2.2 says of a point that is to be a control point: obstacle, too near, or accepted."""
+
+    point: tuple[int, int]
+    word: str
+
+
+def verdicts(points: np.ndarray, grid: Grid, least: float) -> list[Verdict]:
+    """The subprocesses `Obstacles` and `Distance Threshold` of Section 3.2.2 for points (n, 2), one after the other, in units of cells.
+
+    least: the smallest distance of a point from those accepted before.
+    """
+    found: list[Verdict] = []
+    for x, y in points.tolist():
+        accepted = [each.point for each in found if each.word == "accepted"]
+        if grid.occupied[grid.cell_of(x, y)]:
+            word = "obstacle"
+        elif any(math.dist((x, y), point) < least for point in accepted):
+            word = "too near"
+        else:
+            word = "accepted"
+        found.append(Verdict((x, y), word))
+    return found
+
+
+def curve_through(points: list[tuple[int, int]], start: tuple[int, int], target: tuple[int, int]) -> Path:
+    """The Bezier curve of control points, which are joined by their projection on the line from start to target."""
+    along = np.subtract(target, start)
+    order = sorted(points, key=lambda point: float(np.dot(np.subtract(point, start), along)))
+    return Path("bezier", np.array([start, *order, target], dtype=float))
+
+
+def is_free(path: Path, grid: Grid) -> bool:
+    """The subprocess `Valid Path` of Section 3.2.2: whether no cell that the curve touches is occupied."""
+    return occupied_cells(*touched_cells(*samples(path, grid)), grid.occupied) == 0
+
+
+# Fig. 3: 25 places. Its field and its points are not told; here one circle covers the cell in the middle.
+CHROMOSOME_SIDE = 4
+CHROMOSOME_POINTS = 2
+
+
+def chromosome() -> pd.DataFrame:
+    """Figure 3: marks of a field of 25 places, the curve of a valid chromosome in it, and below it the chromosome's genes.
+
+    Every cell is a gene; its number grows by one upwards, and by five to the right. The chromosome is the first valid one of random ones
+    with two control points.
+    """
+    side = CHROMOSOME_SIDE
+    grid = random_field.from_circles(Circles((0, side, 0, side), np.array([[2.0, 2.0]]), np.array([0.8]), "cell"))
+    start, target = (0, 0), (side, side)
+    rng = np.random.default_rng(0)
+    path, points = None, []
+    while path is None or not is_free(path, grid):
+        drawn = verdicts(rng.integers(0, side + 1, (CHROMOSOME_POINTS, 2)), grid, LEAST_DISTANCE)
+        points = [each.point for each in drawn if each.word == "accepted" and each.point not in (start, target)]
+        path = curve_through(points, start, target) if len(points) == CHROMOSOME_POINTS else None
+    marks = []
+    words = {"mark": "text", "role": "note"}
+    gene_width, top = 0.44, 1.4
+    for gene, (x, y) in enumerate(itertools.product(range(side + 1), repeat=2)):
+        value = -1 if grid.occupied[y, x] else int((x, y) in points)
+        role = {-1: "obstacle", 1: "accent", 0: "none"}[value]
+        label = {-1: "obstacle, -1", 1: "control point, 1", 0: None}[value]
+        box = {"mark": "cell", "group": f"gene {gene}", "role": role, "label": label, "gene": gene, "value": value}
+        marks.append(box | {"x": x, "y": y + top, "width": 1.0, "height": 1.0})
+        place = side / 2 + gene_width * (gene - 12)
+        marks.append(box | {"x": place, "y": 0.0, "width": gene_width, "height": gene_width})
+        marks.append(words | {"x": place, "y": 0.0, "text": str(value)})
+        marks.append(words | {"x": x + 0.22, "y": y + top - 0.3, "text": str(gene)})
+        if y == 0 or gene == (side + 1) ** 2 - 1:
+            marks.append(words | {"x": place, "y": -0.45, "text": str(gene)})
+    x, y = grid.in_units(np.column_stack(samples(path, grid))).T
+    marks += [{"mark": "line", "role": "second", "group": "curve", "label": "Bezier curve", "x": a, "y": b + top} for a, b in zip(x, y)]
+    for role, (a, b) in (("start", start), ("target", target)):
+        marks.append({"mark": "dots", "role": role, "group": role, "label": role, "x": a, "y": b + top})
+    return pd.DataFrame(marks)
+
+
+# Fig. 4: ten points, three obstacles and the least distance are told; the field is that of Fig. 2, the radius that of its circles.
+LEAST_DISTANCE = 2.5
+CANDIDATES = 10
+VALIDATION = {"radius": 0.05, "clear_ends": 2.0, "unit": "cell"}
+VALIDATED = {"side": 20, "start": (4, 0), "target": (16, 18), "obstacles": 3}
+
+
+def validation() -> pd.DataFrame:
+    """Figure 4: marks of ten random points in a field, tested one after the other, the circles of the least distance around those that may
+    be control points, and their curve. Further columns: candidate (its number) and verdict.
+
+    Of random fields and points, those of the first number are drawn in which each rule rejects a point and the curve is free.
+    """
+    start, target = VALIDATED["start"], VALIDATED["target"]
+    for number in itertools.count():
+        grid = random_field.field(VALIDATION, VALIDATED | {"layout": number}, "elhoseny2017/figure4")
+        points = np.random.default_rng(number).integers(0, VALIDATED["side"] + 1, (CANDIDATES, 2))
+        found = verdicts(points, grid, LEAST_DISTANCE)
+        path = curve_through([each.point for each in found if each.word == "accepted"], start, target)
+        if {each.word for each in found} == {"obstacle", "too near", "accepted"} and is_free(path, grid):
+            break
+    angles = np.linspace(0, 2 * math.pi, 61)
+    marks = [
+        {"mark": "circle", "role": "obstacle", "group": "obstacles", "label": "obstacle", "x": x, "y": y, "radius": radius}
+        for (x, y), radius in zip(grid.drawn.centres.tolist(), grid.drawn.radii)
+    ]
+    looks = {
+        "accepted": ("first", "control point"),
+        "obstacle": ("accent", "on an obstacle"),
+        "too near": ("second", "too near to another"),
+    }
+    for candidate, (point, word) in enumerate(found, 1):
+        if word == "accepted":
+            ring = {"mark": "line", "role": "muted", "group": f"ring {candidate}", "label": f"distance r = {LEAST_DISTANCE:g}"}
+            circle = np.array(point) + LEAST_DISTANCE * np.column_stack([np.cos(angles), np.sin(angles)])
+            marks += [ring | {"x": x, "y": y} for x, y in circle.tolist()]
+    x, y = grid.in_units(np.column_stack(samples(path, grid))).T
+    marks += [{"mark": "line", "role": "third", "group": "curve", "label": "Bezier curve", "x": a, "y": b} for a, b in zip(x, y)]
+    for candidate, (point, word) in enumerate(found, 1):
+        role, label = looks[word]
+        dot = {"mark": "dots", "role": role, "group": word, "label": label, "candidate": candidate, "verdict": word}
+        marks.append(dot | {"x": point[0], "y": point[1]})
+        marks.append({"mark": "text", "role": "note", "x": point[0] - 0.8, "y": point[1] + 0.7, "text": str(candidate)})
+    for role, (x, y) in (("start", start), ("target", target)):
+        marks.append({"mark": "dots", "role": role, "group": role, "label": role, "x": x, "y": y})
+    return pd.DataFrame(marks)

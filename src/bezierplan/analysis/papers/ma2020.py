@@ -1,0 +1,203 @@
+"""ma2020: its drawings, what can be computed from its printed numbers alone, the claim about curvature, and its audit."""
+
+import math
+
+import numpy as np
+import pandas as pd
+
+from bezierplan.analysis.results import Results, path_of, select
+from bezierplan.geometry import curves
+from bezierplan.planners.parts.genetic import swap_tails
+
+BITS = 9  # of a cell number of 20 x 20 cells (Section 4)
+SIDE = 20  # cells from start to target, along x and along y (Section 4)
+STRAIGHT = SIDE * math.sqrt(2)
+
+# Methods that plan on cells.
+LATTICE_METHODS = ("aco", "ga", "aco_ga", "asfa_ga")
+
+# A length s + d sqrt(2) is met if it is no farther than this, in cells: the paper prints four decimals, of a root that may be rounded to
+# 1.414, and no printed minimum of the four lattice methods is farther.
+LATTICE_TOLERANCE = 0.0045
+
+# A time that is at most so many times another one is slightly longer.
+SLIGHTLY = 1.5
+
+# The five points of Fig. 1 are a picture; these are points of about such a zigzag.
+ZIGZAG = np.array([(0, 0), (1.5, 4), (5, 3), (6, 7.5), (10, 6), (11, 10), (14, 12)], dtype=float)
+
+# Two chromosomes of ten genes, cut as in Fig. 2 between the seventh gene and the eighth.
+PARENTS = np.array([[380, 341, 322, 283, 264, 205, 167, 128, 69, 39], [361, 342, 303, 245, 206, 187, 149, 110, 72, 18]])
+CUT = 7
+
+# Parameters at which the speed of a curve is taken, and the share of its greatest below which it stands still.
+SPEED_SAMPLES = 20_001
+STILL = 1e-6
+
+
+def corners_and_curve() -> pd.DataFrame:
+    """Marks of Figure 1, column `drawn`: a path with corners, the Bezier curve with these as its control points, and both."""
+    steps = curves.sample_matrix("bezier", len(ZIGZAG), 201) @ ZIGZAG
+    corners = _line(ZIGZAG, "second", "path with corners")
+    curve = _line(steps, "first", "Bezier curve")
+    points = _dots(ZIGZAG[1:-1], "third", "corners P1 to P5")
+    ends = pd.concat([_dots(ZIGZAG[:1], "start", "start S"), _dots(ZIGZAG[-1:], "target", "target T")])
+    parts = {"corners": [corners, points, ends], "curve": [curve, points, ends], "both": [corners, curve, points, ends]}
+    return pd.concat([pd.concat(marks).assign(drawn=name) for name, marks in parts.items()], ignore_index=True)
+
+
+def crossover() -> pd.DataFrame:
+    """Marks of Figure 2, column `drawn`: two chromosomes as rows of cell numbers before and after the crossover's tails are swapped."""
+    children = PARENTS.copy()
+    swap_tails(*children, BITS * CUT, BITS)
+    frames = []
+    for drawn, rows in (("before", PARENTS), ("after", children)):
+        for height, row in zip((1.3, 0.0), rows):
+            # A gene keeps the colour of the chromosome that it began in.
+            for place, gene in enumerate(row):
+                role = "accent" if gene == PARENTS[0, place] else "muted"
+                box = {"mark": "cell", "role": role, "x": place, "y": height, "width": 0.96, "height": 0.8}
+                frames.append(
+                    pd.DataFrame([box, {"mark": "text", "role": "note", "x": place, "y": height, "text": str(gene)}]).assign(drawn=drawn)
+                )
+        cut = _line(np.array([(CUT - 0.5, -0.7), (CUT - 0.5, 2.0)]), "second", "cut between genes 7 and 8")
+        frames.append(cut.assign(drawn=drawn))
+    return pd.concat(frames, ignore_index=True)
+
+
+def _line(points: np.ndarray, role: str, label: str) -> pd.DataFrame:
+    return _marks("line", points, role, label)
+
+
+def _dots(points: np.ndarray, role: str, label: str) -> pd.DataFrame:
+    return _marks("dots", points, role, label)
+
+
+def _marks(mark: str, points: np.ndarray, role: str, label: str) -> pd.DataFrame:
+    return pd.DataFrame({"mark": mark, "group": label, "role": role, "x": points[:, 0], "y": points[:, 1], "label": label})
+
+
+def nearest_lattice_length(length: float) -> tuple[int, int]:
+    """Straight and diagonal moves of the paths of 8 neighbours from corner to corner of the map whose length is nearest to a given one.
+
+    The half diagonals from start and to target count as one diagonal move. The straight moves are even in number, and with s straight and
+    d diagonal moves s + 2 d is at least twice the side.
+    """
+    found = []
+    for diagonal in range(1, int(length / math.sqrt(2)) + 2):
+        for straight in range(max(0, 2 * SIDE - 2 * diagonal), int(length) + 2, 2):
+            found.append((abs(straight + diagonal * math.sqrt(2) - length), straight, diagonal))
+    return min(found)[1:]
+
+
+def lattice_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
+    """Printed shortest and longest lengths beside the nearest length of a path of 8 neighbours.
+
+    Columns: workspace, method, statistic, printed, straight moves, diagonal moves, lattice length, distance (cells), chance (that a length
+    drawn at random is as near, in the range, in whole cells, of the printed lengths of this statistic of the lattice methods), met.
+    """
+    lengths = pd.concat([published["table1"], published["table2"]])
+    lengths = lengths[(lengths["metric"] == "length") & (lengths["statistic"] != "mean")]
+    rows = []
+    for statistic, own in lengths.groupby("statistic", sort=False):
+        rivals = own.loc[own["method"].isin(LATTICE_METHODS), "value"]
+        low, high = math.floor(rivals.min()), math.ceil(rivals.max())
+        for row in own.itertuples():
+            straight, diagonal = nearest_lattice_length(row.value)
+            length = straight + diagonal * math.sqrt(2)
+            distance = abs(row.value - length)
+            rows.append(
+                {
+                    "workspace": row.workspace,
+                    "method": row.method,
+                    "statistic": statistic,
+                    "printed": f"{row.value:.4f}",
+                    "straight moves": straight,
+                    "diagonal moves": diagonal,
+                    "lattice length": f"{length:.4f}",
+                    "distance": f"{distance:.4f}",
+                    "chance": f"{chance_of_lattice(low, high, distance):.3f}",
+                    "met": "yes" if distance <= LATTICE_TOLERANCE else "no",
+                }
+            )
+    return pd.DataFrame(rows)
+
+
+def chance_of_lattice(low: float, high: float, tolerance: float) -> float:
+    """The probability that a length drawn uniformly from an interval is within a tolerance of one of a path of 8 neighbours."""
+    diagonal, straight = np.meshgrid(np.arange(1, int(high)), np.arange(0, int(high) + 2, 2))
+    lengths = np.sort((straight + diagonal * math.sqrt(2))[straight + 2 * diagonal >= 2 * SIDE])
+    starts, ends = np.clip(lengths - tolerance, low, high), np.clip(lengths + tolerance, low, high)
+    starts = np.maximum(starts, np.maximum.accumulate(np.append(low, ends[:-1])))
+    return float(np.maximum(ends - starts, 0).sum() / (high - low))
+
+
+def continuous_curvature(
+    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]
+) -> tuple[str, float, tuple[float, float] | None, int]:
+    """Claim C20: is every feasible path one polynomial piece that stands still nowhere? Then its curvature is continuous.
+
+    The effect is the largest jump of curvature at the joints of pieces, which a path of one piece has none of.
+    """
+    runs = select(results[check["experiment"]].runs, check.get("where", {}))
+    paths = [path_of(run) for _, run in runs[runs["feasible"].astype(bool)].iterrows()]
+    jump = max((curves.curvature_jump(path) for path in paths), default=math.nan)
+    moving = all(_least_speed(curves.bezier_pieces(path)) > STILL for path in paths)
+    return "+" if paths and jump == 0 and moving else "-" if paths else "?", jump, None, len(paths)
+
+
+def _least_speed(pieces: np.ndarray) -> float:
+    """Least speed of Bezier pieces (n, degree + 1, 2) as a share of the greatest."""
+    weights = curves.bernstein(pieces.shape[1] - 2, np.linspace(0, 1, SPEED_SAMPLES))
+    speed = np.hypot(*np.moveaxis(weights @ np.diff(pieces, axis=1), -1, 0))
+    return float(speed.min() / speed.max())
+
+
+def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
+    """What of the printed numbers cannot be, or does not fit what is printed elsewhere.
+
+    Every shortest and longest path of the four lattice methods would have the length of a path of 8 neighbours if they plan on cells: all
+    minima have, the maxima have not. No path is shorter than the straight line. Shares of occupied cells are whole numbers of cells. What
+    the text says of lengths and times stands beside the tables.
+    """
+    tables = {name: published[name] for name in ("table1", "table2")}
+    rows = []
+    for name, table in tables.items():
+        lengths = table[table["metric"] == "length"]
+        for row in lengths.itertuples():
+            rows.append(_row(name, row, "no path is shorter than the straight line", STRAIGHT, row.value >= STRAIGHT))
+        for row in lengths[lengths["method"].isin(LATTICE_METHODS) & (lengths["statistic"] != "mean")].itertuples():
+            straight, diagonal = nearest_lattice_length(row.value)
+            nearest = straight + diagonal * math.sqrt(2)
+            rule = "a path of 8 neighbours has a length s + d sqrt(2) with s even"
+            rows.append(_row(name, row, rule, nearest, abs(row.value - nearest) <= LATTICE_TOLERANCE))
+    mean = _means(tables["table1"], "length")
+    for method in ("bca", "bca_q"):
+        for rival in LATTICE_METHODS:
+            rule = f"the text (4.1 (3)) has the mean length of {method} below that of {rival}"
+            rows.append(_said("table1", f"method={method}, metric=length", rule, mean[method], mean[rival], mean[method] < mean[rival]))
+    time = _means(tables["table2"], "cpu_s")
+    for rival in ("aco", "ga", "aco_ga"):
+        rule = f"the text (4.2) has the time of bca slightly above that of {rival}, here: at most {SLIGHTLY} times"
+        limit = SLIGHTLY * time[rival]
+        rows.append(_said("table2", "method=bca, metric=cpu_s", rule, time["bca"], limit, time["bca"] <= limit))
+    parameters = published["parameters"].set_index(["workspace", "parameter"])["value"]
+    for workspace in ("environment1", "environment2"):
+        cells = parameters[workspace, "obstacle_coverage"] / 100 * parameters[workspace, "grid_size"] ** 2
+        rule = "a share of the cells is a whole number of cells"
+        rows.append(_said("parameters", f"workspace={workspace}", rule, cells, round(cells), abs(cells - round(cells)) < 1e-9))
+    return rows
+
+
+def _means(table: pd.DataFrame, metric: str) -> dict[str, float]:
+    """Printed means of a metric, by method."""
+    means = table[(table["metric"] == metric) & (table["statistic"] == "mean")]
+    return dict(zip(means["method"], means["value"]))
+
+
+def _row(item: str, row: tuple, rule: str, limit: float, consistent: bool) -> dict:
+    return _said(item, f"method={row.method}, metric={row.metric}, statistic={row.statistic}", rule, row.value, limit, consistent)
+
+
+def _said(item: str, place: str, rule: str, printed: float, limit: float, consistent: bool) -> dict:
+    return {"item": item, "place": place, "rule": rule, "printed": printed, "limit": limit, "consistent": bool(consistent)}

@@ -1,0 +1,445 @@
+"""tharwat2018: the claims that a comparison of runs cannot judge, what its figures without runs draw, and an audit of its tables and text.
+
+Numbers of equations, sections, tables and figures are the paper's.
+"""
+
+import itertools
+import math
+
+import numpy as np
+import pandas as pd
+
+from bezierplan.analysis import metrics, statistics
+from bezierplan.analysis.claim_effects import LEAST_WITHOUT_EXAMPLE
+from bezierplan.analysis.claim_tests import SURE
+from bezierplan.analysis.results import Results, select
+from bezierplan.geometry import bounds, curves
+from bezierplan.planners.parts import chaotic_maps
+from bezierplan.workspaces.problem import Problem, Workspace
+
+# Parameters of the maps in common use, where the paper gives a range or nothing.
+PARAMETERS = chaotic_maps.Parameters(singer_mu=1.07, singer_x4=13.302875, sine_a=4.0, piecewise_p=0.4, sinusoidal_a=2.3)
+
+# The three control points (x, y), in units, of the best single Bezier curves that are known, by workspace: of 300 long runs the ends were
+# improved by sequential quadratic programming. Their lengths are 7.7263 and 7.5180.
+BEST_KNOWN = {
+    "equal": ((-0.4768, 4.5057), (1.8022, 0.8887), (3.1746, 4.9328)),
+    "public": ((0.7197, 2.1662), (-0.1836, 2.8501), (2.2284, 1.1334)),
+}
+# Such curves are sought from so many random ones, first with few samples; the best of these ends are improved with all samples.
+STARTS, FEW_SAMPLES, IMPROVED = 40, 34, 10
+SAMPLES = 100  # of a path, as the planner takes
+MOST_POINTS = 4  # control points of the best curves that are sought
+
+MOVED = 1  # which of them moves in Figures 10 and 11: the middle one
+GRID = 201  # places along each side of the field
+
+START, TARGET = (0.0, 0.0), (4.0, 6.0)  # Section 5.1, in units
+
+# Figure 2: the swarm's best place G and two particles in one dimension, each with its place x, velocity v, best place p, r1 and r2.
+# The places are an example; C1 and C2 are those of Table 2.
+G = 8.0
+MOVED_PARTICLES = ((1.0, 1.5, 3.0, 0.5, 0.3), (13.0, -1.0, 11.5, 0.6, 0.25))
+INERTIA, C1, C2 = 1.0, 1.5, 1.5
+
+SEQUENCES = 100  # of the Gauss map
+FIRST_VALUES = 10  # left out of each of them
+
+# Section 5.1: of so many rows each table's ranks are taken; Table 6 ranks the numbers of obstacles.
+RANKED = {"table3": 8, "table4": 8, "table5": 5, "table6": 10}
+PARTICLES = 20  # Table 2
+REPEATS = 10  # Section 5.1
+WHISKER = 1.5  # interquartile ranges from a box to the ends of its whiskers
+CONVERGED = 0.01  # runs that end so much above the shortest path of their class, as a share, have come to its optimum
+
+# The maps of Section 3.3, in its order.
+CHAOTIC = chaotic_maps.MAPS[:8]
+
+# What the text says of best values: (place, method said to be better, method said to be worse).
+SAID = (
+    ("5.3, Fig 8", "cpso1_singer", "cpso1_logistic"),
+    ("5.3, Fig 8", "cpso1_logistic", "cpso1_sine"),
+    *(
+        ("5.3, Fig 8", f"cpso1_{name}", f"cpso1_{worst}")
+        for name in CHAOTIC
+        for worst in ("tent", "piecewise")
+        if name not in ("tent", "piecewise")
+    ),
+    *(("5.4", better, "pso") for better in ("cpso1_singer", "cpso1_sine", "cpso2_singer", "cpso2_sine")),
+    *(("5.4, 5.6, 6", f"cpso2_{name}", f"cpso1_{name}") for name in CHAOTIC),
+)
+
+
+def chaotic_sequences() -> pd.DataFrame:
+    """Figure 3: a row for each map of the paper and iteration; columns: map, iteration (1 to 500), value. One random start for each map."""
+    rng = np.random.default_rng(0)
+    frames = []
+    for name in CHAOTIC:
+        start = chaotic_maps.random_start(rng, name, PARAMETERS)
+        values = chaotic_maps.sequence(name, start, 500, PARAMETERS).values
+        frames.append(pd.DataFrame({"map": name, "iteration": np.arange(1, 501), "value": values}))
+    return pd.concat(frames, ignore_index=True)
+
+
+def ends(workspace: Workspace) -> pd.DataFrame:
+    """Figure 5: marks of start and target, whatever the circles."""
+    dots = [("dots", role, role, *place) for role, place in (("start", START), ("target", TARGET))]
+    return pd.DataFrame(dots, columns=["mark", "role", "label", "x", "y"])
+
+
+def movement() -> pd.DataFrame:
+    """Figure 2: marks of two particles that move in one dimension, the three parts of each velocity (eq. 8) from tail to head.
+
+    Further columns: part (of the velocity, its name) and value (its signed length).
+    """
+    rows = []
+    for number, (x, v, p, r1, r2) in enumerate(MOVED_PARTICLES):
+        line = -5.0 * number  # the height at which the particle moves
+        parts = {"w v": INERTIA * v, "C1 r1 (p - x)": C1 * r1 * (p - x), "C2 r2 (G - x)": C2 * r2 * (G - x)}
+        moved = x + sum(parts.values())
+        names = zip(("inertia", "cognition", "social part"), ("third", "first", "second"), parts.items(), strict=True)
+        aside = math.copysign(1.0, G - x)  # words stand beyond the heads
+        rows.append({"mark": "line", "role": "muted", "group": f"line {number}", "x": -1.0, "y": line})
+        rows.append({"mark": "line", "role": "muted", "group": f"line {number}", "x": 15.0, "y": line})
+        tail = x
+        for height, (name, role, (formula, part)) in enumerate(names, start=1):
+            arrow = {"mark": "arrow", "role": role, "group": f"{name} {number}", "y": line + 0.9 * height, "part": name, "value": part}
+            rows += [arrow | {"x": tail}, arrow | {"x": tail + part}]
+            tail += part
+            words = {"mark": "text", "role": "note", "y": line + 0.9 * height, "text": f"{name} {formula}"}
+            rows.append(words | {"x": moved + aside * 4.3})
+        for role, place, words in (("first", x, "x"), ("third", p, "p"), ("start", moved, "new x"), ("target", G, "G")):
+            label = {"first": "place", "third": "its best place", "start": "next place", "target": "the swarm's best place"}[role]
+            rows.append({"mark": "dots", "role": role, "group": f"{words} {number}", "label": label, "x": place, "y": line})
+            if words != "new x":
+                rows.append({"mark": "text", "role": "note", "x": place, "y": line - 0.75, "text": words})
+    return pd.DataFrame(rows)
+
+
+def flow_chart() -> pd.DataFrame:
+    """Figure 4: marks of a flow chart of the method (Section 4, Algorithm 1), boxes from top to bottom and arrows between them."""
+    middle, left, right, width, height, step = 0.0, -62.0, 62.0, 190.0, 22.0, 36.0
+    steps = [
+        ("muted", "particles at random places, velocities 0"),
+        ("none", "particle: control points of a curve (eq. 1)"),
+        ("none", "fitness: length and collisions (eqs. 19 to 22)"),
+        ("none", "best place p of each, best place G of all"),
+        ("accent", "last iteration, or G as ten iterations ago?"),
+        ("none", "next number ζ of the map (eqs. 9 to 16)"),
+    ]
+    boxes = [(middle, -step * i, width, role, text) for i, (role, text) in enumerate(steps)]
+    boxes += [
+        (left, -step * 6, 115.0, "accent", "CPSO-I: ζ for r1 (eq. 17)"),
+        (right, -step * 6, 115.0, "accent", "CPSO-II: ζ for r2 (eq. 18)"),
+        (middle, -step * 7, width, "none", "move all particles within the field (eqs. 7, 8)"),
+        (middle, -step * 8, width, "muted", "path of G"),
+    ]
+    below, above = -height / 2, height / 2
+    edge = left - 65.0
+    ways = [
+        *([(middle, -step * i + below), (middle, -step * (i + 1) + above)] for i in range(5)),
+        *([(side, -step * 5 + below), (side, -step * 6 + above)] for side in (left, right)),
+        *([(side, -step * 6 + below), (side, -step * 7 + above)] for side in (left, right)),
+        [(-width / 2, -step * 7), (edge, -step * 7), (edge, -step), (-width / 2, -step)],
+        [(width / 2, -step * 4), (-edge, -step * 4), (-edge, -step * 8), (width / 2, -step * 8)],
+    ]
+    rows = [{"mark": "cell", "role": role, "x": x, "y": y, "width": wide, "height": height} for x, y, wide, role, _ in boxes]
+    rows += [{"mark": "text", "role": "note", "x": x, "y": y, "text": text} for x, y, _, _, text in boxes]
+    for number, way in enumerate(ways):
+        line, arrow = {"mark": "line", "role": "note", "group": number}, {"mark": "arrow", "role": "note", "group": number}
+        rows += [line | {"x": x, "y": y} for x, y in way[:-1]] if len(way) > 2 else []
+        rows += [arrow | {"x": x, "y": y} for x, y in way[-2:]]
+    rows += [
+        {"mark": "text", "role": "note", "x": -edge - 14, "y": -step * 4 + 7, "text": "yes"},
+        {"mark": "text", "role": "note", "x": middle + 12, "y": -step * 4.5, "text": "no"},
+    ]
+    return pd.DataFrame(rows)
+
+
+def gauss_above(
+    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]
+) -> tuple[str, float, tuple[float, float] | None, int]:
+    """Claim C39: the share of values above 0.7 in long sequences of the Gauss map, their first values left out.
+
+    It has a limit, 1 - log2(1.7) = 0.234, since the map's values have the density 1 / ((1 + x) ln 2). The interval is that of the mean over
+    sequences, each of which is one unit.
+    """
+    rng = np.random.default_rng(0)
+    shares = []
+    for _ in range(SEQUENCES):
+        start = chaotic_maps.random_start(rng, "gauss", PARAMETERS)
+        values = chaotic_maps.sequence("gauss", start, 1000, PARAMETERS).values[FIRST_VALUES:]
+        shares.append(np.mean(values > 0.7))
+    share = float(np.mean(shares))
+    reach = 1.96 * float(np.std(shares, ddof=1)) / math.sqrt(SEQUENCES)
+    return "-" if share > 0 else "+", share, (share - reach, share + reach), SEQUENCES
+
+
+def bowl_with_local_minima(
+    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]
+) -> tuple[str, float, tuple[float, float] | None, int]:
+    """Claim C16: is the fitness over one control point a bowl, and are there several local minima in it?
+
+    The effect is Spearman's correlation, over the nodes of `landscape`, of the fitness with the distance to the best node. A bowl has more
+    than 0.5, and a second strict minimum makes several: + if both hold, - if either fails.
+    """
+    from scipy import stats
+
+    found = results[check["experiment"]]
+    surface = _landscape(found._replace(runs=select(found.runs, check.get("where", {}))))
+    best = surface.loc[surface["fitness"].idxmin()]
+    distance = np.hypot(surface["x"] - best["x"], surface["y"] - best["y"])
+    correlation = float(stats.spearmanr(surface["fitness"], distance).statistic)
+    minima = int(local_minima(surface["fitness"].to_numpy().reshape(GRID, GRID)).sum())
+    return "+" if correlation > 0.5 and minima > 1 else "-", correlation, None, len(surface)
+
+
+def fitness_landscape(results: Results) -> pd.DataFrame:
+    """Figures 10 to 12: `landscape` of the problem of runs, with the settings in force.
+
+    Columns: part, x, y, objective; parts: node, minimum (a strict local one), lowest (the lowest node), fixed (control points that stay).
+    """
+    surface = _landscape(results).rename(columns={"fitness": "objective"})
+    minima = surface[local_minima(surface["objective"].to_numpy().reshape(GRID, GRID)).ravel()]
+    stay = np.delete(BEST_KNOWN[results.runs["workspace"].iloc[0]], MOVED, axis=0)
+    parts = {
+        "node": surface,
+        "minimum": minima,
+        "lowest": surface.loc[[surface["objective"].idxmin()]],
+        "fixed": pd.DataFrame(stay, columns=["x", "y"]),
+    }
+    return pd.concat([frame.assign(part=part) for part, frame in parts.items()], ignore_index=True)
+
+
+def _landscape(results: Results) -> pd.DataFrame:
+    """`landscape` with the settings of the first run of the swarms."""
+    run = results.runs[results.runs["planner"] == "chaotic_pso"].iloc[0]
+    return landscape(results.problems[run["problem"]], run["workspace"], int(run["samples"]), float(run["beta"]))
+
+
+def best_curves(workspace: Workspace) -> pd.DataFrame:
+    """Lengths, in units, of the best Bezier curves found with one control point and more, and of the exact shortest path.
+
+    Columns: path (which of the two), control_points, length (of `SAMPLES` samples, of the exact path its own).
+    """
+    problem = Problem("", workspace, START, TARGET)
+    numbers = range(1, MOST_POINTS + 1)
+    rows = [("best Bezier curve found", n, best_curve(problem, n, SAMPLES)[0]) for n in numbers]
+    rows += [("shortest path possible", n, bounds.shortest_path(problem).length) for n in numbers]
+    return pd.DataFrame(rows, columns=["path", "control_points", "length"])
+
+
+def best_curve(problem: Problem, control_points: int, samples: int) -> tuple[float, np.ndarray]:
+    """Length, in units, and control points (control_points + 2, 2) of the shortest free Bezier curve that a search from many starts finds.
+
+    Length and freedom are those of so many samples. The starts, random curves about the straight line and across the field by turns, are
+    the same in every call. Raises ValueError if none of them leads to a free curve.
+    """
+    rng = np.random.default_rng(0)
+    x_low, x_high, y_low, y_high = problem.workspace.bounds
+    line = np.linspace(problem.start, problem.target, control_points + 2)[1:-1]
+    reach = math.dist(problem.start, problem.target) / 3
+    found = []
+    for start in range(STARTS):
+        near = line + rng.normal(0, reach, line.shape)
+        anywhere = rng.uniform((x_low, y_low), (x_high, y_high), line.shape)
+        found.append(_shortened(problem, near if start % 2 else anywhere, FEW_SAMPLES))
+    best = [_shortened(problem, points[1:-1], samples) for _, points in sorted(found, key=lambda each: each[0])[:IMPROVED]]
+    length, points = min(best, key=lambda each: each[0])
+    if math.isinf(length):
+        raise ValueError(f"no free curve of {control_points} control points found from {STARTS} starts")
+    return length, points
+
+
+def _shortened(problem: Problem, free: np.ndarray, samples: int) -> tuple[float, np.ndarray]:
+    """The end of a sequential quadratic programme from free control points (n, 2): length, infinite if it collides, and all points."""
+    from scipy import optimize
+
+    basis = curves.sample_matrix("bezier", len(free) + 2, samples)
+    ends, weights = basis[:, [0, -1]] @ np.array([problem.start, problem.target]), basis[:, 1:-1]
+    steps = np.diff(weights, axis=0)
+    centres, radii = problem.workspace.centres, problem.workspace.radii
+
+    def places(z: np.ndarray) -> np.ndarray:
+        return ends + weights @ z.reshape(free.shape)
+
+    def length(z: np.ndarray) -> tuple[float, np.ndarray]:
+        chords = np.diff(places(z), axis=0)
+        lengths = np.hypot(*chords.T)
+        return lengths.sum(), (steps.T @ (chords / np.maximum(lengths, 1e-12)[:, None])).ravel()
+
+    def outside(z: np.ndarray) -> np.ndarray:
+        return (((places(z)[:, None] - centres) ** 2).sum(axis=2) - radii**2).ravel()
+
+    def outside_slope(z: np.ndarray) -> np.ndarray:
+        return np.einsum("soj,sk->sokj", 2 * (places(z)[:, None] - centres), weights).reshape(-1, z.size)
+
+    rule = {"type": "ineq", "fun": outside, "jac": outside_slope}
+    end = optimize.minimize(length, free.ravel(), jac=True, method="SLSQP", constraints=rule, options={"maxiter": 200, "ftol": 1e-9})
+    free_curve = outside(end.x).min() >= -1e-7
+    return float(end.fun) if free_curve else math.inf, np.vstack([problem.start, end.x.reshape(free.shape), problem.target])
+
+
+def landscape(problem: Problem, workspace: str, samples: int, beta: float) -> pd.DataFrame:
+    """Figures 10 and 11: fitness of a Bezier curve of which one control point moves over the field, the others as in `BEST_KNOWN`.
+
+    One row a node of a square grid, y changing fastest; columns: x, y and fitness, in units. samples, beta: settings of the planner.
+    """
+    x_low, x_high, y_low, y_high = problem.workspace.bounds
+    x, y = np.meshgrid(np.linspace(x_low, x_high, GRID), np.linspace(y_low, y_high, GRID), indexing="ij")
+    paths = np.empty((GRID * GRID, len(BEST_KNOWN[workspace]) + 2, 2))
+    paths[:] = [problem.start, *BEST_KNOWN[workspace], problem.target]
+    paths[:, MOVED + 1] = np.stack([x.ravel(), y.ravel()], axis=1)
+    values = [fitness(part, problem, samples, beta) for part in np.array_split(paths, GRID)]  # of parts, to save memory
+    return pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "fitness": np.concatenate(values)})
+
+
+def fitness(paths: np.ndarray, problem: Problem, samples: int, beta: float) -> np.ndarray:
+    """Fitness (n,), in units, of Bezier curves with control points (n, k, 2), start and target included: length L (1 + beta V).
+
+    The violation V is, summed over circles, the mean depth of the samples below a circle's edge as a share of its radius (eqs. 19 to 22,
+    whose penalty is not printed).
+    """
+    points = curves.sample_matrix("bezier", paths.shape[1], samples) @ paths
+    length = np.hypot(*np.moveaxis(np.diff(points, axis=1), -1, 0)).sum(axis=1)
+    violation = np.zeros(len(paths))
+    for centre, radius in zip(problem.workspace.centres, problem.workspace.radii):
+        distance = np.hypot(*np.moveaxis(points - centre, -1, 0))
+        violation += np.maximum(1 - distance / radius, 0).mean(axis=1)
+    return length * (1 + beta * violation)
+
+
+def local_minima(values: np.ndarray) -> np.ndarray:
+    """Which values of a grid (n, m) are below all their eight neighbours, those at its edge never: (n, m)."""
+    inner = values[1:-1, 1:-1]
+    rows, columns = inner.shape
+    lower = np.ones(inner.shape, dtype=bool)
+    for i in range(3):
+        for j in range(3):
+            if (i, j) != (1, 1):
+                lower &= inner < values[i : i + rows, j : j + columns]
+    return np.pad(lower, 1)
+
+
+def several_homotopy_classes(
+    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]
+) -> tuple[str, float, tuple[float, float] | None, int]:
+    """Claim C17: in how many classes runs converge; two paths of one class pass every circle on the same side.
+
+    A class counts if two runs or more end in it within 1 % of the shortest path that any run has there: they have come to the same optimum.
+    """
+    found = results[check["experiment"]]
+    runs = select(found.runs, check.get("where", {}))
+    classes = metrics.values(runs, "homotopy", found.problems)
+    least = runs.groupby(classes)["length"].transform("min")
+    converged = classes[runs["length"] <= least * (1 + CONVERGED)].value_counts()
+    number = int((converged > 1).sum())
+    few = len(runs) < LEAST_WITHOUT_EXAMPLE
+    return "+" if number > 1 else "?" if few else "-", float(number), None, len(runs)
+
+
+def least_above(check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]) -> tuple[str, float, None, int]:
+    """Claim C3: is the least mean value that of more particles than `PARTICLES`?
+
+    The effect is in which share of bootstrap draws from our repeats it is; those of equal number start alike and are drawn together.
+    """
+    runs = select(results[check["experiment"]].runs, check.get("where", {}))
+    values = runs.pivot_table(index="repeat", columns="particles", values=check["metric"]).dropna()
+    rng = statistics.generator("tharwat2018/C3")
+    means = values.to_numpy()[rng.integers(len(values), size=(statistics.DRAWS, len(values)))].mean(axis=1)
+    share = float((values.columns.to_numpy()[means.argmin(axis=1)] > PARTICLES).mean())
+    return _surely(share), share, None, len(values)
+
+
+def outliers_of_others_alone(check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]) -> tuple[str, float, None, int]:
+    """Claim C20: do boxes of the paper's ten runs show outliers of other maps, and none of Singer?
+
+    The effect is the share of draws of ten runs of each map, in both variants, that do. Of many runs some are outliers always.
+    """
+    runs = select(results[check["experiment"]].runs, check.get("where", {}))
+    rng = statistics.generator("tharwat2018/C20")
+    singer, others = np.zeros(statistics.DRAWS, dtype=bool), np.zeros(statistics.DRAWS, dtype=bool)
+    for variant, name in itertools.product(("cpso1", "cpso2"), CHAOTIC):
+        values = runs.loc[runs["method"] == f"{variant}_{name}", check["metric"]].to_numpy()
+        drawn = values[rng.integers(len(values), size=(statistics.DRAWS, REPEATS))]
+        low, high = np.quantile(drawn, [0.25, 0.75], axis=1)
+        reach = WHISKER * (high - low)
+        outside = ((drawn < (low - reach)[:, None]) | (drawn > (high + reach)[:, None])).any(axis=1)
+        if name == "singer":
+            singer |= outside
+        else:
+            others |= outside
+    share = float((others & ~singer).mean())
+    return _surely(share), share, None, len(runs) // (2 * len(CHAOTIC))
+
+
+def _surely(share: float) -> str:
+    """The mark of a sentence that holds in a share of draws."""
+    return "+" if share >= SURE else "-" if share <= 1 - SURE else "?"
+
+
+def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
+    """What of the printed numbers cannot be, or does not fit what is printed elsewhere.
+
+    Ranks: of k rows the mean ranks add to k (k + 1) / 2, and none is below 1 (Section 5.1 defines them). Collisions: 20 particles have at
+    most 20 that collide. No path is shorter than the straight line. Table 5 repeats rows of Tables 3 and 4. What the text says of best
+    values and of the second population of Section 5.5 stands beside the tables, and beside itself.
+    """
+    tables = {name: published[name] for name in RANKED}
+    rows = []
+    for name, count in RANKED.items():
+        total = float(_cells(tables[name], "rank")["value"].sum())
+        limit = count * (count + 1) / 2
+        consistent = abs(total - limit) <= count * 0.05 + 1e-9  # each of them is printed to one decimal
+        rows.append(_row(name, "all rows", f"mean ranks of {count} rows add to {limit:g}, up to rounding", total, limit, consistent))
+    straight = float(_said(published, "straight_line_length")[0])
+    for name, table in tables.items():
+        for metric, rule, limit, sign in (
+            ("rank", "a rank is at least 1", 1, 1),
+            ("collisions_a", f"of {PARTICLES} particles at most {PARTICLES} collide in an iteration", PARTICLES, -1),
+            ("objective", "no path is shorter than the straight line", straight, 1),
+        ):
+            for row in _cells(table, metric).itertuples():
+                rows.append(_row(name, _place(row), rule, row.value, limit, sign * (row.value - limit) >= 0))
+    before = pd.concat([tables["table3"], tables["table4"]])
+    for metric in ("collisions_a", "objective"):
+        first = _by_method(before, metric)
+        for row in _cells(tables["table5"], metric).itertuples():
+            if row.method in first:
+                rule = "Table 5 has the number of Table 3 or 4"
+                rows.append(_row("table5", _place(row), rule, row.value, first[row.method], row.value == first[row.method]))
+    best = _by_method(pd.concat(list(tables.values())[:3]).drop_duplicates(["method", "metric"]), "objective")
+    for place, better, worse in SAID:
+        table = "table5" if worse == "pso" else "table4" if better.startswith("cpso2") else "table3"
+        rule = f"the text ({place}) has {better} better than {worse}"
+        rows.append(_row(table, f"method={better}, metric=objective", rule, best[better], best[worse], best[better] < best[worse]))
+    first, second = _said(published, "population_of_second_experiment")
+    rows.append(_row("text", "5.5", "one number for the second population of Section 5.5", first, second, first == second))
+    return rows
+
+
+def _row(item: str, place: str, rule: str, printed: float, limit: float, consistent: bool) -> dict:
+    return {"item": item, "place": place, "rule": rule, "printed": printed, "limit": limit, "consistent": bool(consistent)}
+
+
+def _cells(table: pd.DataFrame, metric: str) -> pd.DataFrame:
+    """Printed numbers of one metric."""
+    return table[table["metric"] == metric]
+
+
+def _place(row: tuple) -> str:
+    """Which cell a printed number is."""
+    obstacles = f", obstacles={row.obstacles}" if hasattr(row, "obstacles") else ""
+    return f"method={row.method}{obstacles}, metric={row.metric}"
+
+
+def _by_method(table: pd.DataFrame, metric: str) -> dict[str, float]:
+    """Printed numbers of one metric, by method."""
+    cells = _cells(table, metric)
+    return dict(zip(cells["method"], cells["value"]))
+
+
+def _said(published: dict[str, pd.DataFrame], quantity: str) -> list[float]:
+    """The values that the text gives a quantity, in its order."""
+    text = published["text_values"]
+    return text.loc[text["quantity"] == quantity, "value"].to_list()

@@ -1,0 +1,275 @@
+"""One path on a map: `python -m bezierplan plan MAP --start X,Y --target X,Y`."""
+
+import sys
+import time
+from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
+from pathlib import Path as File
+from typing import Any
+
+import numpy as np
+
+from bezierplan.analysis.metrics import CURVATURE_SAMPLES
+from bezierplan.geometry import bounds, checker, curves
+from bezierplan.geometry.region import region
+from bezierplan.planners import Plan, known_planners, planner_module, planner_settings, setting_fault
+from bezierplan.running import problems
+from bezierplan.study import checked
+from bezierplan.study.checked import Fault, closest
+from bezierplan.workspaces import files
+from bezierplan.workspaces.problem import Path, Problem, Workspace
+
+KINDS = {".geojson": "polygons", ".json": "polygons", ".yaml": "ros_map", ".yml": "ros_map", ".map": "moving_ai", ".txt": "grid"}
+"""Suffix of a map file -> the kind of workspace that it is read as."""
+
+OUT = (".svg", ".png", ".csv", ".geojson")
+
+# Cells along the longer side of a map of polygons, for planners that need cells, and the baseline's turning radius as a share of that side.
+_CELLS = 200
+_TURNING_SHARE = 0.02
+
+_SAMPLES = 2001
+
+MANUAL = """
+Plans one path on a map and checks it by exact geometry. Prints its length, how far that lies above the exact shortest path, its largest
+curvature and clearance, whether it is free of obstacles and if not where it enters one, and the CPU time of the planner.
+
+maps:
+  .geojson   polygons: features with properties.role border (a rectangle) and obstacle; planners that need cells get --cell and --rule
+  .yaml      an occupancy map of ROS's map_server, beside its image; unknown pixels count as occupied, --robot-radius makes obstacles grow
+  .map       a MovingAI grid; --scenario FILE:NUMBER in place of --start and --target
+  .txt       cells of . (free) and # (occupied), the top row first, of the side --cell
+
+planners:
+  Without --planner it is the exact shortest path with rounded corners. A planner takes its settings from the first study of this project
+  that has it, or from --like STUDY/METHOD; --settings changes some of them. `python -m bezierplan list` names studies and methods.
+"""
+
+EXAMPLES = """
+examples:
+  The exact shortest path through a maze, its corners rounded to a radius of 0.3 m, as a picture:
+    python -m bezierplan plan config/studies/elhoseny2017/workspaces/gaps.geojson --start 2,10 --target 18,10 \\
+        --settings '{turning_radius: 0.3}' --out path.svg
+
+  The same way by the genetic algorithm of song2016, on cells of 0.5 m, as points:
+    python -m bezierplan plan config/studies/elhoseny2017/workspaces/gaps.geojson --start 2,10 --target 18,10 \\
+        --like song2016/smooth --cell 0.5 --out path.csv
+"""
+
+
+def main(parser: ArgumentParser, words: list[str]) -> None:
+    """Plan, print, and write what is asked for; a fault ends with one line and status 2."""
+    parser.formatter_class = RawDescriptionHelpFormatter
+    parser.description, parser.epilog = MANUAL.strip(), EXAMPLES.strip()
+    parser.add_argument("map", type=File, metavar="MAP", help="a map file")
+    parser.add_argument("--start", metavar="X,Y", help="where the path begins, in the map's unit; --start=-1,2 if it begins with a minus")
+    parser.add_argument("--target", metavar="X,Y", help="where it ends")
+    parser.add_argument("--scenario", metavar="FILE:NUMBER", help="start and target of a MovingAI scenario, numbered from 1")
+    chosen = parser.add_mutually_exclusive_group()
+    chosen.add_argument("--planner", metavar="NAME", help="a planner, or the path of a planner's file (default: rounded_shortest_path)")
+    chosen.add_argument("--like", metavar="STUDY/METHOD", help="planner and settings of a study's method")
+    parser.add_argument("--settings", default="{}", metavar="'{NAME: VALUE, ...}'", help="settings in place of the planner's own")
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="of the random numbers (default: 0)")
+    parser.add_argument("--cell", type=float, metavar="SIDE", help=f"side of a cell (default: 1; of polygons the longer side / {_CELLS})")
+    parser.add_argument("--rule", choices=("overlap", "centre"), default="overlap", help="which cells obstacles occupy (default: overlap)")
+    parser.add_argument("--robot-radius", type=float, default=0.0, metavar="R", help="by how much the obstacles of a ROS map grow")
+    parser.add_argument("--most-pixels", type=int, metavar="N", help="the most pixels of a ROS map's image")
+    parser.add_argument("--unit", metavar="NAME", help="the unit of length that is printed (default: m, of grids cell)")
+    parser.add_argument(
+        "--out", type=File, metavar="FILE", help="the path as a picture (.svg, .png), as points (.csv), or as a .geojson line"
+    )
+    given = parser.parse_args(words)
+    try:
+        _plan(given)
+    except (ValueError, FileNotFoundError) as fault:
+        print(fault, file=sys.stderr)
+        sys.exit(2)
+
+
+def _plan(given: Namespace) -> None:
+    if given.out and given.out.suffix not in OUT:
+        raise Fault(f"--out: {given.out}; expected a file that ends in {', '.join(OUT)}")
+    planner, settings = _planner(given)
+    problem = _problem(given, planner)
+    bound = bounds.shortest_path(problem)
+    if not np.isfinite(bound.length):
+        raise Fault(f"--target: {given.target or given.scenario}: no free way leads there from the start; expected one that can be reached")
+    if planner == "rounded_shortest_path":
+        x_low, x_high, y_low, y_high = problem.workspace.bounds
+        settings = {"turning_radius": _TURNING_SHARE * max(x_high - x_low, y_high - y_low), "offset": 0.0} | settings
+    _check_settings(planner, settings)
+    module = planner_module(planner)
+    if hasattr(module, "serves"):
+        module.serves(problem)
+    for _ in range(2):  # the first run of a process pays for loading compiled code, so the second one is timed
+        begin = time.process_time()
+        plan = module.plan(problem, np.random.default_rng(given.seed), **settings)
+        seconds = time.process_time() - begin
+    check = None if plan.path is None else checker.check(curves.bezier_pieces(plan.path), region(problem.workspace))
+    for name, text in _told(problem, planner, settings, plan, check, bound.length, seconds):
+        print(f"{name:14}{text}")
+    if given.out and plan.path is None:
+        raise Fault(f"--out: {given.out}: not written, {planner} found no path")
+    if given.out:
+        _write(given.out, problem, plan.path, check, bound.points)
+
+
+def _told(
+    problem: Problem, planner: str, settings: dict[str, Any], plan: Plan, check: checker.Check | None, shortest: float, seconds: float
+) -> list[tuple[str, str]]:
+    """What is printed: names and values."""
+    unit = problem.workspace.unit
+    lines = [("planner", planner), ("settings", ", ".join(f"{name} {value}" for name, value in settings.items()) or "none")]
+    lines.append(("shortest path", f"{shortest:.6g} {unit}"))
+    if check is None:
+        return [*lines, ("path", f"none ({plan.stop})"), ("CPU time", f"{seconds:.3g} s")]
+    length = curves.length(plan.path)
+    lines.append(("length", f"{length:.6g} {unit}, {100 * (length / shortest - 1) if shortest else 0.0:.3g} % above the shortest path"))
+    kappa, _ = curves.curvature(plan.path, max(CURVATURE_SAMPLES, 20 * len(curves.bezier_pieces(plan.path)) + 1))
+    corners = "" if np.isfinite(curves.curvature_jump(plan.path)) else ", and corners"
+    lines.append(("curvature", f"at most {np.nan_to_num(np.abs(kappa)).max():.6g} / {unit}{corners}"))
+    lines.append(("clearance", f"{check.clearance:.6g} {unit}"))
+    if check.feasible:
+        lines.append(("feasible", "yes"))
+    else:
+        x, y = curves.point_at(plan.path, check.collision_at)
+        lines.append(("feasible", f"no: enters an obstacle at {x:.6g},{y:.6g}, at most {check.depth:.6g} {unit} deep"))
+    return [*lines, ("CPU time", f"{seconds:.3g} s")]
+
+
+def _planner(given: Namespace) -> tuple[str, dict[str, Any]]:
+    """The planner and its settings, as far as they are known without the map."""
+    own = checked.parse(given.settings, "--settings")
+    if not isinstance(own, dict):
+        raise Fault(f"--settings: {given.settings}: expected '{{name: value, ...}}'")
+    if given.like:
+        planner, preset = _like(given.like)
+    else:
+        planner = given.planner or "rounded_shortest_path"
+        if not planner.endswith(".py") and planner not in known_planners():
+            raise Fault(f"--planner: {planner}: unknown{closest(planner, known_planners())}")
+        preset = {} if planner == "rounded_shortest_path" or planner.endswith(".py") else _preset(planner)
+    for name in own:
+        if name not in planner_settings(planner_module(planner)):
+            raise Fault(f"--settings: {name}: no setting of {planner}{closest(name, planner_settings(planner_module(planner)))}")
+    return planner, preset | own
+
+
+def _like(name: str) -> tuple[str, dict[str, Any]]:
+    """Planner and settings of a method of a study."""
+    from bezierplan.study import reading
+
+    key, _, method = name.rpartition("/")
+    if not key:
+        raise Fault(f"--like: {name}; expected STUDY/METHOD, such as song2016/smooth")
+    (study,) = reading.load(reading.read_config({"studies": [key]})).values()
+    if method not in study.methods:
+        raise Fault(f"--like: {name}: the study has no method {method}{closest(method, study.methods)}")
+    return study.planner(method), study.resolved(method)
+
+
+def _preset(planner: str) -> dict[str, Any]:
+    """The settings of a planner in the first study of this project that has it as a method."""
+    from bezierplan.study import reading
+
+    for study in reading.load(reading.read_config({})).values():
+        for method in study.methods:
+            if study.planner(method) == planner:
+                return study.resolved(method)
+    return {}
+
+
+def _check_settings(planner: str, settings: dict[str, Any]) -> None:
+    module = planner_module(planner)
+    for name, annotation in planner_settings(module).items():
+        if name not in settings:
+            raise Fault(f"--settings: {name}: missing; {planner} needs it")
+        wanted = setting_fault(annotation, settings[name])
+        if wanted:
+            raise Fault(f"--settings: {name}: {settings[name]!r}; expected {wanted}")
+    if hasattr(module, "check"):
+        module.check(settings)
+
+
+def _problem(given: Namespace, planner: str) -> Problem:
+    """The map with start and target, as cells where the planner needs them."""
+    if given.map.suffix not in KINDS:
+        raise Fault(f"{given.map}: unknown kind of map; expected a file that ends in {', '.join(KINDS)}")
+    kind = KINDS[given.map.suffix]
+    served = getattr(planner_module(planner), "workspaces", None)
+    described = {"kind": kind, "file": given.map.name, "unit": given.unit or ("m" if kind in ("polygons", "ros_map") else "cell")}
+    if kind == "polygons" and served is not None and kind not in served:
+        x_low, x_high, y_low, y_high = files.load(described, given.map.parent).bounds
+        cell = max(x_high - x_low, y_high - y_low) / _CELLS if given.cell is None else given.cell
+        described |= {"kind": "raster", "cell": _side(cell), "rule": given.rule}
+    elif kind == "grid":
+        described["cell"] = _side(1.0 if given.cell is None else given.cell)
+    elif kind == "ros_map":
+        described |= {"robot_radius": given.robot_radius}
+        described |= {"most_pixels": given.most_pixels} if given.most_pixels is not None else {}
+    workspace = files.load(described, given.map.parent)
+    met = "polygons" if described["kind"] == "polygons" else "grid"
+    if served is not None and met not in served:
+        raise Fault(f"--planner: {planner}: serves workspaces of kind {', '.join(served)}, and a map is {met}")
+    if given.scenario:
+        return problems.build("", _scenario(given, described, workspace), workspace)
+    ends = {end: _point(end, getattr(given, end)) for end in ("start", "target")}
+    return problems.build("", ends, workspace)
+
+
+def _side(cell: float) -> float:
+    if not cell > 0:
+        raise Fault(f"--cell: {cell:g}; expected a number above 0")
+    return cell
+
+
+def _scenario(given: Namespace, described: dict, workspace: Workspace) -> dict:
+    """Start and target of a scenario, as a problem describes them."""
+    file, _, number = given.scenario.rpartition(":")
+    if not (file and number.isdecimal()) or described["kind"] != "moving_ai":
+        raise Fault(f"--scenario: {given.scenario}; expected FILE:NUMBER of a .scen file, with a .map file")
+    return problems.scenario(described | {"scenarios": str(File(file).resolve())}, int(number), workspace, given.map.parent)
+
+
+def _point(end: str, text: str | None) -> tuple[float, float]:
+    try:
+        x, y = map(float, (text or "").split(","))
+    except ValueError:
+        raise Fault(f"--{end}: {text or 'missing'}; expected X,Y, two numbers such as 2.5,10") from None
+    return x, y
+
+
+def _write(out: File, problem: Problem, path: Path, check: checker.Check, shortest: np.ndarray) -> None:
+    """The path as a picture, as points with heading and curvature, or as a GeoJSON line."""
+    samples = curves.sample_matrix(path.curve, len(path.points), _SAMPLES) @ path.points
+    if out.suffix == ".csv":
+        kappa, _ = curves.curvature(path, _SAMPLES)
+        rows = np.column_stack([samples, np.nan_to_num(kappa)])
+        np.savetxt(out, rows, fmt="%.9g", delimiter=",", header="x,y,curvature", comments="")
+    elif out.suffix == ".geojson":
+        import json
+
+        line = {"type": "LineString", "coordinates": samples.tolist()}
+        out.write_text(json.dumps({"type": "Feature", "properties": {"feasible": check.feasible}, "geometry": line}) + "\n")
+    else:
+        _draw(out, problem, path, check, shortest)
+
+
+def _draw(out: File, problem: Problem, path: Path, check: checker.Check, shortest: np.ndarray) -> None:
+    """A picture like those of the studies: the path, the exact shortest one, and the first collision if there is one."""
+    import matplotlib as mpl
+    from matplotlib.figure import Figure
+
+    from bezierplan.figures import style
+    from bezierplan.figures.panels import paths, workspace
+
+    with mpl.rc_context(style.SETTINGS):
+        figure = Figure(figsize=(style.NARROW, style.NARROW), layout="constrained")
+        axes = figure.add_subplot()
+        workspace.shade(axes, workspace.parts(problem.workspace))
+        workspace.scale(axes, problem.workspace.unit)
+        drawn = {"path": paths.steps(path), "bound": shortest, "start": [problem.start], "target": [problem.target]}
+        if not check.feasible:
+            drawn["collision"] = [curves.point_at(path, check.collision_at)]
+        paths.draw_parts(axes, paths.table(drawn), narrow=False, clip=True)
+        figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)
+        figure.savefig(out, dpi=300)

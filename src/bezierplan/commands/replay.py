@@ -1,0 +1,101 @@
+"""One run again, from its name alone: bit-equal, and with its picture."""
+
+from argparse import ArgumentParser
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from bezierplan.analysis import results
+from bezierplan.commands import add_studies
+from bezierplan.commands.digest import read_rows, row_text
+from bezierplan.figures import sheet
+from bezierplan.geometry.region import region
+from bezierplan.running import execution, problems
+from bezierplan.study import reading
+from bezierplan.study.checked import Fault, closest
+from bezierplan.study.definition import Study
+from bezierplan.study.jobs import job, problems_job
+
+SHOWN = ("objective", "length", "bound", "claimed_feasible", "feasible", "collision_at", "collision_depth", "clearance", "evaluations")
+
+
+def main(parser: ArgumentParser, words: list[str]) -> None:
+    """Run it again, print what it came to and whether it equals the stored one, and save its picture below results/replay. Raises Fault."""
+    parser.add_argument("run", help="its name: study/experiment/condition/method/repeat")
+    add_studies(parser)
+    given = parser.parse_args(words)
+    studies = reading.load(reading.read_config({"studies": given.studies} if given.studies else {}))
+    found = replay(given.run, studies)
+    run = found.runs.iloc[0]
+    for column in SHOWN:
+        print(f"{column:18}{run[column]}")
+    for file, stored in stored_runs(given.run, Path("results")).items():
+        print(f"{'stored in':18}{file}: {'equal' if equal(run, stored) else 'NOT EQUAL'}")
+    picture = Path("results/replay") / f"{given.run}.svg"
+    draw(found, studies[run["study"]], picture)
+    print(f"{'picture':18}{picture}")
+
+
+def replay(name: str, studies: dict[str, Study]) -> results.Results:
+    """The run of a name `study/experiment/condition/method/repeat`, reproduced: one row, with its problem and bound.
+
+    Raises Fault, saying which part of the name is unknown.
+    """
+    parts = name.split("/")
+    if len(parts) != 5:
+        raise Fault(f"{name}: not the name of a run; expected study/experiment/condition/method/repeat")
+    key, experiment, condition_name, method, repeat = parts
+    study = _named(key, studies, f"{name}: study")
+    _named(experiment, study.experiments, f"{name}: experiment")
+    _named(method, dict.fromkeys(study.methods_of(experiment)), f"{name}: method")
+    # Scale and chunk matter to neither the seed nor the settings of a run.
+    described = job(study, experiment, method, "full", 0)
+    conditions = {each.name: each for each in execution.conditions(list(described["problems"]), described["vary"])}
+    condition = _named(condition_name, conditions, f"{name}: condition")
+    if not repeat.isdecimal():
+        raise Fault(f"{name}: repeat: {repeat}; expected a whole number")
+
+    made, _ = problems.build_all(problems_job(study, experiment, "full"), study.folder)
+    problem = {condition.problem: made[condition.problem]}
+    plan = execution.run(described, condition, int(repeat), made[condition.problem])
+    try:
+        row = execution.row(described, condition, int(repeat), plan, made[condition.problem], region(made[condition.problem].workspace))
+    except RuntimeError as error:
+        raise Fault(str(error)) from None
+    return results.joined(pd.DataFrame([row]), problem, problems.bounds_of(problem).to_pandas())
+
+
+def _named(name: str, known: dict[str, Any], place: str) -> Any:
+    if name not in known:
+        raise Fault(f"{place}: {name}: unknown{closest(name, known)}")
+    return known[name]
+
+
+def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:
+    """The rows of that name in run tables below a folder, by file."""
+    study, experiment, _, method, _ = name.split("/")
+    found = {}
+    for file in sorted(folder.glob(f"*/{study}/runs/{experiment}/{method}/*.parquet")):
+        if not file.name.endswith(".times.parquet"):
+            for row in read_rows(file, name):
+                found[file] = row
+    return found
+
+
+def equal(run: pd.Series, stored: dict[str, Any]) -> bool:
+    """Whether a reproduced run has the content of a stored row, to the last bit."""
+    return row_text(run[list(stored)].to_dict()) == row_text(stored)
+
+
+def draw(made: results.Results, study: Study, file: Path) -> None:
+    """Save the picture of a run reproduced: its path, control points, first collision if any, and the shortest path; svg, png and csv."""
+    run = made.runs.iloc[0]
+    panel = {"kind": "paths", "experiment": run["experiment"], "pick": {"repeat": int(run["repeat"])}}
+    unit = made.problems[run["problem"]].workspace.unit
+    scene = sheet.Scene({run["experiment"]: made.problems}, {}, study.labels, unit)
+    file.parent.mkdir(parents=True, exist_ok=True)
+    frame = sheet.data([panel], {run["experiment"]: made}, {})
+    sheet.write_data(frame, str(file.with_suffix(".csv")))
+    figure = sheet.draw([panel], sheet.read_data(str(file.with_suffix(".csv"))), scene, 1)
+    sheet.save(figure, str(file.with_suffix(".svg")), str(file.with_suffix(".png")))

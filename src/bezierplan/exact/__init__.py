@@ -1,1 +1,0 @@
-"""Exact geometry, apart from every planner: the certified collision check and exact shortest paths."""

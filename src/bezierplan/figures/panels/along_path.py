@@ -1,0 +1,88 @@
+"""A quantity along the path of one picked run, beside the limit that the paper claims for it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.figures import style
+from bezierplan.figures.panels import PICK, Pick, RunsPanel
+from bezierplan.figures.panels.paths import picked, run_note
+from bezierplan.geometry import curves
+from bezierplan.study.model import Number
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
+
+_SAMPLES = 1001
+
+# A peak of more limits than this would press the curve onto the axis: then the scale ends at fewer, and an arrow stands for the peak.
+_HIGHEST_PEAK = 10
+_CUT_SCALE = 4
+
+
+class Options(RunsPanel):
+    """Keys of a panel."""
+
+    pick: Pick = Field(description=PICK)
+    quantity: Literal["curvature"] = Field(description="what is drawn along the path: curvature")
+    limit: Number = Field(None, description="the published limit, a number")
+
+
+def data(results: Results, *, pick: dict[str, Any], quantity: Literal["curvature"], limit: float | None = None) -> pd.DataFrame:
+    """One row a sample of a path, uniform in its parameter; columns: those of `paths.picked`, quantity, limit, t (0 to 1), value.
+
+    The value of curvature is its magnitude in 1/unit, empty where the curve stands still. Without a path one row with neither t nor value.
+
+    pick: the run, as in `analysis.results.pick`. limit: the published one, in 1/unit. Raises ValueError unless all runs are of one problem
+    and one method.
+    """
+    import pandas as pd
+
+    from bezierplan.analysis.results import path_of
+
+    run, names = picked(results, pick)
+    names |= {"quantity": quantity, "limit": math.nan if limit is None else limit}
+    path = None if run is None else path_of(run)
+    if path is None:
+        return pd.DataFrame([names | {"t": math.nan, "value": math.nan}])
+    values, _ = curves.curvature(path, _SAMPLES)
+    frame = pd.DataFrame({"t": np.linspace(0, 1, _SAMPLES), "value": np.abs(values)}).assign(**names)
+    return frame[[*names, "t", "value"]]
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data`; returns the note below the panel's title."""
+    row = frame.iloc[0]
+    unit = scene.problems[panel["experiment"]][row["problem"]].workspace.unit
+    axes.set_xlim(0, 1)
+    axes.set_xlabel("curve parameter t (-)")
+    axes.set_ylabel(f"|{row['quantity']}| (1/{unit})")
+    axes.grid(visible=True)
+    if not math.isnan(row["limit"]):
+        axes.axhline(row["limit"], label=f"published limit: {row['limit']:g} 1/{unit}", zorder=3, **style.PUBLISHED)
+    if frame["value"].isna().all():
+        return run_note(frame, "no path" if frame["t"].isna().all() else "the curve is a single point")
+    axes.plot(frame["t"], frame["value"], label="path", **style.RUN_SHOWN)
+    return run_note(frame, _mark_highest(axes, frame, unit))
+
+
+def _mark_highest(axes: Axes, frame: pd.DataFrame, unit: str) -> str:
+    """Mark the highest value and fit the scale to it; returns the words for it, and for the samples left out."""
+    highest = frame.loc[frame["value"].idxmax()]
+    limit = highest["limit"]
+    cut = highest["value"] > _HIGHEST_PEAK * limit
+    top = _CUT_SCALE * limit if cut else 1.12 * np.nanmax([highest["value"], limit, 1e-3])
+    axes.set_ylim(0, top)
+    mark = {"marker": "^" if cut else "o", "markersize": 5, "color": style.BLACK, "linestyle": "", "label": "highest value"}
+    axes.plot(highest["t"], min(highest["value"], top), clip_on=False, zorder=4, **mark)
+    words = f"highest {highest['value']:.3g} 1/{unit} at t = {highest['t']:.2f}"
+    still = int(frame["value"].isna().sum())
+    return words + (f"\n{still} of {len(frame)} samples left out (the curve stands still)" if still else "")

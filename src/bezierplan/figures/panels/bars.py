@@ -1,0 +1,94 @@
+"""Grouped bars of a metric's statistic with its interval, how many runs are feasible below each bar, and the shortest path as a line."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.figures import style
+from bezierplan.figures.panels import RunsPanel
+from bezierplan.figures.panels.lines import axis_label, summary
+from bezierplan.study.model import Column, Metric
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
+
+# Metrics that the exact shortest length bounds from below.
+_BOUNDED = ("length", "objective")
+
+# Of the room of a group of bars, what the bars take.
+_FILLED = 0.84
+
+
+class Options(RunsPanel):
+    """Keys of a panel."""
+
+    metric: Metric = Field(description="the name of a metric")
+    x: Column = Field(description="a column of the runs table: a group of bars for each of its values")
+    hue: Column = Field(description="a column of the runs table: a bar in each group for each of its values")
+    statistic: Literal["mean", "median", "share"] = Field("mean", description="mean (left out: this), median or share")
+    below: Literal["share", "count"] = Field(
+        "share", description="of feasible runs, written below each bar: share (left out: this) or count"
+    )
+
+
+def data(
+    results: Results,
+    *,
+    x: str,
+    hue: str,
+    metric: str,
+    statistic: Literal["mean", "median", "share"] = "mean",
+    below: Literal["share", "count"] = "share",
+) -> pd.DataFrame:
+    """One row a bar; columns: those of `lines.summary`, with x and hue by their own names, and bound.
+
+    bound is the mean exact shortest length of the problems of a bar's feasible runs, those that count for a length, in units; empty for
+    metrics that it does not bound.
+
+    x: a column, a group of bars for each of its values. hue: a column, a bar in each group for each of its values. below: what stands below
+    a bar, the share or the number of feasible runs. Raises KeyError for an unknown metric or column.
+    """
+    import pandas as pd
+
+    frame = summary(results, [x, hue], metric, statistic)
+    feasible = results.runs[results.runs["feasible"]].sort_values("id")
+    bounds = feasible.groupby([x, hue])["bound"].mean().rename("bound") if metric in _BOUNDED else pd.Series(dtype=float)
+    return frame.assign(bound=[bounds.get(bar, np.nan) for bar in zip(frame[x], frame[hue])])
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data`; returns the note below the panel's title."""
+    x, hue = panel["x"], panel["hue"]
+    groups, bars = style.in_order(frame[x], panel), style.in_order(frame[hue], panel)
+    width = _FILLED / len(bars)
+    for number, (bar, look) in enumerate(zip(bars, style.bars(len(bars)))):
+        own = frame[frame[hue] == bar]
+        at = own[x].map(groups.index).to_numpy() + (number - (len(bars) - 1) / 2) * width
+        _draw_bars(axes, own, at, width, panel.get("below", "share"), look | {"label": style.printed(bar, hue, scene.labels)})
+    axes.set_xlim(-0.5, len(groups) - 0.5)
+    axes.set_xticks(range(len(groups)), [scene.labels.get(group, group) if isinstance(group, str) else f"{group:g}" for group in groups])
+    axes.tick_params(axis="x", length=0, pad=32)  # below the shares
+    axes.set_xlabel(f"{style.column_name(x, scene.labels)} (-)")
+    axes.set_ylabel(axis_label(panel["metric"], scene, panel.get("statistic", "mean")))
+    axes.grid(visible=True, axis="y")
+    return f"below each bar: {panel.get('below', 'share')} of feasible runs"
+
+
+def _draw_bars(axes: Axes, frame: pd.DataFrame, at: np.ndarray, width: float, counted: str, look: dict) -> None:
+    """Bars at places (n,) with their intervals, and below each the share or the count of feasible runs."""
+    axes.bar(at, frame["value"], width, zorder=2, **look)
+    if frame["bound"].notna().any():
+        ends = at - width / 2, at + width / 2
+        axes.hlines(frame["bound"], *ends, label="shortest path possible", zorder=4, **style.BOUND)
+    axes.vlines(at, frame["low95"], frame["high95"], color=style.BLACK, linewidth=0.8, zorder=3, label="95 % interval")
+    for place, runs, feasible in zip(at, frame["runs"], frame["feasible_runs"]):
+        below = {"xycoords": ("data", "axes fraction"), "xytext": (0, -2), "textcoords": "offset points"}
+        text = f"{feasible:g}" if counted == "count" else f"{100 * feasible / runs:.0f} %"
+        axes.annotate(text, (place, 0), rotation=90, ha="center", va="top", **below)

@@ -1,0 +1,158 @@
+"""Boxes of a metric, one a method or value of a factor, beside the published means."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.analysis import metrics
+from bezierplan.figures import style
+from bezierplan.figures.panels import RunsPanel
+from bezierplan.figures.panels.lines import LIMITS, axis_label, constants, runs_note, shared_limits
+from bezierplan.study.model import Column, Flag, Metric
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
+
+# Whiskers end at the last value within so many interquartile ranges of the box.
+_REACH = 1.5
+
+# How a box is called here and in `Axes.bxp`.
+_PARTS = {"low": "whislo", "quartile1": "q1", "median": "med", "quartile3": "q3", "high": "whishi"}
+
+
+# Columns of published numbers that tell no runs apart.
+_PRINTED = ["table", "metric", "statistic", "n", "unit", "value"]
+
+# Published means farther away than so many times the range of all that is found here stand at the edge, with their value.
+_FAR = 0.25
+
+
+class Options(RunsPanel):
+    """Keys of a panel."""
+
+    published_drawn: ClassVar[bool] = True
+
+    metric: Metric = Field(description="the name of a metric")
+    by: Column = Field("method", description="a column of the runs table: a box for each of its values; left out: method")
+    limits: Flag = Field(False, description="whether the exact bound and the reference are drawn, true or false")
+
+
+def data(results: Results, *, metric: str, by: str = "method", limits: bool = False) -> pd.DataFrame:
+    """One row a part of a box; columns: those of `lines.constants`, `by` by its own name, runs and feasible_runs (counts), part, value.
+
+    Parts: low and high (where the whiskers end), quartile1, median, quartile3; beyond, a value beyond the whiskers; mean; published, the
+    mean that the paper prints. Values are in the metric's unit, of the runs that have the metric. A group without any has no rows. With
+    limits, of no group: reference (the best known path of the kind) and bound (the exact shortest length), each where all runs share it.
+
+    by: a column of the runs table. Raises KeyError for an unknown metric or column.
+    """
+    import pandas as pd
+
+    runs = results.runs.assign(value=metrics.values(results.runs, metric, results.problems))
+    rows = []
+    for group, own in runs.groupby(by):
+        named = constants(runs) | {by: group, "runs": len(own), "feasible_runs": int(own["feasible"].sum())}
+        parts = _box(np.sort(own["value"].dropna().to_numpy())) + [("published", mean) for mean in _published_means(results, own, metric)]
+        rows += [named | {"part": part, "value": value} for part, value in parts]
+    if limits:
+        rows += [constants(runs) | {"part": name, "value": value} for name, value in shared_limits(runs).items()]
+    return pd.DataFrame(rows)
+
+
+def _box(values: np.ndarray) -> list[tuple[str, float]]:
+    """Parts of the box of sorted values (n,) and where they lie; none without values."""
+    if not len(values):
+        return []
+    first, median, third = np.quantile(values, [0.25, 0.5, 0.75])
+    reach = _REACH * (third - first)
+    inside = (values >= first - reach) & (values <= third + reach)
+    low, high = values[inside][[0, -1]]
+    box = [("low", low), ("quartile1", first), ("median", median), ("quartile3", third), ("high", high), ("mean", values.mean())]
+    return box + [("beyond", value) for value in values[~inside]]
+
+
+def _published_means(results: Results, runs: pd.DataFrame, metric: str) -> list[float]:
+    """Means of a metric that the paper prints for the problem, method and settings of runs; a row's empty keys fit all runs.
+
+    A number that stands in several tables is one number.
+    """
+    found = results.published
+    if found is None:
+        return []
+    found = found[(found["metric"] == metric) & (found["statistic"] == "mean")]
+    for column in found.columns.difference(_PRINTED):
+        fits = found[column].isin(runs[column]) if column in runs else False
+        found = found[found[column].isna() | fits]
+    return sorted(found["value"].unique())
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data`, the first box on top; returns the note below the panel's title."""
+    by = panel.get("by", "method")
+    groups = style.in_order(frame[by], panel)
+    own = [frame[frame[by] == group].groupby("part")["value"].apply(list).to_dict() for group in groups]
+    _draw_boxes(axes, own)
+    for name, look in LIMITS.items():
+        for value in frame.loc[frame["part"] == name, "value"]:
+            axes.axvline(value, zorder=1.5, **look)
+    far = _draw_far(axes, own, frame.loc[frame["part"].isin(list(LIMITS)), "value"].to_list())
+    marks = {
+        "beyond": {"color": style.BLUE, "marker": ".", "markersize": 1.6, "label": f"beyond {_REACH} interquartile ranges", "zorder": 1},
+        "mean": {"color": style.RED, "marker": "x", "markersize": 4, "label": "mean", "zorder": 4},
+        "published": {**style.PUBLISHED_MARK, "label": "published mean", "zorder": 5},
+    }
+    for part, look in marks.items():
+        points = [(value, height) for height, parts in enumerate(own) for value in parts.get(part, []) if value not in far]
+        if points:
+            axes.plot(*zip(*points), **({"linestyle": ""} | look))
+    axes.set_ylim(len(groups) - 0.4, -0.6)
+    axes.set_yticks(range(len(groups)), [style.printed(group, by, scene.labels) for group in groups])
+    axes.tick_params(axis="y", length=0)
+    axes.set_xlabel(axis_label(panel["metric"], scene))
+    axes.grid(visible=True, axis="x")
+    return runs_note(frame, "box", "method" if by == "method" else "row")
+
+
+def _draw_far(axes: Axes, groups: list[dict[str, list[float]]], limits: list[float]) -> set[float]:
+    """Mark published means that would press the boxes together at the edge that they lie beyond, and return them.
+
+    groups: values by part. limits: other values that are shown.
+    """
+    found = limits + [value for parts in groups for part, values in parts.items() if part != "published" for value in values]
+    if not found:
+        return set()
+    low, high = min(found), max(found)
+    reach = _FAR * (high - low)
+    far = set()
+    for height, parts in enumerate(groups):
+        for value in parts.get("published", []):
+            if low - reach <= value <= high + reach:
+                continue
+            far.add(value)
+            above = value > high
+            at = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "center", "ha": "right" if above else "left"}
+            axes.annotate(f"{value:.4g}", (1.0 if above else 0.0, height), xytext=(-7 if above else 7, 0), zorder=5, **at)
+            edge = style.PUBLISHED_MARK | {"marker": ">" if above else "<", "label": "published mean, beyond the scale"}
+            axes.plot(1.0 if above else 0.0, height, transform=axes.get_yaxis_transform(), clip_on=False, zorder=5, **edge)
+    if far:
+        # Ends of the scale: where means begin to be far, if some are, and otherwise all that is shown with a little room.
+        shown = found + [value for parts in groups for value in parts.get("published", []) if value not in far]
+        room = 0.05 * (high - low)
+        axes.set_xlim(low - reach if min(far) < low else min(shown) - room, high + reach if max(far) > high else max(shown) + room)
+    return far
+
+
+def _draw_boxes(axes: Axes, groups: list[dict[str, list[float]]]) -> None:
+    """One box a group of values by part, at heights 0, 1, ..."""
+    there = {height: parts for height, parts in enumerate(groups) if "median" in parts}
+    boxes = [{name: parts[part][0] for part, name in _PARTS.items()} for parts in there.values()]
+    thin = {"color": style.BLUE, "linewidth": 0.7}
+    looks = {"boxprops": style.BOX, "whiskerprops": thin, "capprops": thin, "medianprops": {"color": style.BLUE, "linewidth": 1.6}}
+    axes.bxp(boxes, list(there), orientation="horizontal", widths=0.6, patch_artist=True, showfliers=False, manage_ticks=False, **looks)

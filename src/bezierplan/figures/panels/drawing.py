@@ -1,0 +1,155 @@
+"""A drawing made of marks: what a procedure does, step by step, without a run; over a workspace where the panel names one."""
+
+from __future__ import annotations
+
+import itertools
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.figures import style
+from bezierplan.figures.panels import TablePanel
+from bezierplan.figures.panels import workspace as workspaces
+from bezierplan.study.model import Line
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+
+COLUMNS = ["mark", "group", "role", "x", "y", "width", "height", "radius", "text"]
+_NEEDED = {
+    "cell": ["width", "height"],
+    "circle": ["radius"],
+    "line": [],
+    "dots": [],
+    "arrow": [],
+    "text": ["text"],
+}
+
+# Colours of what is filled, of what is drawn as a line, and marks of single points, by role. Neighbours differ in lightness or in form.
+_FILL = {
+    "obstacle": {"facecolor": style.OCCUPIED, "edgecolor": "0.4"},
+    "muted": {"facecolor": style.SURPLUS, "edgecolor": style.CELL_LINE},
+    "accent": {"facecolor": style.LIGHT_BLUE, "edgecolor": style.BLUE},
+}
+_NO_FILL = {"facecolor": style.FREE, "edgecolor": "0.4"}
+_LINE = {
+    "first": {"color": style.BLUE, "linestyle": "-", "linewidth": 1.3},
+    "second": {"color": style.RED, "linestyle": (0, (5, 1.5)), "linewidth": 1.3},
+    "third": {"color": style.BLACK, "linestyle": (0, (2, 1)), "linewidth": 1.1},
+    "accent": {"color": style.RED, "linestyle": "-", "linewidth": 1.8},
+    "muted": {"color": "0.6", "linestyle": (0, (4, 2)), "linewidth": 0.8},
+    "note": {"color": style.BLACK, "linestyle": "-", "linewidth": 0.7},
+}
+_DOTS = {
+    "start": {"color": style.BLACK, "marker": "s", "markersize": 6},
+    "target": {"color": style.BLACK, "marker": "*", "markersize": 10},
+    "first": {"color": style.BLUE, "marker": "o", "markersize": 4.5},
+    "second": {"color": style.RED, "marker": "^", "markersize": 5},
+    "third": {"color": style.BLACK, "marker": "D", "markersize": 4},
+    "accent": {"color": style.RED, "marker": "X", "markersize": 6.5},
+    "muted": {"color": "0.6", "marker": "o", "markersize": 3.5},
+}
+
+
+class Options(TablePanel):
+    """Keys of a panel."""
+
+    x_label: Line = Field(None, description="what the panel runs along, with its unit")
+    y_label: Line = Field(None, description="what the panel's height shows, with its unit")
+
+
+def data(marks: pd.DataFrame, *, x_label: str | None = None, y_label: str | None = None) -> pd.DataFrame:
+    """One row a mark, or a point of a line or an arrow, with `COLUMNS` and the function's own further ones, in the order of drawing.
+
+    mark: cell (a box about x, y of a width and a height), circle (about x, y, of a radius), line and arrow (through the points of a group),
+    dots (marks at x, y), text (at x, y). role: what decides the look: obstacle, start, target, first, second, third, accent, muted or note.
+    label: what the legend says of it; empty for nothing.
+
+    x_label, y_label: what the axes show, with the unit; without them, and without a workspace, a drawing has no scale. Raises
+    ValueError for an unknown mark, and for one without what it needs.
+    """
+    for mark, own in marks.groupby("mark"):
+        if mark not in _NEEDED:
+            raise ValueError(f"a drawing has no mark {mark}; known: {', '.join(_NEEDED)}")
+        for column in ["x", "y", *_NEEDED[mark]]:
+            if column not in own or own[column].isna().any():
+                raise ValueError(f"a drawing's mark {mark} needs {column}")
+    columns = [*COLUMNS, "label"]
+    return marks.reindex(columns=[*columns, *marks.columns.difference(columns, sort=False)])
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data` to scale, over their workspace if the panel has one; returns no note."""
+    axes.set_aspect("equal")
+    if "workspace" in panel:
+        home = scene.workspaces[panel["workspace"]]
+        workspaces.shade(axes, workspaces.parts(home))
+        workspaces.scale(axes, home.unit)
+    # Groups of neighbouring rows, so that what stands later in the table lies on top.
+    names = frame["mark"] + " " + frame["role"] + " " + frame["group"].astype("string").fillna("")
+    changed = (names != names.shift()).cumsum()
+    for level, (_, own) in enumerate(frame.groupby(changed, sort=True)):
+        _draw_marks(axes, own, 3 + level / 1000)
+    if "workspace" not in panel:
+        _fit(axes, frame)
+    for name in ("x", "y"):
+        if f"{name}_label" in panel:
+            axes.set(**{f"{name}label": panel[f"{name}_label"]})
+        elif "workspace" not in panel:
+            axes.set(**{f"{name}ticks": []})
+    if "workspace" not in panel and not {"x_label", "y_label"} & set(panel):
+        axes.set_frame_on(False)
+    return ""
+
+
+def _draw_marks(axes: Axes, own: pd.DataFrame, zorder: float) -> None:
+    """Draw neighbouring rows of one mark, group and role."""
+    import pandas as pd
+    from matplotlib.collections import PatchCollection
+    from matplotlib.patches import Circle, Rectangle
+
+    mark, role = own["mark"].iloc[0], own["role"].iloc[0]
+    label = {} if pd.isna(own["label"].iloc[0]) else {"label": own["label"].iloc[0]}
+    points = own[["x", "y"]].to_numpy()
+    if mark in ("cell", "circle"):
+        shapes = [
+            Circle(at, each.radius)
+            if mark == "circle"
+            else Rectangle(at - np.array([each.width, each.height]) / 2, each.width, each.height)
+            for at, each in zip(points, own.itertuples())
+        ]
+        axes.add_collection(PatchCollection(shapes, linewidth=0.5, zorder=zorder, **_FILL.get(role, _NO_FILL), **label))
+    elif mark == "line":
+        axes.plot(*points.T, zorder=zorder, **_LINE.get(role, _LINE["note"]), **label)
+    elif mark == "arrow":
+        look = _LINE.get(role, _LINE["note"])
+        shape = {"arrowstyle": "-|>", "shrinkA": 0, "shrinkB": 0, "mutation_scale": 7, **look}
+        for tail, head in itertools.pairwise(points):
+            axes.annotate("", xy=head, xytext=tail, arrowprops=shape, zorder=zorder)
+    elif mark == "dots":
+        axes.plot(*points.T, linestyle="", zorder=zorder, **_DOTS.get(role, _DOTS["third"]), **label)
+    else:
+        for at, words in zip(points, own["text"]):
+            # Of nothing but numbers a csv keeps no words.
+            axes.text(
+                *at,
+                words if isinstance(words, str) else f"{words:g}",
+                ha="center",
+                va="center_baseline",
+                zorder=zorder + 1,
+                in_layout=False,
+            )
+
+
+def _fit(axes: Axes, frame: pd.DataFrame) -> None:
+    """Show everything, with a little room around it."""
+    half_width = frame["width"].fillna(0) / 2 + frame["radius"].fillna(0)
+    half_height = frame["height"].fillna(0) / 2 + frame["radius"].fillna(0)
+    low = np.array([(frame["x"] - half_width).min(), (frame["y"] - half_height).min()])
+    high = np.array([(frame["x"] + half_width).max(), (frame["y"] + half_height).max()])
+    room = 0.04 * max(high - low)
+    axes.set_xlim(low[0] - room, high[0] + room)
+    axes.set_ylim(low[1] - room, high[1] + room)

@@ -1,0 +1,108 @@
+"""The objective over two coordinates, as lines of equal value, with its local minima."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.figures import style
+from bezierplan.figures.panels import RunsPanel
+from bezierplan.figures.panels import workspace as workspaces
+from bezierplan.study.model import Function
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
+
+    from bezierplan.analysis.results import Results
+
+
+# Steps from the lowest to the highest value, equal on a logarithmic scale.
+_STEPS = 16
+# Numbers beside the scale of colours, of those between the lowest and the highest value.
+_NUMBERS = (1, 2, 5)
+
+_LOOK = {
+    "minimum": {"color": style.BLACK, "marker": ".", "markersize": 4.5, "markerfacecolor": "#FFFFFF", "label": "local minimum"},
+    "lowest": {"color": style.RED, "marker": "X", "markersize": 7, "markeredgecolor": "#FFFFFF", "label": "lowest value"},
+    "fixed": {"color": style.BLUE, "marker": "o", "markersize": 4.5, "markerfacecolor": "#FFFFFF", "label": "control point that stays"},
+    "start": workspaces.START,
+    "target": workspaces.TARGET,
+}
+
+
+class Options(RunsPanel):
+    """Keys of a panel."""
+
+    data: Function = Field(description="the name of a function of the study's module that returns a table, called with the runs")
+
+
+def data(source: tuple[Results, pd.DataFrame]) -> pd.DataFrame:
+    """What is drawn, one row a place; columns: problem, part, x, y (in the workspace's unit), objective (of nodes, in units).
+
+    Parts: node (of a grid, y changing fastest), minimum (a node below its neighbours), lowest (the lowest of the nodes), fixed (what stays
+    where it is), start, target. source: runs of one problem, and the table of a function with the columns part, x, y and objective. Raises
+    ValueError for runs of several problems.
+    """
+    import pandas as pd
+
+    results, table = source
+    names = list(results.runs["problem"].unique())
+    if len(names) != 1:
+        raise ValueError(f"a landscape is one of exactly one problem, not of {len(names)} {names}; see its `where`")
+    problem = results.problems[names[0]]
+    ends = pd.DataFrame([("start", *problem.start), ("target", *problem.target)], columns=["part", "x", "y"])
+    drawn = pd.concat([table, ends], ignore_index=True).assign(problem=problem.name)
+    return drawn[["problem", "part", "x", "y", "objective"]]
+
+
+def nodes(frame: pd.DataFrame) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Coordinates x (n,) and y (m,) of a grid of nodes and the objective there (m, n)."""
+    grid = frame[frame["part"] == "node"].pivot(index="y", columns="x", values="objective")
+    return grid.columns.to_numpy(), grid.index.to_numpy(), grid.to_numpy()
+
+
+def scale_of(values: np.ndarray) -> ScalarMappable:
+    """Colours of values, the higher the lighter, on a logarithmic scale."""
+    import matplotlib as mpl
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import LogNorm
+
+    return ScalarMappable(LogNorm(values.min(), values.max()), mpl.colormaps[style.SCALE])
+
+
+def round_numbers(values: np.ndarray) -> list[float]:
+    """Round numbers between the lowest and the highest of positive values."""
+    powers = range(int(np.log10(values.min())) - 1, int(np.log10(values.max())) + 1)
+    return [n * 10.0**power for power in powers for n in _NUMBERS if values.min() <= n * 10.0**power <= values.max()]
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data`; returns the note below the panel's title."""
+    workspace = scene.problems[panel["experiment"]][frame["problem"].iloc[0]].workspace
+    x, y, values = nodes(frame)
+    colours = scale_of(values)
+    levels = np.geomspace(values.min(), values.max(), _STEPS)
+    axes.contourf(x, y, values, levels=levels, norm=colours.norm, cmap=colours.cmap)
+    axes.contour(x, y, values, levels=levels, colors="#FFFFFF", linewidths=0.3)
+    workspaces.shade(axes, workspaces.parts(workspace), outlines=True)
+    workspaces.scale(axes, workspace.unit)
+    for part, look in _LOOK.items():
+        places = frame[frame["part"] == part]
+        if not places.empty:
+            axes.plot(places["x"], places["y"], clip_on=False, **({"linestyle": "", "zorder": 4} | look))
+    bar = axes.figure.colorbar(colours, cax=axes.inset_axes([1.04, 0, 0.05, 1]))
+    bar.set_ticks(round_numbers(values), labels=[f"{number:g}" for number in round_numbers(values)])
+    bar.minorticks_off()
+    bar.set_label(f"objective ({scene.unit})")
+    return minima_note(frame, scene.unit)
+
+
+def minima_note(frame: pd.DataFrame, unit: str) -> str:
+    """How many local minima there are, and the range of the objective."""
+    values = frame.loc[frame["part"] == "node", "objective"]
+    count = int((frame["part"] == "minimum").sum())
+    return f"{values.min():.2f} to {values.max():.0f} {unit}; {count} local minim{'um' if count == 1 else 'a'} of {len(values)} nodes"

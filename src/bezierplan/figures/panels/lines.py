@@ -1,0 +1,170 @@
+"""A metric's statistic against a numeric factor, with its interval and single repeats; or two columns of a table against each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from bezierplan.analysis import metrics, statistics
+from bezierplan.figures import style
+from bezierplan.figures.panels import TablePanel, exactly_one
+from bezierplan.study.model import Column, Experiment, Function, Metric, Where, Whole, listed
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
+
+# Of more points than this only the points are drawn: lines between values that jump would cover the panel.
+_MOST_JOINED = 100
+
+
+class Options(TablePanel):
+    """Keys of a panel: of runs, or of a table."""
+
+    experiment: Experiment = Field(None, description="the name of an experiment")
+    data: Function = Field(None, description="in place of experiment, the name of a function of the study's module that returns a table")
+    where: Where = Field({}, description="column of the runs table or of the data → value or list of values")
+    x: Column = Field(description="a column of numbers of the runs table or of the data")
+    metric: Metric = Field(description="the name of a metric, or of a column of the data")
+    hue: Column = Field(None, description="a column of the runs table or of the data: a line for each of its values")
+    statistic: Literal["mean", "median", "share"] = Field("mean", description="of runs: mean (left out: this), median or share")
+    repeats: listed(Whole) = Field((), description="a list of whole numbers: single runs that are drawn besides")
+
+    @model_validator(mode="after")
+    def _check_source(self) -> Options:
+        exactly_one(self, "experiment", "data")
+        return self
+
+
+def data(
+    source: Results | pd.DataFrame,
+    *,
+    x: str,
+    metric: str,
+    statistic: Literal["mean", "median", "share"] = "mean",
+    hue: str | None = None,
+    repeats: Sequence[int] = (),
+) -> pd.DataFrame:
+    """One row a point; columns: hue (if one is given) and x, both by their own names; part (statistic, repeat or value), value.
+
+    Of runs: the columns of `summary` for the statistic, and repeat, the number of a single run. Of a table: the column `metric` as it is.
+
+    x: a numeric column. hue: a column, a line for each of its values. repeats: which single runs are drawn besides. Raises ValueError if a
+    single repeat has several runs at one place, and KeyError for an unknown metric or column.
+    """
+    import pandas as pd
+
+    keys = [x] if hue is None else [hue, x]
+    if isinstance(source, pd.DataFrame):
+        return source[[*keys, metric]].rename(columns={metric: "value"}).assign(part="value")
+    frame = summary(source, keys, metric, statistic).assign(part="statistic")
+    single = source.runs[source.runs["repeat"].isin(repeats)]
+    if single.duplicated([*keys, "repeat"]).any():
+        raise ValueError(f"repeats: several runs of one repeat have equal {' and '.join(keys)}; see the panel's `where`")
+    values = metrics.values(source.runs, metric, source.problems).loc[single.index]
+    thin = single[[*keys, "repeat"]].assign(value=values, part="repeat", **constants(source.runs))
+    return pd.concat([frame, thin.sort_values(["repeat", *keys])], ignore_index=True)
+
+
+def summary(results: Results, keys: list[str], metric: str, statistic: str) -> pd.DataFrame:
+    """A statistic of a metric for each group of runs with equal keys.
+
+    Columns: those of `constants`; the keys; runs and feasible_runs (counts), n (runs that have the metric), value, low95 and high95 (its
+    95 % bootstrap interval), in the metric's unit.
+    """
+    import pandas as pd
+
+    runs = results.runs.assign(value=metrics.values(results.runs, metric, results.problems))
+    rows = []
+    for key, own in runs.groupby(keys):
+        # Sorted, so that nothing depends on the order in which chunks were read.
+        numbers = np.sort(own["value"].dropna().to_numpy())
+        named = dict(zip(keys, key))
+        name = "/".join([metric, statistic, *(f"{column}={value}" for column, value in named.items())])
+        low, high = statistics.interval(statistic, numbers, statistics.generator(name))
+        counts = {"runs": len(own), "feasible_runs": int(own["feasible"].sum()), "n": len(numbers)}
+        rows.append(constants(runs) | named | counts | {"value": statistics.statistic(statistic, numbers), "low95": low, "high95": high})
+    return pd.DataFrame(rows)
+
+
+def constants(runs: pd.DataFrame) -> dict[str, Any]:
+    """Problem and method of runs, where they are of one only."""
+    return {column: runs[column].iloc[0] for column in ("problem", "method") if runs[column].nunique() == 1}
+
+
+# Lines that stand beside what is found: the exact shortest length, and the best known path of the methods' own kind.
+LIMITS = {
+    "reference": {**style.REFERENCE, "label": "best known path of the same kind"},
+    "bound": {**style.BOUND, "label": "shortest path possible"},
+}
+
+
+def shared_limits(runs: pd.DataFrame) -> dict[str, float]:
+    """Values of `LIMITS` that all runs share, by name."""
+    return {name: runs[name].iloc[0] for name in LIMITS if name in runs and runs[name].notna().all() and runs[name].nunique() == 1}
+
+
+def axis_label(column: str, scene: Any, statistic: str = "") -> str:
+    """Name and unit of what an axis shows; a column that is no metric has its unit in its label, or counts something, or has none."""
+    if column not in metrics.METRICS and style.column_name(column, scene.labels).endswith(")"):
+        return f"{statistic} {style.column_name(column, scene.labels)}".lstrip()
+    unit = metrics.unit(column, scene.unit) if column in metrics.METRICS else "-"
+    return f"{statistic} {style.column_name(column, scene.labels)} ({unit})".lstrip()
+
+
+def runs_note(frame: pd.DataFrame, statistic: str, where: str) -> str:
+    """How many runs a statistic is of, from the columns of `summary`, and which share of them is feasible."""
+    fewest, most = frame["runs"].min(), frame["runs"].max()
+    share = 100 * frame["feasible_runs"] / frame["runs"]
+    low, high = f"{share.min():.0f}", f"{share.max():.0f}"
+    counted = f"{fewest:g}" if fewest == most else f"{fewest:g} to {most:g}"
+    return f"{statistic} of {counted} runs a {where}; {low if low == high else f'{low} to {high}'} % feasible"
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data`; returns the note below the panel's title."""
+    x, hue = panel["x"], panel.get("hue")
+    of_runs = "experiment" in panel
+    statistic = panel.get("statistic", "mean") if of_runs else ""
+    groups = [None] if hue is None else style.in_order(frame[hue], panel)
+    for group, look in zip(groups, style.lines(groups)):
+        own = frame if hue is None else frame[frame[hue] == group]
+        label = statistic if hue is None else style.printed(group, hue, scene.labels)
+        if of_runs:
+            _draw_statistic(axes, own[own["part"] == "statistic"], x, look | {"label": label})
+            _draw_repeats(axes, own[own["part"] == "repeat"], x, None if hue is None else look["color"])
+        else:
+            axes.plot(own[x], own["value"], label=label or None, **_joined(look, len(own)))
+    if (frame[x] % 1 == 0).all():
+        axes.xaxis.get_major_locator().set_params(integer=True)
+    axes.set_xlabel(axis_label(x, scene))
+    axes.set_ylabel(axis_label(panel["metric"], scene, statistic))
+    axes.grid(visible=True)
+    return runs_note(frame[frame["part"] == "statistic"], statistic, "point") if of_runs else ""
+
+
+def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict) -> None:
+    """A line with marks in a band, the interval of its points."""
+    axes.fill_between(frame[x], frame["low95"], frame["high95"], label="95 % interval", zorder=1.5, **style.INTERVAL_BAND)
+    axes.plot(frame[x], frame["value"], zorder=3, **look)
+
+
+def _draw_repeats(axes: Axes, frame: pd.DataFrame, x: str, colour: str | None) -> None:
+    """A thin line for each single repeat; without a colour each gets one of its own and a name."""
+    repeats = frame["repeat"].unique()
+    looks = style.lines([str(repeat) for repeat in range(len(repeats) + 1)])[1:]  # the first look is the statistic's
+    for repeat, look in zip(repeats, looks):
+        own = frame[frame["repeat"] == repeat]
+        thin = look | {"linewidth": 0.6, "markersize": 2.2, "zorder": 2.5}
+        axes.plot(own[x], own["value"], **(thin | ({"color": colour} if colour else {"label": f"repeat {repeat:g}"})))
+
+
+def _joined(look: dict, points: int) -> dict:
+    """The look of a line through so many points of a table."""
+    return look | ({"marker": ""} if points <= _MOST_JOINED else {"linestyle": "", "marker": ".", "markersize": 1.2})

@@ -1,0 +1,255 @@
+"""A path with its control points: of one picked run, in its workspace beside the shortest path possible, or one that is given.
+
+Or several paths in one workspace, a picked run for each value of a column.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from bezierplan.figures import style
+from bezierplan.figures.panels import PICK, Pick, RunsPanel, exactly_one
+from bezierplan.figures.panels import workspace as workspaces
+from bezierplan.geometry import curves
+from bezierplan.study.checked import closest
+from bezierplan.study.model import Column, Experiment, Line, Model, Number, wrong
+from bezierplan.workspaces.problem import Path
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
+
+# About as many straight steps are drawn for a curve; the ends of its pieces are always among them.
+_STEPS = 600
+
+# Marks in a narrow panel are so much smaller.
+_NARROW_MARK = 0.6
+
+_CONTROL_POINT = {"color": style.BLUE, "marker": "o", "markersize": 4.5, "markerfacecolor": style.FREE, "zorder": 5}
+
+# In the order of the legend.
+_LOOK = {
+    "path": {**style.RUN_SHOWN, "label": "path", "zorder": 3},
+    "control": {**_CONTROL_POINT, "linewidth": 0.7, "linestyle": (0, (4, 2)), "label": "control points and polygon"},
+    "points": {**_CONTROL_POINT, "linestyle": "", "label": "control points"},
+    "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull of the control points", "zorder": 2},
+    "bound": {**style.BOUND, "label": "shortest path possible", "zorder": 4},
+    "collision": {"color": style.BLACK, "linestyle": "", "marker": "X", "markersize": 8, "label": "first collision", "zorder": 6},
+    "start": workspaces.START,
+    "target": workspaces.TARGET,
+}
+
+
+def picked(results: Results, pick: dict[str, Any]) -> tuple[pd.Series | None, dict[str, Any]]:
+    """The run that a panel shows, or None if no run is to be picked, and what names it in the columns of the panel's csv.
+
+    Columns: problem, method, runs and feasible_runs (counts), run (its id; empty without a run), curve, length (in units), feasible.
+    Raises ValueError unless all the panel's runs are of one problem and one method.
+    """
+    from bezierplan.analysis.results import pick as pick_run
+
+    runs = results.runs
+    for column in ("problem", "method"):
+        found = list(runs[column].unique())
+        if len(found) != 1:
+            raise ValueError(f"a panel that shows one run needs runs of exactly one {column}, not of {len(found)} {found}; see its `where`")
+    run = pick_run(runs, pick)
+    names = {"problem": runs["problem"].iloc[0], "method": runs["method"].iloc[0]}
+    names |= {"runs": len(runs), "feasible_runs": int(runs["feasible"].sum())}
+    if run is None:
+        return None, names | {"run": None, "curve": None, "length": np.nan, "feasible": False}
+    return run, names | {"run": run["id"], "curve": run["path_curve"], "length": run["length"], "feasible": bool(run["feasible"])}
+
+
+def run_note(frame: pd.DataFrame, *more: str) -> str:
+    """Which run a panel shows, from the columns that `picked` names, and more lines about it; or only that there is none."""
+    import pandas as pd
+
+    row = frame.iloc[0]
+    if pd.isna(row["run"]):
+        return f"no {'such' if row['feasible_runs'] else 'feasible'} run among {row['runs']:g}"
+    return "\n".join([f"run {row['run']}" + ("" if row["feasible"] else " (not feasible)"), *more])
+
+
+def feasible_note(frame: pd.DataFrame) -> str:
+    """How many of a panel's runs are feasible, from the columns that `picked` names."""
+    row = frame.iloc[0]
+    return f"{row['feasible_runs']:g} of {row['runs']:g} runs are feasible"
+
+
+class Explicit(Model):
+    """A path without a run."""
+
+    curve: Line = Field(description="the kind of a curve")
+    points: list[list[Number]] = Field(description="a list of at least two [x, y]", min_length=2)
+
+
+class Options(RunsPanel):
+    """Keys of a panel: of picked runs, or of an explicit path."""
+
+    experiment: Experiment = Field(None, description="the name of an experiment")
+    pick: Pick = Field(None, description=PICK)
+    explicit: Explicit = Field(None, description="in place of experiment and pick, {curve, points}: a path without a run")
+    hue: Column = Field(None, description="a column of the runs table: a run is picked for each of its values")
+    control: Literal["all", "points", "none"] = Field(
+        "all",
+        description="whether control points are drawn with their polygon and hull (all; left out: this), alone (points), or not (none)",
+    )
+    view: list[Number] = Field(None, description="what is seen: [lowest x, highest x, lowest y, highest y]", min_length=4, max_length=4)
+
+    @model_validator(mode="after")
+    def _check_source(self) -> Options:
+        exactly_one(self, "pick", "explicit")
+        exactly_one(self, "experiment", "explicit")
+        if self.explicit and self.hue:
+            raise wrong("hue: needs experiment")
+        if self.explicit and any(len(point) != 2 for point in self.explicit.points):
+            raise wrong("explicit: points: expected a list of at least two [x, y]")
+        if self.explicit and self.explicit.curve not in curves.CURVES:
+            raise wrong(f"explicit: curve: {self.explicit.curve}: unknown{closest(self.explicit.curve, curves.CURVES)}")
+        return self
+
+
+def data(
+    results: Results | None,
+    *,
+    pick: dict[str, Any] | None = None,
+    explicit: dict[str, Any] | None = None,
+    hue: str | None = None,
+    control: Literal["all", "points", "none"] = "all",
+    view: Sequence[float] | None = None,
+) -> pd.DataFrame:
+    """What is drawn of a path: one row a point, in the order in which points are joined.
+
+    Columns: those of `picked`, for a run; part (start, target, bound, hull, control or points, path, and collision, the first one of a path
+    that has one), x, y (in the workspace's unit). Without a run to show, start and target only. Only curves that lie within it have a hull,
+    and control points are left out where some are tangents.
+
+    pick: the run, as in `analysis.results.pick`. explicit: {curve, points}, a path without a run. hue: a column; a run is picked for each
+    of its values, which the rows name, and drawn without control points. control: whether control points are drawn with their polygon and
+    hull, alone, or not at all. view: what is seen of the workspace, as its bounds; all rows are here nevertheless.
+    Raises ValueError unless either pick or explicit is given and all runs, of one value of hue, are of one problem and one method, and if a
+    curve cannot have such points.
+    """
+    import pandas as pd
+
+    from bezierplan.analysis.results import path_of
+
+    if (pick is None) == (explicit is None):
+        raise ValueError("a panel of kind paths needs either pick or explicit")
+    if explicit is not None:
+        path = Path(explicit["curve"], np.array(explicit["points"], dtype=float))
+        start, target = path.points[list(curves.ends(path.curve))]
+        return table({"start": [start], "target": [target]} | _drawn(path, control))
+    if hue is not None:
+        own = results.runs.groupby(hue)
+        frames = [data(results._replace(runs=runs), pick=pick, control="none").assign(**{hue: value}) for value, runs in own]
+        return pd.concat(frames, ignore_index=True)
+    run, names = picked(results, pick)
+    problem = results.problems[names["problem"]]
+    drawn = {"start": [problem.start], "target": [problem.target]}
+    path = None if run is None else path_of(run)
+    if path is not None:
+        drawn["bound"] = np.reshape(results.bounds.loc[problem.name, "bound_path"], (-1, 2))
+        drawn |= _drawn(path, control)
+        if not run["feasible"]:
+            drawn["collision"] = [curves.point_at(path, run["collision_at"])]
+    frame = table(drawn).assign(**names)
+    return frame[[*names, "part", "x", "y"]]
+
+
+def _drawn(path: Path, control: str) -> dict[str, np.ndarray]:
+    """Points (n, 2) of a path by the part that they make."""
+    import shapely
+
+    drawn = {}
+    if path.curve in curves.B_SPLINES and control == "all":
+        drawn["hull"] = shapely.get_coordinates(shapely.MultiPoint(path.points).convex_hull)
+    if path.curve != "ferguson" and control != "none":
+        drawn["control" if control == "all" else "points"] = path.points
+    return drawn | {"path": steps(path)}
+
+
+def table(drawn: dict[str, Sequence]) -> pd.DataFrame:
+    """Points (n, 2) by part as rows."""
+    import pandas as pd
+
+    points = [pd.DataFrame(np.asarray(xy, dtype=float), columns=["x", "y"]).assign(part=part) for part, xy in drawn.items()]
+    return pd.concat(points, ignore_index=True)[["part", "x", "y"]]
+
+
+def steps(path: Path) -> np.ndarray:
+    """Points (n, 2) along a path, close enough to look smooth."""
+    pieces = len(curves.bezier_pieces(path))
+    steps = pieces * max(1, _STEPS // pieces)
+    return curves.sample_matrix(path.curve, len(path.points), steps + 1) @ path.points
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data`, in their workspace if they have one; returns the note below the panel's title."""
+    if "explicit" in panel:
+        workspaces.scale(axes, scene.unit)
+        axes.set_aspect("equal")
+        axes.margins(0.06)
+    else:
+        workspace = scene.problems[panel["experiment"]][frame["problem"].iloc[0]].workspace
+        workspaces.shade(axes, workspaces.parts(workspace))
+        workspaces.scale(axes, workspace.unit)
+    if "hue" in panel:
+        note = _draw_side_by_side(axes, frame, scene, panel)
+    else:
+        note = "" if "explicit" in panel else _note(frame, workspace.unit, scene.narrow)
+        draw_parts(axes, frame, narrow=scene.narrow, clip="view" in panel)
+    if "view" in panel:
+        axes.axis(panel["view"])
+    if scene.narrow:
+        axes.locator_params(nbins=4, integer=True)
+    return note
+
+
+def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the paths of all values of hue, each in a look of its own, and what belongs to their problem once; returns their lengths."""
+    hue = panel["hue"]
+    values = style.in_order(frame[hue], panel)
+    lengths = []
+    for value, look in zip(values, style.lines(values)):
+        own = frame[frame[hue] == value]
+        draw_parts(axes, own[own["part"] == "collision"], narrow=scene.narrow, clip="view" in panel)
+        path = own[own["part"] == "path"]
+        name = style.printed(value, hue, scene.labels)
+        axes.plot(path["x"], path["y"], zorder=3, **look | {"marker": "", "label": name})
+        lengths.append(f"{name} {own['length'].iloc[0]:.1f}" if len(path) else f"{name} no path")
+    once = frame[frame["part"].isin(["start", "target", "bound"])].drop_duplicates(["part", "x", "y"])
+    draw_parts(axes, once, narrow=scene.narrow, clip="view" in panel)
+    return f"lengths ({scene.unit}): {', '.join(lengths)}"
+
+
+def draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> None:
+    """Draw the points of each part; what lies beyond the panel only if they are not clipped."""
+    for part, look in _LOOK.items():
+        points = frame.loc[frame["part"] == part, ["x", "y"]]
+        if not points.empty:
+            size = {"markersize": _NARROW_MARK * look["markersize"]} if narrow and "markersize" in look else {}
+            axes.plot(points["x"], points["y"], clip_on=clip, **(look | size))
+
+
+def _note(frame: pd.DataFrame, unit: str, narrow: bool) -> str:
+    """Which run it is, and its length; a narrow panel has room for no more."""
+    row = frame.iloc[0]
+    if not (frame["part"] == "path").any():
+        return run_note(frame, "no path")
+    if narrow:
+        repeat = row["run"].rpartition("/")[2]
+        return f"repeat {repeat}{'' if row['feasible'] else ' (not feasible)'}\nlength {row['length']:.2f} {unit}"
+    control = frame.loc[frame["part"].isin(["control", "points"]), ["x", "y"]]
+    words = [f"length {row['length']:.1f} {unit}"]
+    if not control.empty:
+        words.append(f"{len(control.drop_duplicates())} of {len(control)} control points distinct")
+    return run_note(frame, ", ".join(words), feasible_note(frame))

@@ -1,0 +1,42 @@
+"""The objective over two coordinates as a surface, seen from the side."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from bezierplan.figures.panels import landscape
+from bezierplan.figures.panels.landscape import Options as Options
+from bezierplan.figures.panels.landscape import data as data
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from mpl_toolkits.mplot3d import Axes3D
+
+
+# The axes that a panel needs.
+PROJECTION = "3d"
+
+# Where it is seen from, in degrees.
+_VIEW = {"elev": 45, "azim": -60}
+
+
+def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the nodes of `data`, at a logarithmic height; returns the note below the panel's title."""
+    unit = scene.problems[panel["experiment"]][frame["problem"].iloc[0]].workspace.unit
+    x, y, values = landscape.nodes(frame)
+    colours = landscape.scale_of(values).to_rgba(values)
+    look = {"rstride": 1, "cstride": 1, "linewidth": 0, "antialiased": False, "rasterized": True}
+    axes.plot_surface(*np.meshgrid(x, y), np.log10(values), facecolors=colours, **look)
+    axes.view_init(**_VIEW)
+    axes.set_box_aspect((1, 1, 0.7), zoom=1.0)
+    axes.set_xlabel(f"x ({unit})", labelpad=-6)
+    axes.set_ylabel(f"y ({unit})", labelpad=-6)
+    axes.set_zlabel(f"objective ({scene.unit})", labelpad=-6)
+    numbers = landscape.round_numbers(values)
+    axes.set_zticks(np.log10(numbers), [f"{number:g}" for number in numbers])
+    axes.locator_params(axis="x", nbins=5)
+    axes.locator_params(axis="y", nbins=5)
+    axes.tick_params(pad=-3)
+    return landscape.minima_note(frame, scene.unit)

@@ -1,0 +1,160 @@
+"""How runs came to their paths: the way of one control point of the best path through the iterations, or the first and the last path."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.analysis import metrics
+from bezierplan.figures import style
+from bezierplan.figures.panels import RunsPanel, landscape
+from bezierplan.figures.panels import workspace as workspaces
+from bezierplan.figures.panels.paths import steps
+from bezierplan.planners import planner_module
+from bezierplan.running import execution
+from bezierplan.study.model import Function, Metric, Whole, value
+from bezierplan.workspaces.problem import Path, Problem
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
+
+# Lines of equal value below a way, from the lowest to the highest.
+_LEVELS = 14
+
+_NAMES = ("first run", "second run", "third run", "fourth run", "fifth run")
+_FIRST = {"color": style.BLUE, "linestyle": "", "marker": "o", "markersize": 7, "markerfacecolor": "none", "markeredgewidth": 1.3}
+
+
+class Options(RunsPanel):
+    """Keys of a panel."""
+
+    rerun: ClassVar[bool] = True
+
+    data: Function = Field(None, description="the name of a function of the study's module that returns a landscape, called with the runs")
+    by: Metric = Field(description="the name of a metric: of the feasible runs the best one of each of its commonest values is drawn")
+    runs: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 5, "")] = Field(
+        description="of how many of these values, a whole number from 1 to 5"
+    )
+    point: Whole = Field(None, description="the number of the control point whose way is drawn, at least 0; left out: first and last path")
+
+
+def data(source: Results | tuple[Results, pd.DataFrame], *, by: str, runs: int, point: int | None = None) -> pd.DataFrame:
+    """What is drawn, one row a place; columns: problem, method, candidates (feasible runs), groups (values of the metric among them), part,
+    run (its id), length (of the run's path, in units), iteration, x, y (in the workspace's unit), objective (of nodes, in units).
+
+    Parts: start, target; way, a control point of the best path after iteration 0, 1, ...; without a point path, points along the best path
+    after iteration 0 and after the last one; node, of the landscape below a way.
+
+    The runs are made again, since no table keeps what they passed through. source: runs with their jobs, of one problem and one method
+    whose planner has `track`; with them the table of a landscape, as in `landscape.data`. by: a metric; of the feasible runs the best one
+    of each of its commonest values is drawn. runs: of so many values, at most five. point: number of the control point, 0 for the start.
+    Raises ValueError for runs of several problems or methods, for a point that the curve does not have, and if a run made again ends in
+    another path.
+    """
+    import pandas as pd
+
+    from bezierplan.analysis.results import Results, pick
+
+    results, table = (source, None) if isinstance(source, Results) else source
+    for column in ("problem", "method"):
+        found = list(results.runs[column].unique())
+        if len(found) != 1:
+            raise ValueError(f"a panel of tracks needs runs of exactly one {column}, not of {len(found)} {found}; see its `where`")
+    problem = results.problems[results.runs["problem"].iloc[0]]
+    feasible = results.runs[results.runs["feasible"]]
+    groups = metrics.values(feasible, by, results.problems)
+    parts = [pd.DataFrame([("start", *problem.start), ("target", *problem.target)], columns=["part", "x", "y"])]
+    for group in _commonest(groups)[:runs]:
+        run = pick(feasible[groups == group], {"lowest": "objective"})
+        parts.append(_part(run, _tracked(run, results.jobs[run["method"]], problem), point))
+    if table is not None:
+        parts.append(table[table["part"] == "node"])
+    names = {"problem": problem.name, "method": results.runs["method"].iloc[0], "candidates": len(feasible), "groups": groups.nunique()}
+    columns = ["part", "run", "length", "iteration", "x", "y", "objective"]
+    return pd.concat(parts, ignore_index=True).reindex(columns=columns).assign(**names)[[*names, *columns]]
+
+
+def _commonest(groups: pd.Series) -> list[float]:
+    """The different values, the commonest first, equally common ones by size."""
+    counts = groups.value_counts().rename_axis("group").reset_index(name="count")
+    return counts.sort_values(["count", "group"], ascending=[False, True])["group"].to_list()
+
+
+def _tracked(run: pd.Series, job: dict, problem: Problem) -> list[Path]:
+    """The best path after each iteration of a run, made again from its job."""
+    from bezierplan.analysis.results import path_of
+
+    condition = next(each for each in execution.conditions(list(job["problems"]), job["vary"]) if each.name == run["condition"])
+    rng = execution.generator(job, condition, int(run["repeat"]))
+    track = planner_module(job["planner"]).track(problem, rng, **execution.settings_in(job, condition))
+    if not np.array_equal(track[-1], path_of(run).points):
+        raise ValueError(f"run {run['id']}: made again it ends in another path; its runs table is of another version")
+    return [Path(run["path_curve"], points) for points in track]
+
+
+def _part(run: pd.Series, paths: list[Path], point: int | None) -> pd.DataFrame:
+    """Rows of one run."""
+    import pandas as pd
+
+    if point is None:
+        drawn = [pd.DataFrame(steps(paths[i]), columns=["x", "y"]).assign(part="path", iteration=i) for i in (0, len(paths) - 1)]
+    elif 0 <= point < len(paths[0].points):
+        way = pd.DataFrame([path.points[point] for path in paths], columns=["x", "y"])
+        drawn = [way.assign(part="way", iteration=range(len(paths)))]
+    else:
+        raise ValueError(f"point: {point}; expected 0 to {len(paths[0].points) - 1}, a control point of the curve")
+    return pd.concat(drawn, ignore_index=True).assign(run=run["id"], length=run["length"])
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data`; returns the note below the panel's title."""
+    workspace = scene.problems[panel["experiment"]][frame["problem"].iloc[0]].workspace
+    if (frame["part"] == "node").any():
+        x, y, values = landscape.nodes(frame)
+        levels = np.geomspace(values.min(), values.max(), _LEVELS)
+        axes.contour(x, y, values, levels=levels, colors="0.72", linewidths=0.5, zorder=0.4)
+    workspaces.shade(axes, workspaces.parts(workspace), outlines="point" in panel)
+    workspaces.scale(axes, workspace.unit)
+    for end, look in (("start", workspaces.START), ("target", workspaces.TARGET)):
+        places = frame[frame["part"] == end]
+        axes.plot(places["x"], places["y"], **look)
+    runs = frame["run"].dropna().unique()
+    looks = [{"color": style.BLACK, "linestyle": "-"}, *style.lines(list(_NAMES))[1:]]
+    notes = []
+    for run, name, look in zip(runs, _NAMES, looks):
+        own = frame[frame["run"] == run]
+        look = {"color": look["color"], "linestyle": look["linestyle"]}
+        _draw_way(axes, own[own["part"] == "way"], look | {"label": name})
+        _draw_paths(axes, own[own["part"] == "path"], look | {"label": name})
+        notes.append(f"{name}: repeat {run.rpartition('/')[2]}, length {own['length'].iloc[0]:.2f} {workspace.unit}")
+    row = frame.iloc[0]
+    notes.append(f"{row['groups']:g} classes among {row['candidates']:g} feasible runs" if len(runs) else "no feasible run")
+    return "\n".join(notes)
+
+
+def _draw_way(axes: Axes, way: pd.DataFrame, look: dict) -> None:
+    """The way of a control point, from a circle with an arrow to a cross."""
+    if way.empty:
+        return
+    axes.plot(way["x"], way["y"], linewidth=1.1, marker=".", markersize=4, zorder=5, **look)
+    first, last = way.iloc[0], way.iloc[-1]
+    axes.plot(first["x"], first["y"], label="first position", zorder=6, clip_on=False, **_FIRST)
+    cross = {"color": look["color"], "linestyle": "", "marker": "X", "markersize": 7, "markeredgecolor": style.FREE}
+    axes.plot(last["x"], last["y"], label="last position", zorder=6, clip_on=False, **cross)
+    inwards = np.sign([first["x"] - np.mean(axes.get_xlim()), first["y"] - np.mean(axes.get_ylim())])
+    arrow = {"arrowstyle": "-|>", "color": style.BLUE, "linewidth": 1.1, "shrinkB": 4}
+    axes.annotate("", first[["x", "y"]].astype(float), xytext=-22 * inwards, textcoords="offset points", arrowprops=arrow, zorder=6)
+
+
+def _draw_paths(axes: Axes, paths: pd.DataFrame, look: dict) -> None:
+    """The first path of a run thin and dotted, the last one thick."""
+    for iteration, own in paths.groupby("iteration"):
+        last = iteration == paths["iteration"].max()
+        thin = {"linewidth": 0.9, "linestyle": (0, (1, 1)), "label": "path after iteration 0"}
+        axes.plot(own["x"], own["y"], zorder=5 if last else 4, clip_on=True, **(look | ({"linewidth": 1.7} if last else thin)))

@@ -1,0 +1,220 @@
+"""A workspace: cells with their numbers, circles or polygons; nothing planned."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.figures import style
+from bezierplan.figures.panels import Panel
+from bezierplan.study.model import Flag
+from bezierplan.study.model import Workspace as Described
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.grid import embed as embed_cells
+from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.problem import Workspace
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+    from matplotlib.patches import Circle, PathPatch
+
+
+_CELLS = {
+    "free": {"facecolor": style.FREE},
+    "occupied": {"facecolor": style.OCCUPIED, "label": "occupied cell"},
+    "surplus": {"facecolor": style.SURPLUS, "label": "surplus cell, occupied", **style.SURPLUS_HATCH},
+}
+
+_OBSTACLE = {"facecolor": style.OCCUPIED, "edgecolor": "0.4", "linewidth": 0.5, "zorder": 0.5}
+_OUTLINE = {"facecolor": "none", "edgecolor": style.BLACK, "linewidth": 0.8, "linestyle": (0, (3, 2)), "zorder": 3}
+
+START = {"color": style.BLACK, "linestyle": "", "marker": "s", "markersize": 7, "label": "start", "zorder": 4.5}
+TARGET = {"color": style.BLACK, "linestyle": "", "marker": "*", "markersize": 12, "label": "target", "zorder": 4.5}
+
+# A grid that was drawn from circles or polygons shows its cells only up to this number of them; of more the shapes tell enough.
+_MOST_CELLS = 2500
+
+_COLUMNS = ["part", "x", "y", "size", "obstacle", "ring", "number"]
+
+
+class Options(Panel):
+    """Keys of a panel."""
+
+    workspace: Described = Field(description="the name of a workspace")
+    numbers: Literal["all", "free", "none"] = Field("none", description="which cells show their number: all, free or none (left out: this)")
+    embed: Flag = Field(False, description="whether a grid is put into one of a power of two of rows and columns, true or false")
+
+
+def data(workspace: Workspace, *, numbers: Literal["all", "free", "none"] = "none", embed: bool = False) -> pd.DataFrame:
+    """What is drawn of a workspace, in its unit: one row a corner of its bounds, a cell, a circle, or a point of a ring.
+
+    Columns: part (corner, free, occupied, surplus, circle, ring), x, y (a cell's or circle's centre), size (a cell's side, a circle's
+    radius), obstacle and ring (polygons only), number (of the cells that show it; see `workspaces.grid`), height (of the cells of a grid
+    that has heights, in its unit).
+
+    numbers: which cells show their number. embed: put a grid into one of a power of two of rows and columns, its surplus cells marked.
+    Raises ValueError if numbers or embedding are asked of a workspace without cells.
+    """
+    if isinstance(workspace, Grid):
+        whole = replace(workspace, occupied=embed_cells(workspace.occupied)) if embed else workspace
+        return _table(whole.bounds, _cells(whole, workspace, numbers))
+    if numbers != "none" or embed:
+        raise ValueError("numbers and embed are options of workspaces of kind grid")
+    return parts(workspace)
+
+
+def parts(workspace: Workspace) -> pd.DataFrame:
+    """What is drawn of a workspace as it is, without numbers: rows as in `data`."""
+    if isinstance(workspace, Grid):
+        source = workspace.drawn
+        cells = [] if source and workspace.occupied.size > _MOST_CELLS else [_cells(workspace, workspace, "none")]
+        return _table(workspace.bounds, *cells, *([_shapes(source)] if source else []))
+    return _table(workspace.bounds, _shapes(workspace))
+
+
+def _shapes(workspace: Circles | Polygons) -> pd.DataFrame:
+    return _discs(workspace) if isinstance(workspace, Circles) else _rings(workspace)
+
+
+def _discs(circles: Circles) -> pd.DataFrame:
+    import pandas as pd
+
+    x, y = circles.centres.T
+    return pd.DataFrame({"part": "circle", "x": x, "y": y, "size": circles.radii, "obstacle": range(len(x))})
+
+
+def _table(bounds: tuple[float, float, float, float], *drawn: pd.DataFrame) -> pd.DataFrame:
+    """The corners of the bounds and all that is drawn within them, with all columns; heights only where there are some."""
+    import pandas as pd
+
+    corners = pd.DataFrame({"part": "corner", "x": bounds[:2], "y": bounds[2:]})
+    table = pd.concat([corners, *drawn], ignore_index=True)
+    return table.reindex(columns=[*_COLUMNS, *table.columns.intersection(["height"])])
+
+
+def _cells(whole: Grid, own: Grid, numbers: str) -> pd.DataFrame:
+    """Cells of a grid, those beyond its own part surplus."""
+    import pandas as pd
+
+    own_rows, own_columns = own.occupied.shape
+    row, column = (index.ravel() for index in np.indices(whole.occupied.shape))
+    surplus = (row >= own_rows) | (column >= own_columns)
+    part = np.where(surplus, "surplus", np.where(whole.occupied.ravel(), "occupied", "free"))
+    shown = {"all": part != "", "free": part == "free", "none": part == ""}[numbers]
+    x, y = whole.in_units(np.column_stack([column, row]) + 0.5).T
+    cells = pd.DataFrame({"part": part, "x": x, "y": y, "size": whole.cell})
+    cells["number"] = pd.Series(np.arange(len(cells)), dtype="Int64").where(shown)
+    if whole.heights is not None and whole is own:
+        cells["height"] = whole.heights.ravel()
+    return cells
+
+
+def _rings(workspace: Polygons) -> pd.DataFrame:
+    import pandas as pd
+
+    rings = [
+        pd.DataFrame({"part": "ring", "x": points[:, 0], "y": points[:, 1], "obstacle": obstacle, "ring": ring})
+        for obstacle, outline in enumerate(workspace.obstacles)
+        for ring, points in enumerate(outline)
+    ]
+    return pd.concat([pd.DataFrame(), *rings], ignore_index=True)
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data`; returns the note below the panel's title.
+
+    Cells that show their numbers need no scale: it would take the room that makes the numbers legible.
+    """
+    unit = scene.workspaces[panel["workspace"]].unit
+    shade(axes, frame)
+    numbered = frame[frame["number"].notna()]
+    for x, y, number in zip(numbered["x"], numbered["y"], numbered["number"]):
+        axes.text(x, y, str(int(number)), ha="center", va="center_baseline", in_layout=False)
+    if numbered.empty:
+        scale(axes, unit)
+        return ""
+    axes.set_xticks([])
+    axes.set_yticks([])
+    side = numbered["size"].iloc[0]
+    return f"cells of {side:g} x {side:g} {unit}"
+
+
+def scale(axes: Axes, unit: str) -> None:
+    """Name the two coordinates of a workspace."""
+    axes.set_xlabel(f"x ({unit})")
+    axes.set_ylabel(f"y ({unit})")
+
+
+def shade(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
+    """Draw the rows of `data` or `parts` without numbers or labels of the axes, to scale; of circles and polygons the outlines alone, if
+    something else fills the panel, as the cells of a grid that was drawn from them.
+    """
+    corners = frame[frame["part"] == "corner"]
+    axes.set_xlim(corners["x"].min(), corners["x"].max())
+    axes.set_ylim(corners["y"].min(), corners["y"].max())
+    axes.set_aspect("equal")
+    for part, look in _CELLS.items():
+        _draw_cells(axes, frame[frame["part"] == part], look)
+    if "height" in frame:
+        _draw_heights(axes, frame[frame["part"] == "free"])
+    look = _OUTLINE if outlines or frame["part"].isin(_CELLS).any() else _OBSTACLE
+    _draw_obstacles(axes, _circles(frame[frame["part"] == "circle"]), look)
+    _draw_obstacles(axes, _polygons(frame[frame["part"] == "ring"]), look)
+
+
+def _draw_cells(axes: Axes, cells: pd.DataFrame, look: dict) -> None:
+    from matplotlib.collections import PolyCollection
+
+    if cells.empty:
+        return
+    square = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
+    corners = cells[["x", "y"]].to_numpy()[:, None] + cells["size"].to_numpy()[:, None, None] * square
+    axes.add_collection(PolyCollection(corners, edgecolor=style.CELL_LINE, linewidth=0.4, zorder=0.5, **look), autolim=False)
+
+
+def _draw_heights(axes: Axes, cells: pd.DataFrame) -> None:
+    """Shade free cells by their height; the legend names the lowest and the highest."""
+    low, high = cells["height"].min(), cells["height"].max()
+    for height, own in cells.groupby("height"):
+        look = {"facecolor": style.ground((height - low) / (high - low) if high > low else 0.0)}
+        _draw_cells(axes, own, look | ({"label": f"height {height:g}"} if height in (low, high) else {}))
+
+
+def _circles(circles: pd.DataFrame) -> list[Circle]:
+    from matplotlib.patches import Circle
+
+    return [Circle((x, y), radius) for x, y, radius in zip(circles["x"], circles["y"], circles["size"])]
+
+
+def _polygons(rings: pd.DataFrame) -> list[PathPatch]:
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path as Outline
+
+    outlines = [
+        Outline.make_compound_path(*(Outline(np.vstack([ring, ring[:1]]), closed=True) for ring in _oriented(obstacle)))
+        for _, obstacle in rings.groupby("obstacle")
+    ]
+    return [PathPatch(outline) for outline in outlines]
+
+
+def _oriented(obstacle: pd.DataFrame) -> list[np.ndarray]:
+    """The rings (n, 2) of an obstacle, the outer one counterclockwise and its holes clockwise: only so do holes stay open."""
+    rings = []
+    for number, ring in obstacle.groupby("ring"):
+        points = ring[["x", "y"]].to_numpy()
+        x, y = points.T
+        counterclockwise = x @ np.roll(y, -1) > y @ np.roll(x, -1)
+        rings.append(points if counterclockwise == (number == 0) else points[::-1])
+    return rings
+
+
+def _draw_obstacles(axes: Axes, shapes: list, look: dict) -> None:
+    from matplotlib.collections import PatchCollection
+
+    if shapes:
+        axes.add_collection(PatchCollection(shapes, label="obstacle", **look), autolim=False)

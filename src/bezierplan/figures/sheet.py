@@ -1,0 +1,273 @@
+"""A figure: its panels on one sheet, and the table of everything that is drawn there.
+
+A kind of panel is a module of `bezierplan.figures` with two functions:
+
+    data(source, *, <options>) -> DataFrame         what is drawn; the source is Results, a Workspace where nothing is planned, the table
+                                                    of a study's function, Results with the table of a function of them, or None where
+                                                    the options say all
+    draw(axes, frame, scene, panel) -> str          draws the rows of its panel, labels its artists for the legend, computes no
+                                                    statistics; returns the note printed below the panel's title
+
+The keyword-only arguments of `data` are the options that a panel may have; the class `Options` beside it says so to those who write a
+study, with the keys that name what is shown. A kind whose panels are not flat has `PROJECTION`, matplotlib's name of it.
+"""
+
+import importlib
+import math
+import re
+import string
+from collections.abc import Callable, Mapping
+from types import MappingProxyType, ModuleType
+from typing import Any, NamedTuple
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from bezierplan.analysis.results import Results, select
+from bezierplan.figures import style
+from bezierplan.workspaces.problem import Problem, Workspace
+
+# Keys that a panel of any kind may have beside the options of its kind.
+PANEL_KEYS = ("kind", "title", "experiment", "where", "workspace", "data", "published")
+
+
+class Scene(NamedTuple):
+    """What drawings need beside the table of what is drawn.
+
+    problems: by experiment, then by name. workspaces: those without an experiment, by name. labels: how names are printed.
+    unit: name of the study's unit of length. narrow: whether panels are too narrow for more than the shortest of notes; `draw` says so.
+    """
+
+    problems: dict[str, dict[str, Problem]]
+    workspaces: dict[str, Workspace]
+    labels: dict[str, str]
+    unit: str
+    narrow: bool = False
+
+
+def kind_module(name: str) -> ModuleType:
+    """The module of a kind of panel. Raises ModuleNotFoundError if there is none."""
+    return importlib.import_module(f"bezierplan.figures.panels.{name}")
+
+
+def data(
+    panels: list[dict[str, Any]],
+    results: dict[str, Results],
+    workspaces: dict[str, Workspace],
+    functions: Mapping[str, Callable[..., pd.DataFrame]] = MappingProxyType({}),
+    published: Mapping[str, pd.DataFrame] = MappingProxyType({}),
+) -> pd.DataFrame:
+    """Everything that is drawn: the rows of all panels, the number of the panel (0, 1, ...) in the first column.
+
+    panels: kind, title, experiment or data with where (as in `analysis.results.select`) or workspace, and options of the kind. results: by
+    experiment. workspaces: by name. functions: what `data` may name; each is called once, for the table that its panels draw, with the
+    workspace of a panel that names one as well, and with the published tables if a panel asks for them; for a panel with an experiment it
+    is called with the panel's results. published: all published tables by file name. Raises ValueError for options or runs that a kind
+    cannot draw.
+    """
+    alone = [panel for panel in panels if "data" in panel and "experiment" not in panel]
+    wanted = {(panel["data"], panel.get("workspace")): panel.get("published", False) for panel in alone}
+    tables = {
+        (name, home): functions[name](*([workspaces[home]] if home else []), *([published] if asked else []))
+        for (name, home), asked in wanted.items()
+    }
+    frames = []
+    for number, panel in enumerate(panels):
+        options = {name: value for name, value in panel.items() if name not in PANEL_KEYS}
+        frame = kind_module(panel["kind"]).data(_source(panel, results, workspaces, tables, functions), **options)
+        frame.insert(0, "panel", number)
+        frames.append(frame)
+    return pd.concat(frames, ignore_index=True)
+
+
+def _source(
+    panel: dict[str, Any],
+    results: dict[str, Results],
+    workspaces: dict[str, Workspace],
+    tables: dict[tuple[str, str | None], pd.DataFrame],
+    functions: Mapping[str, Callable[..., pd.DataFrame]],
+) -> Results | tuple[Results, pd.DataFrame] | Workspace | pd.DataFrame | None:
+    """What a panel draws from."""
+    if "experiment" in panel:
+        found = results[panel["experiment"]]
+        found = found._replace(runs=select(found.runs, panel.get("where", {})))
+        return (found, functions[panel["data"]](found)) if "data" in panel else found
+    if "data" in panel:
+        return select(tables[panel["data"], panel.get("workspace")], panel.get("where", {})).copy()
+    return workspaces[panel["workspace"]] if "workspace" in panel else None
+
+
+def write_data(frame: pd.DataFrame, file: str) -> None:
+    """Write what is drawn as csv."""
+    frame.to_csv(file, index=False, lineterminator="\n")
+
+
+def read_data(file: str) -> pd.DataFrame:
+    """What `write_data` wrote, every number to its last bit."""
+    return pd.read_csv(file, low_memory=False)  # a column of each kind as a whole
+
+
+def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, columns: int) -> Figure:
+    """The figure of a table made by `data`: as wide as one text column for one column of panels, as two for more.
+
+    frame: best the csv read back (`read_data`), so that what is drawn is what stands there. columns: panels in a row.
+    """
+    rows = math.ceil(len(panels) / columns)
+    width = style.NARROW if columns == 1 else style.WIDE
+    scene = scene._replace(narrow=width / columns < style.NARROW_PANEL)
+    with mpl.rc_context(style.SETTINGS):
+        figure = Figure(figsize=(width, width * rows / columns))
+        grid = _places(figure, panels, rows, columns)
+        headings, notes = [], []
+        for number, panel in enumerate(panels):
+            own = frame[frame["panel"] == number]
+            notes.append(kind_module(panel["kind"]).draw(grid.flat[number], own, scene, panel))
+            letter = f"({string.ascii_lowercase[number]}) " if len(panels) > 1 else ""
+            headings.append(letter + _title(panel, own, scene))
+        for axes in grid.flat[len(panels) :]:
+            axes.set_visible(False)
+        if scene.narrow:
+            _name_axes_once(grid)
+        room = _room(figure, grid)
+        for number in range(len(panels)):
+            notes[number] = _broken(notes[number], room, style.SMALLEST_TEXT)
+            grid.flat[number].set_title(_broken(headings[number], room, style.TITLE_TEXT), loc="left")
+        for first in range(0, len(panels), columns):
+            _write_notes(grid.flat[first : first + columns], notes[first : first + columns])
+        _lay_out(figure, grid, _draw_legend(figure))
+    return figure
+
+
+def _places(figure: Figure, panels: list[dict[str, Any]], rows: int, columns: int) -> np.ndarray:
+    """Axes (rows, columns) for panels, row by row, and for what room they leave in the last one."""
+    projections = [getattr(kind_module(panel["kind"]), "PROJECTION", None) for panel in panels]
+    projections += [None] * (rows * columns - len(panels))
+    places = [figure.add_subplot(rows, columns, number + 1, projection=projection) for number, projection in enumerate(projections)]
+    return np.array(places).reshape(rows, columns)
+
+
+def _title(panel: dict[str, Any], frame: pd.DataFrame, scene: Scene) -> str:
+    """A panel's title with the method whose runs it shows, where it is one and there is room: it tells how the curve is read."""
+    words = [panel["title"]] if "title" in panel else []
+    methods = frame["method"].dropna().unique() if "method" in frame else []
+    if len(methods) == 1 and not (words and scene.narrow):
+        words.append(scene.labels.get(methods[0], methods[0]))
+    return ", ".join(words)
+
+
+def _write_notes(row: np.ndarray, notes: list[str]) -> None:
+    """Write the notes of a row of panels between the panels and their titles, all titles at one height."""
+    lines = max(len(note.splitlines()) for note in notes)
+    top = 3 + 1.25 * style.SMALLEST_TEXT * lines
+    place = {"xy": (0, 1), "xycoords": "axes fraction", "xytext": (0, top), "textcoords": "offset points", "va": "top"}
+    for axes, note in zip(row, notes):
+        axes.set_title(axes.get_title(loc="left"), loc="left", pad=top + 3)
+        if note:
+            axes.annotate(note, linespacing=1.1, **place)
+
+
+def _name_axes_once(grid: np.ndarray) -> None:
+    """Keep axes' names at the left and lower edge of the panels (rows, columns) only, where they are the same for a row or a column."""
+    for row in grid:
+        if len({axes.get_ylabel() for axes in row if axes.get_visible()}) == 1:
+            for axes in row[1:]:
+                axes.set_ylabel("")
+    for column in grid.T:
+        shown = [axes for axes in column if axes.get_visible()]
+        if len({axes.get_xlabel() for axes in shown}) == 1:
+            for axes in shown[:-1]:
+                axes.set_xlabel("")
+
+
+def _room(figure: Figure, grid: np.ndarray) -> float:
+    """Room for text above each of the panels (rows, columns), up to what stands beside its neighbour, in points."""
+    width, columns = 72 * figure.get_figwidth(), grid.shape[1]
+    least = 36 if width / columns >= 72 * style.NARROW_PANEL else 30  # what labels of an upright axis take, if they are short
+    margins = 72 * (np.array([[_margins(axes)[:2] for axes in row] for row in grid]) + style.GAP / 2)
+    left, right = margins.max(axis=0).T
+    return (width - np.maximum(left, least).sum() - right.sum()) / columns + right.min()
+
+
+def _broken(text: str, room: float, size: float) -> str:
+    """Text broken after spaces, commas and slashes into lines that fit a room; room and size of the text in points."""
+    most = int(room / (0.57 * size))  # on average a character of this font is a little less wide than this
+    lines = []
+    for paragraph in text.splitlines():
+        line = ""
+        for word in re.findall(r"[^ ,/]*[ ,/]*", paragraph):
+            if line and len(line + word.rstrip()) > most:
+                lines.append(line.rstrip())
+                line = ""
+            line += word
+        lines.append(line.rstrip())
+    return "\n".join(lines)
+
+
+def _draw_legend(figure: Figure) -> float:
+    """One legend of all panels below them, each label once, in as few rows as fit the width; returns the room for it in inches."""
+    handles = {}
+    for axes in figure.axes:
+        for handle, label in zip(*axes.get_legend_handles_labels()):
+            handles.setdefault(label, handle)
+    for columns in range(len(handles), 0, -1):
+        legend = figure.legend(handles.values(), handles.keys(), loc="lower center", ncols=columns)
+        extent = legend.get_window_extent()
+        if columns == 1 or extent.width <= figure.bbox.width:
+            return extent.y1 / figure.dpi + style.GAP / 2
+        legend.remove()
+    return 0.0
+
+
+def _lay_out(figure: Figure, grid: np.ndarray, legend: float) -> None:
+    """Place panels (rows, columns), all as wide as the sheet allows, a row's tops level, and fit the sheet's height to them.
+
+    Three rounds, because the labels beside a panel depend on its size: ticks, and names of upright axes, which are broken to fit its
+    height. legend: room for it, in inches.
+    """
+    for _ in range(3):
+        margins = np.array([[_margins(axes) for axes in row] for row in grid]) + style.GAP / 2
+        left, right = margins[:, :, :2].max(axis=0).T
+        bottom, top = margins[:, :, 2:].max(axis=1).T
+        sheet_width = figure.get_figwidth()
+        width = (sheet_width - (left + right).sum()) / len(left)
+        heights = width * np.array([[_shape(axes) for axes in row] for row in grid])
+        depths = np.cumsum(top + heights.max(axis=1) + bottom)
+        sheet_height = depths[-1] + legend
+        figure.set_figheight(sheet_height)
+        x = np.cumsum(left + width + right) - width - right
+        y = sheet_height - depths + bottom + heights.max(axis=1)
+        for (row, column), axes in np.ndenumerate(grid):
+            height = heights[row, column]
+            corner = x[column] / sheet_width, (y[row] - height) / sheet_height
+            axes.set_position([*corner, width / sheet_width, height / sheet_height])
+            if axes.name != "3d":
+                axes.set_ylabel(_broken(axes.get_ylabel(), 72 * height, style.SMALLEST_TEXT))
+
+
+def _margins(axes: Axes) -> tuple[float, float, float, float]:
+    """What stands out of a panel to the left, to the right, below and above, in inches."""
+    outer = axes.get_tightbbox(for_layout_only=True)
+    if outer is None:  # a place without a panel
+        return 0.0, 0.0, 0.0, 0.0
+    inner = axes.get_window_extent()
+    dots = np.array([inner.x0 - outer.x0, outer.x1 - inner.x1, inner.y0 - outer.y0, outer.y1 - inner.y1])
+    return tuple(np.maximum(dots, 0) / axes.figure.dpi)
+
+
+def _shape(axes: Axes) -> float:
+    """Height of a panel as a share of its width: to scale or as the kind asks for it, else the same for all."""
+    if axes.name == "3d":
+        return style.HIGH_PANEL_HEIGHT
+    if axes.get_box_aspect() is not None:
+        return axes.get_box_aspect()
+    return style.PANEL_HEIGHT if axes.get_aspect() == "auto" else axes.get_data_ratio() * axes.get_aspect()
+
+
+def save(figure: Figure, svg: str, png: str) -> None:
+    """Save a figure as svg and as png of 300 dots per inch; equal drawings give equal bytes, whenever they are made."""
+    with mpl.rc_context(style.SETTINGS):
+        figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
+        figure.savefig(png, format="png", dpi=300, metadata={"Software": None})

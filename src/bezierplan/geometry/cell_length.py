@@ -1,0 +1,229 @@
+"""The cells that a path touches, and lengths that count cells: 1 for a straight step, 1.5 for a diagonal one (elhoseny2017, Section 4.6).
+
+The paper does not say which cells of a curve it counts. `cells4` counts every cell that the curve touches: a free diagonal of N cells costs
+1.5 N, every other curve that is monotone in x and y costs about 2 N. `cells8` leaves out the corner cells of that sequence, as pictures of
+lines usually do.
+
+In the kernels coordinates are in cells from the grid's lower left corner (`Grid.in_cells`): cell i reaches from i to i + 1.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from bezierplan.geometry import curves
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.problem import Path
+
+STRAIGHT = 1.0
+DIAGONAL = 1.5
+
+# A coordinate this near to a grid line, in cells, keeps the cell of the sample before it. Otherwise rounding would decide, and the two
+# diagonals of one field would differ in length.
+_ON_LINE = 1e-9
+
+# Two grid lines that a segment crosses at parameters this near are crossed in their corner.
+_IN_CORNER = 1e-6
+
+# A path of cells goes through their centres, this near.
+_CENTRE = 1e-9
+
+
+@njit(cache=True)
+def parts(points: np.ndarray) -> int:
+    """Number of equal parts of a Bezier piece's parameter (degree + 1, 2), in cells, between whose ends it moves less than one cell.
+
+    A straight piece has parts of at most half a cell. The speed of a curve is at most its degree times the longest leg of its polygon.
+    """
+    degree = len(points) - 1
+    total = longest = 0.0
+    for i in range(degree):
+        leg = math.hypot(points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1])
+        total += leg
+        longest = max(longest, leg)
+    if degree == 1:
+        return max(1, math.ceil(2.0 * total))
+    return math.ceil(max(2.0 * total, 1.02 * degree * longest)) + 2
+
+
+@njit(cache=True)
+def sample(points: np.ndarray, last: int, stride: int) -> tuple[np.ndarray, np.ndarray]:
+    """x and y of a Bezier piece (degree + 1, 2) at the parameters 0, stride / last, 2 stride / last, ..., and at 1 if the stride is 1.
+
+    Horner's rule in Bernstein form, all weights positive, for all samples at once.
+    """
+    degree = len(points) - 1
+    count = last // stride + 1
+    x, y = np.full(count, points[0, 0]), np.full(count, points[0, 1])
+    t, power = np.empty(count), np.ones(count)
+    for s in range(count):
+        t[s] = s * stride / last
+    binomial = 1.0
+    for i in range(1, degree + 1):
+        binomial *= (degree - i + 1) / i
+        weight_x, weight_y = binomial * points[i, 0], binomial * points[i, 1]
+        for s in range(count):
+            power[s] *= t[s]
+            x[s] = x[s] * (1.0 - t[s]) + power[s] * weight_x
+            y[s] = y[s] * (1.0 - t[s]) + power[s] * weight_y
+    if stride == 1:
+        x[last], y[last] = points[degree, 0], points[degree, 1]
+    return x, y
+
+
+@njit(cache=True)
+def _cell(coordinate: float, before: int) -> int:
+    """Column or row of a coordinate; on a grid line that of the sample before, if it lies beside the line."""
+    line = math.floor(coordinate + 0.5)
+    if abs(coordinate - line) <= _ON_LINE and (before == line or before == line - 1):
+        return before
+    return math.floor(coordinate)
+
+
+@njit(cache=True)
+def touched_cells(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Columns and rows of the cells that a polyline touches, in order; its vertices are less than a cell apart.
+
+    Through a corner of cells, and only there, a step is diagonal.
+    """
+    columns = np.empty(2 * len(x), dtype=np.int64)
+    rows = np.empty(2 * len(x), dtype=np.int64)
+    column, row = math.floor(x[0]), math.floor(y[0])
+    columns[0], rows[0] = column, row
+    count = 1
+    for s in range(1, len(x)):
+        next_column, next_row = _cell(x[s], column), _cell(y[s], row)
+        if next_column == column and next_row == row:
+            continue
+        if next_column != column and next_row != row:
+            to_x = (max(column, next_column) - x[s - 1]) / (x[s] - x[s - 1])
+            to_y = (max(row, next_row) - y[s - 1]) / (y[s] - y[s - 1])
+            if abs(to_x - to_y) >= _IN_CORNER:
+                columns[count] = next_column if to_x < to_y else column
+                rows[count] = row if to_x < to_y else next_row
+                count += 1
+        column, row = next_column, next_row
+        columns[count], rows[count] = column, row
+        count += 1
+    return columns[:count], rows[:count]
+
+
+@njit(cache=True)
+def occupied_cells(columns: np.ndarray, rows: np.ndarray, occupied: np.ndarray) -> int:
+    """How many cells of a sequence are occupied, cells outside the grid as well; `occupied` is bool (rows, columns)."""
+    count = 0
+    for i in range(len(columns)):
+        inside = 0 <= rows[i] < occupied.shape[0] and 0 <= columns[i] < occupied.shape[1]
+        count += not inside or occupied[rows[i], columns[i]]
+    return count
+
+
+@njit(cache=True)
+def is_free_leg(occupied: np.ndarray, x0: float, y0: float, x1: float, y1: float) -> bool:
+    """Whether all cells that a straight leg touches are free; cells outside the grid are not.
+
+    These are the cells of `touched_cells`, found without samples: from grid line to grid line. A leg goes through a corner if it passes so
+    near that no sample could tell, so none is free here that is not free there.
+    """
+    rows, columns = occupied.shape
+    column, row = math.floor(x0), math.floor(y0)
+    last_column, last_row = _last_cell(x0, x1), _last_cell(y0, y1)
+    if min(column, last_column) < 0 or max(column, last_column) >= columns or min(row, last_row) < 0 or max(row, last_row) >= rows:
+        return False
+    if occupied[row, column]:
+        return False
+    width, height = abs(x1 - x0), abs(y1 - y0)
+    right, up = x1 > x0, y1 > y0
+    # Ways to the next grid lines, as far as x and y go.
+    to_x = column + 1 - x0 if right else x0 - column
+    to_y = row + 1 - y0 if up else y0 - row
+    in_corner = _ON_LINE * min(width, height)
+    while column != last_column or row != last_row:
+        later = to_x * height - to_y * width  # above 0: the horizontal line comes first
+        crosses_x = column != last_column and (row == last_row or later <= in_corner)
+        if row != last_row and (column == last_column or later >= -in_corner):
+            row += 1 if up else -1
+            to_y += 1.0
+        if crosses_x:
+            column += 1 if right else -1
+            to_x += 1.0
+        if occupied[row, column]:
+            return False
+    return True
+
+
+@njit(cache=True)
+def _last_cell(first: float, last: float) -> int:
+    """Column or row in which a leg ends; the one before, if it ends on a grid line."""
+    if last > first:
+        return max(math.floor(first), math.ceil(last - _ON_LINE) - 1)
+    return min(math.floor(first), math.floor(last + _ON_LINE))
+
+
+@njit(cache=True)
+def cells4(columns: np.ndarray, rows: np.ndarray) -> float:
+    """Length of a sequence of cells, each a neighbour of the one before."""
+    length = 0.0
+    for i in range(1, len(columns)):
+        diagonal = columns[i] != columns[i - 1] and rows[i] != rows[i - 1]
+        length += DIAGONAL if diagonal else STRAIGHT
+    return length
+
+
+@njit(cache=True)
+def cells8(columns: np.ndarray, rows: np.ndarray) -> float:
+    """Length of a sequence of cells in which two straight steps that make a diagonal one are replaced by it, from the begin on."""
+    length = 0.0
+    i = 0
+    while i < len(columns) - 1:
+        if i + 2 < len(columns) and abs(columns[i + 2] - columns[i]) == 1 and abs(rows[i + 2] - rows[i]) == 1:
+            one_step = columns[i + 1] == columns[i] or rows[i + 1] == rows[i]
+            if one_step and (columns[i + 2] == columns[i + 1] or rows[i + 2] == rows[i + 1]):
+                length += DIAGONAL
+                i += 2
+                continue
+        diagonal = columns[i + 1] != columns[i] and rows[i + 1] != rows[i]
+        length += DIAGONAL if diagonal else STRAIGHT
+        i += 1
+    return length
+
+
+@njit(cache=True)
+def polyline_length(x: np.ndarray, y: np.ndarray) -> float:
+    """Length of a polyline."""
+    steps = np.empty(len(x) - 1)
+    # Roots and their sum in two loops: the first one can then use vector instructions, and the order of the sum stays as written.
+    for s in range(len(steps)):
+        steps[s] = math.sqrt((x[s + 1] - x[s]) ** 2 + (y[s + 1] - y[s]) ** 2)
+    length = 0.0
+    for step in steps:
+        length += step
+    return length
+
+
+def samples(path: Path, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+    """x and y of samples of a path, in cells, less than a cell apart."""
+    xs, ys = zip(*(sample(piece, parts(piece), 1) for piece in grid.in_cells(curves.bezier_pieces(path))))
+    return np.concatenate(xs), np.concatenate(ys)
+
+
+def length4(path: Path, grid: Grid) -> float:
+    """`cells4` of a path, in units."""
+    return cells4(*touched_cells(*samples(path, grid))) * grid.cell
+
+
+def length8(path: Path, grid: Grid) -> float:
+    """`cells8` of a path, in units. A path that goes from centre to centre of neighbouring cells is measured on these as they are."""
+    own = _is_cell_path(path, grid)
+    return (cells4 if own else cells8)(*touched_cells(*samples(path, grid))) * grid.cell
+
+
+def _is_cell_path(path: Path, grid: Grid) -> bool:
+    """Whether a path is a polyline through centres of cells, with legs along rows, columns and diagonals."""
+    if path.curve != "polyline":
+        return False
+    points = grid.in_cells(path.points) - 0.5
+    legs = np.abs(np.diff(np.rint(points), axis=0))
+    straight = (legs.min(axis=1) == 0) | (legs[:, 0] == legs[:, 1])
+    return bool(np.all(np.abs(points - np.rint(points)) <= _CENTRE) and straight.all())

@@ -1,0 +1,268 @@
+"""Every curve kind as one linear map from control points to Bezier pieces; samples, exact length, curvature.
+
+Four kinds are clamped uniform B-splines of n control points and differ in degree only: `polyline` (1), `piecewise_quadratic` (2),
+`piecewise_cubic` (3), and `bezier` (n - 1, which has one piece). A piece of a B-spline is a Bezier curve whose control points are values of
+the spline's blossom (its polar form).
+
+Two kinds pass through their points. `spline` is the cubic spline through all of them at uniform parameters, with not-a-knot ends.
+`ferguson` is a chain of cubic Hermite pieces (tharwat2018's reference 33); its control points are pairs of a point and the tangent in it,
+the derivative by a piece's own parameter: P0, T0, V, TV, ..., P1, T1.
+
+A `cubic_chain` is any chain of cubic Bezier pieces, each beginning where the last one ends: 3 k + 1 control points for k pieces.
+"""
+
+import math
+from functools import cache
+
+import numpy as np
+from numba import njit
+
+from bezierplan.workspaces.problem import Path
+
+_DEGREE = {"polyline": 1, "piecewise_quadratic": 2, "piecewise_cubic": 3, "bezier": None}
+B_SPLINES = tuple(_DEGREE)
+CURVES = (*B_SPLINES, "spline", "ferguson", "cubic_chain")
+
+# Below this share of the curve's highest speed a point counts as standing still: repeated control points do that, and curvature is not
+# defined there.
+STANDSTILL = 1e-3
+
+_NODES_8, _WEIGHTS_8 = np.polynomial.legendre.leggauss(8)
+_NODES_16, _WEIGHTS_16 = np.polynomial.legendre.leggauss(16)
+
+
+def least_points(curve: str) -> int:
+    """Fewest control points that a curve kind can have, start and target included."""
+    if curve in ("ferguson", "cubic_chain"):
+        return 4
+    return max(2, (_DEGREE.get(curve) or 1) + 1)
+
+
+def ends(curve: str) -> tuple[int, int]:
+    """Which control points are start and target; the last one of a `ferguson` curve is a tangent."""
+    return (0, -2) if curve == "ferguson" else (0, -1)
+
+
+def _blossom(knots: np.ndarray, span: int, arguments: np.ndarray) -> np.ndarray:
+    """Weights (degree + 1,) of the control points span - degree .. span in the value of a spline's blossom at `degree` arguments."""
+    degree = len(arguments)
+    rows = np.eye(degree + 1)
+    for level, u in enumerate(arguments, start=1):
+        for j in range(degree, level - 1, -1):
+            low = knots[span - degree + j]
+            high = knots[span + 1 + j - level]
+            share = (u - low) / (high - low)
+            rows[j] = (1 - share) * rows[j - 1] + share * rows[j]
+    return rows[degree]
+
+
+@cache
+def piece_matrix(curve: str, points: int) -> np.ndarray:
+    """The linear map from control points to Bezier pieces: (pieces, degree + 1, points). Read-only.
+
+    Raises ValueError for an unknown kind, for too few control points, for an odd number of those of a `ferguson` curve, and for a number of
+    those of a `cubic_chain` that is not 3 k + 1.
+    """
+    if curve not in CURVES:
+        raise ValueError(f"unknown curve {curve!r}; known: {', '.join(CURVES)}")
+    if points < least_points(curve):
+        raise ValueError(f"a curve of kind {curve} needs at least {least_points(curve)} control points, not {points}")
+    if curve == "ferguson":
+        matrix = _ferguson_pieces(points)
+    elif curve == "cubic_chain":
+        matrix = np.eye(points)[_chained(points)]
+    elif curve == "spline":
+        matrix = _spline_pieces(points)
+    else:
+        matrix = _b_spline_pieces(_DEGREE[curve] or points - 1, points)
+    matrix.setflags(write=False)
+    return matrix
+
+
+def _b_spline_pieces(degree: int, points: int) -> np.ndarray:
+    pieces = points - degree
+    knots = np.concatenate([np.zeros(degree), np.arange(pieces + 1.0), np.full(degree, float(pieces))])
+    matrix = np.zeros((pieces, degree + 1, points))
+    for piece in range(pieces):
+        for k in range(degree + 1):
+            arguments = np.array([piece] * (degree - k) + [piece + 1.0] * k)
+            matrix[piece, k, piece : piece + degree + 1] = _blossom(knots, piece + degree, arguments)
+    return matrix
+
+
+def _spline_pieces(points: int) -> np.ndarray:
+    from scipy.interpolate import CubicSpline
+
+    # Two and three points leave the line and the parabola through them.
+    at = np.arange(float(points))
+    slopes = CubicSpline(at, np.eye(points), bc_type="not-a-knot")(at, nu=1)
+    return _hermite_pieces(np.eye(points), slopes)
+
+
+def _chained(points: int) -> np.ndarray:
+    """Which of the control points of a `cubic_chain` each of its pieces has: (pieces, 4)."""
+    if points % 3 != 1:
+        raise ValueError(f"a curve of kind cubic_chain needs 3 k + 1 control points, not {points}")
+    return np.arange(0, points - 1, 3)[:, None] + np.arange(4)
+
+
+def _ferguson_pieces(points: int) -> np.ndarray:
+    if points % 2:
+        raise ValueError(f"a curve of kind ferguson needs an even number of control points, not {points}")
+    rows = np.eye(points)
+    return _hermite_pieces(rows[::2], rows[1::2])
+
+
+def _hermite_pieces(values: np.ndarray, slopes: np.ndarray) -> np.ndarray:
+    """Cubic pieces between consecutive values (n, points) with the slopes (n, points) in them, by the parameter of a piece."""
+    return np.stack([values[:-1], values[:-1] + slopes[:-1] / 3, values[1:] - slopes[1:] / 3, values[1:]], axis=1)
+
+
+def bezier_pieces(path: Path) -> np.ndarray:
+    """The path as Bezier pieces (pieces, degree + 1, 2), in its unit, each piece beginning where the last one ends."""
+    if path.curve == "cubic_chain":
+        return path.points[_chained(len(path.points))]  # without a matrix that grows with the square of the pieces
+    return piece_matrix(path.curve, len(path.points)) @ path.points
+
+
+def bernstein(degree: int, t: np.ndarray) -> np.ndarray:
+    """Bernstein polynomials (len(t), degree + 1) at parameters t in [0, 1] (song2016, eq. 2; tharwat2018, eq. 2)."""
+    k = np.arange(degree + 1)
+    binomial = np.array([math.comb(degree, i) for i in k], dtype=float)
+    return binomial * t[:, None] ** k * (1 - t[:, None]) ** (degree - k)
+
+
+def sample_parameters(pieces: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
+    """Piece (samples,) and parameter within it (samples,) of values that are uniform over a whole curve, both ends included.
+
+    Joints are met exactly: the parameters are quotients of whole numbers.
+    """
+    steps = np.arange(samples) * pieces
+    piece = np.minimum(steps // (samples - 1), pieces - 1)
+    return piece, (steps - piece * (samples - 1)) / (samples - 1)
+
+
+@cache
+def sample_matrix(curve: str, points: int, samples: int) -> np.ndarray:
+    """The linear map from control points to samples, uniform in the parameter over the whole curve: (samples, points). Read-only."""
+    matrix = piece_matrix(curve, points)
+    piece, t = sample_parameters(len(matrix), samples)
+    basis = np.einsum("sk,skp->sp", bernstein(matrix.shape[1] - 1, t), matrix[piece])
+    basis.setflags(write=False)
+    return basis
+
+
+def point_at(path: Path, at: float) -> np.ndarray:
+    """The point (2,) of a path at a piece's number plus the parameter in the piece, in the path's unit."""
+    pieces = bezier_pieces(path)
+    piece = min(int(at), len(pieces) - 1)
+    return bernstein(pieces.shape[1] - 1, np.array([at - piece]))[0] @ pieces[piece]
+
+
+@njit(cache=True)
+def _speed(differences: np.ndarray, t: float) -> float:
+    """|B'(t)| of a piece from its control points' differences (degree, 2), by Horner's rule in Bernstein form."""
+    n = len(differences) - 1
+    s = 1.0 - t
+    x, y = differences[0] * s if n else differences[0]
+    factor = 1.0
+    binomial = 1.0
+    for i in range(1, n):
+        factor *= t
+        binomial *= (n - i + 1) / i
+        x = (x + factor * binomial * differences[i, 0]) * s
+        y = (y + factor * binomial * differences[i, 1]) * s
+    if n:
+        factor *= t
+        x += factor * differences[n, 0]
+        y += factor * differences[n, 1]
+    return (n + 1) * math.hypot(x, y)
+
+
+@njit(cache=True)
+def _integral(differences: np.ndarray, low: float, high: float, nodes: np.ndarray, weights: np.ndarray) -> float:
+    total = 0.0
+    for node, weight in zip(nodes, weights):
+        total += weight * _speed(differences, 0.5 * ((high - low) * node + high + low))
+    return 0.5 * (high - low) * total
+
+
+@njit(cache=True)
+def _piece_length(piece: np.ndarray) -> float:
+    """Arc length of one Bezier piece (degree + 1, 2) to a relative 1e-10, by adaptive Gauss-Legendre quadrature of its speed.
+
+    Orders 8 and 16 are compared on an interval, which is halved where they differ; a cusp only costs some twenty halvings.
+    """
+    if len(piece) == 2:
+        return math.hypot(piece[1, 0] - piece[0, 0], piece[1, 1] - piece[0, 1])
+    differences = piece[1:] - piece[:-1]
+    scale = 0.0
+    for i in range(len(differences)):
+        scale += math.hypot(differences[i, 0], differences[i, 1])
+    total = 0.0
+    stack = [(0.0, 1.0)]
+    while stack:
+        low, high = stack.pop()
+        coarse = _integral(differences, low, high, _NODES_8, _WEIGHTS_8)
+        fine = _integral(differences, low, high, _NODES_16, _WEIGHTS_16)
+        if abs(coarse - fine) <= 1e-11 * scale * max(high - low, 1e-4) or high - low < 1e-12:
+            total += fine
+        else:
+            middle = 0.5 * (low + high)
+            stack.append((middle, high))
+            stack.append((low, middle))
+    return total
+
+
+def length(path: Path) -> float:
+    """Exact arc length of a path in its unit (relative error below 1e-10)."""
+    return math.fsum(_piece_length(piece) for piece in bezier_pieces(path))
+
+
+def curvature(path: Path, samples: int) -> tuple[np.ndarray, np.ndarray]:
+    """Curvature along a path (song2016, eq. 5): values (samples,) in 1/unit, and the speeds (samples,) at the same parameters.
+
+    A value is not a number where the curve stands still (`STANDSTILL`). song2016's eq. 4 prints a dot over the control points of the
+    second derivative; the formula needs the points themselves.
+    """
+    pieces = bezier_pieces(path)
+    piece, t = sample_parameters(len(pieces), samples)
+    return _curvature(pieces[piece], t)
+
+
+def _curvature(pieces: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Curvature (n,) and speed (n,) of the piece pieces[i] (n, degree + 1, 2) at the parameter t[i]."""
+    degree = pieces.shape[1] - 1
+    first = degree * np.einsum("sk,skd->sd", bernstein(degree - 1, t), np.diff(pieces, axis=1))
+    second = np.zeros_like(first)
+    if degree > 1:
+        second = degree * (degree - 1) * np.einsum("sk,skd->sd", bernstein(degree - 2, t), np.diff(pieces, n=2, axis=1))
+    speed = np.hypot(first[:, 0], first[:, 1])
+    moving = speed > STANDSTILL * speed.max()
+    kappa = np.full(len(t), np.nan)
+    cross = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
+    kappa[moving] = cross[moving] / speed[moving] ** 3
+    return kappa, speed
+
+
+def curvature_jump(path: Path) -> float:
+    """Largest jump of curvature over the joints of a path, in 1/unit, from the end values of the pieces themselves.
+
+    Joints where a side stands still are left out; 0 without a joint. Infinite where the tangent turns.
+    """
+    pieces = bezier_pieces(path)
+    if len(pieces) == 1:
+        return 0.0
+    ends = [_curvature(pieces, np.full(len(pieces), t)) for t in (0.0, 1.0)]
+    (start, start_speed), (end, end_speed) = ends
+    fastest = max(start_speed.max(), end_speed.max())
+    moving = (start_speed[1:] > STANDSTILL * fastest) & (end_speed[:-1] > STANDSTILL * fastest)
+    leaving = pieces[1:, 1] - pieces[1:, 0]
+    arriving = pieces[:-1, -1] - pieces[:-1, -2]
+    cross = leaving[:, 0] * arriving[:, 1] - leaving[:, 1] * arriving[:, 0]
+    along = (leaving * arriving).sum(axis=1)
+    turns = moving & ((along <= 0) | (np.abs(cross) > 1e-9 * np.abs(along)))
+    if turns.any():
+        return math.inf
+    jumps = np.abs(start[1:] - end[:-1])[moving]
+    return float(np.nan_to_num(jumps).max(initial=0.0))

@@ -1,0 +1,212 @@
+"""The blocked region of a workspace: the one description that the certified check and the exact shortest paths both read.
+
+The blocked region is open: the interior of the union of all obstacles and of the outside of the border. A path may touch its boundary. The
+union comes before every test, because a path along the seam of two touching obstacles enters neither of them and still is deep inside their
+union.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.problem import Workspace
+
+# Unit vectors whose cross product is at most this count as collinear: a vertex between them is rounding of the union, not a corner.
+COLLINEAR = 1e-12
+
+
+class GridRegion(NamedTuple):
+    """Occupied cells and the outside of the grid, as elements of the doubled grid.
+
+    A doubled grid has an element for every cell, for every open edge between two cells, and for every vertex between four, each in its
+    place: with a ring of cells around the grid that stands for the outside, even indices are cells and odd indices are grid lines.
+
+    cell: side of a cell, in units. origin: (2,) x and y of the grid's lower left corner, in units; everything else is measured from it,
+    paths as well (`from_origin`). blocked: bool (2 rows + 3, 2 columns + 3), whether all cells that touch an element are occupied.
+    counts: (2 rows + 4, 2 columns + 4), prefix sums of `blocked`. edges: (n, 4) boundary of the region as x, y, x, y in units, collinear
+    edges joined. pinches: (m, 3) x and y in units of the inner vertices at which two occupied cells meet only by a corner, and the sign of
+    the slope of the diagonal through their two free cells.
+    """
+
+    cell: float
+    origin: np.ndarray
+    blocked: np.ndarray
+    counts: np.ndarray
+    edges: np.ndarray
+    pinches: np.ndarray
+
+
+class CircleRegion(NamedTuple):
+    """Open discs and the outside of the border.
+
+    centres: (n, 2), radii: (n,), bounds: (4,) lowest and highest x, lowest and highest y, edges: (4, 4) the border as x, y, x, y; in units.
+    """
+
+    centres: np.ndarray
+    radii: np.ndarray
+    bounds: np.ndarray
+    edges: np.ndarray
+
+
+class PolygonRegion(NamedTuple):
+    """The union of polygons and of the outside of the border, by its boundary.
+
+    edges: (n, 4) as x, y, x, y in units, directed so that free space is on the left, without collinear vertices. normals: (n, 2) unit
+    vectors to the free side. following: (n,) index of the edge that begins where an edge ends. preceding: (n,) its inverse. convex: bool
+    (n,), whether the blocked region is convex at the end of an edge.
+    """
+
+    edges: np.ndarray
+    normals: np.ndarray
+    following: np.ndarray
+    preceding: np.ndarray
+    convex: np.ndarray
+
+
+Region = GridRegion | CircleRegion | PolygonRegion
+
+
+def region(workspace: Workspace) -> Region:
+    """The blocked region of a workspace; of cells drawn from polygons, that of the polygons. Build it once for many paths."""
+    if isinstance(workspace, Grid) and isinstance(workspace.drawn, Polygons):
+        return _polygon_region(workspace.drawn)
+    if isinstance(workspace, Grid):
+        return _grid_region(workspace)
+    if isinstance(workspace, Circles):
+        return _circle_region(workspace)
+    return _polygon_region(workspace)
+
+
+def blocks(region: Region, point: tuple[float, float], tolerance: float = 1e-9) -> bool:
+    """Whether a point, in units, lies in the blocked region, deeper than a tolerance. For single points: it needs no compiled code."""
+    if isinstance(region, GridRegion):
+        column, row = (_element(value / region.cell, tolerance) for value in from_origin(np.array(point), region))
+        inside = 0 <= row < region.blocked.shape[0] and 0 <= column < region.blocked.shape[1]
+        return not inside or bool(region.blocked[row, column])
+    x, y = point
+    if isinstance(region, CircleRegion):
+        left, right, bottom, top = region.bounds
+        deepest = max(left - x, x - right, bottom - y, y - top)
+        in_discs = region.radii - np.hypot(x - region.centres[:, 0], y - region.centres[:, 1])
+        return in_discs.max(initial=deepest) > tolerance
+    begin, end = region.edges[:, :2], region.edges[:, 2:]
+    along = end - begin
+    share = np.clip(((point - begin) * along).sum(axis=1) / (along**2).sum(axis=1), 0, 1)
+    nearest = np.hypot(*(begin + share[:, None] * along - point).T).min(initial=np.inf)
+    # Free space is bounded, so a ray from a free point leaves it: it crosses the boundary an odd number of times.
+    across = (begin[:, 1] > y) != (end[:, 1] > y)
+    crossing = begin[across, 0] + (y - begin[across, 1]) * along[across, 0] / along[across, 1]
+    return nearest > tolerance and int((crossing > x).sum()) % 2 == 0
+
+
+def from_origin(points: np.ndarray, region: Region) -> np.ndarray:
+    """Points (..., 2) in units as the region measures them: on a grid from its lower left corner."""
+    return points - region.origin if isinstance(region, GridRegion) else points
+
+
+def _element(coordinate: float, tolerance: float) -> int:
+    """Index in the doubled grid of a coordinate in cells: of a grid line if it lies on one, else of a cell."""
+    line = round(coordinate)
+    return 2 * line + 1 if abs(coordinate - line) <= tolerance else 2 * int(np.floor(coordinate)) + 2
+
+
+def border_edges(bounds: tuple[float, float, float, float]) -> np.ndarray:
+    """The four edges (4, 4) of a border, as x, y, x, y."""
+    left, right, bottom, top = bounds
+    corners = np.array([(left, bottom), (right, bottom), (right, top), (left, top)], dtype=float)
+    return np.hstack([corners, np.roll(corners, -1, axis=0)])
+
+
+def walled(occupied: np.ndarray) -> np.ndarray:
+    """Occupied cells with a ring of occupied cells around them, which stands for the outside: bool (rows + 2, columns + 2)."""
+    return np.ascontiguousarray(np.pad(occupied, 1, constant_values=True))
+
+
+def occupied_around(cells: np.ndarray) -> np.ndarray:
+    """Whether the cells around each inner vertex of `walled` cells are occupied: bool (4, rows + 1, columns + 1).
+
+    First below left, then below right, above left, above right. Vertex [i, j] lies at x = j and y = i, in cells.
+    """
+    return np.stack([cells[:-1, :-1], cells[:-1, 1:], cells[1:, :-1], cells[1:, 1:]])
+
+
+def _grid_region(grid: Grid) -> GridRegion:
+    cells = walled(grid.occupied)
+    blocked = np.empty((2 * cells.shape[0] - 1, 2 * cells.shape[1] - 1), dtype=bool)
+    blocked[::2, ::2] = cells
+    blocked[1::2, ::2] = cells[:-1] & cells[1:]
+    blocked[::2, 1::2] = cells[:, :-1] & cells[:, 1:]
+    around = occupied_around(cells)
+    blocked[1::2, 1::2] = around.all(axis=0)
+    counts = np.zeros((blocked.shape[0] + 1, blocked.shape[1] + 1), dtype=np.int64)
+    counts[1:, 1:] = blocked.cumsum(axis=0).cumsum(axis=1)
+
+    horizontal = _runs(cells[:-1, 1:-1] != cells[1:, 1:-1])
+    vertical = _runs((cells[1:-1, :-1] != cells[1:-1, 1:]).T)
+    edges = np.ascontiguousarray(np.concatenate([horizontal[:, [1, 0, 2, 0]], vertical[:, [0, 1, 0, 2]]]) * grid.cell)
+
+    below_left, below_right, above_left, above_right = around
+    falling = below_left & above_right & ~below_right & ~above_left
+    rising = ~below_left & ~above_right & below_right & above_left
+    row, column = np.nonzero(rising | falling)
+    pinches = np.column_stack([column * grid.cell, row * grid.cell, np.where(rising[row, column], 1.0, -1.0)])
+    return GridRegion(float(grid.cell), np.array(grid.origin, dtype=float), blocked, counts, edges, pinches)
+
+
+def _runs(boundary: np.ndarray) -> np.ndarray:
+    """Maximal runs of true values in the rows of a bool array: (n, 3) row, first column, column after the last."""
+    change = np.diff(np.pad(boundary, ((0, 0), (1, 1))).astype(np.int8), axis=1)
+    row, first = np.nonzero(change == 1)
+    _, end = np.nonzero(change == -1)
+    return np.column_stack([row, first, end]).astype(float)
+
+
+def _circle_region(circles: Circles) -> CircleRegion:
+    centres = np.ascontiguousarray(circles.centres, dtype=float).reshape(-1, 2)
+    radii = np.ascontiguousarray(circles.radii, dtype=float)
+    return CircleRegion(centres, radii, np.array(circles.bounds, dtype=float), border_edges(circles.bounds))
+
+
+def _polygon_region(polygons: Polygons) -> PolygonRegion:
+    import shapely
+
+    left, right, bottom, top = polygons.bounds
+    obstacles = [shapely.Polygon(outer, holes) for outer, *holes in polygons.obstacles]
+    free = shapely.box(left, bottom, right, top).difference(shapely.union_all(obstacles))
+    rings = []
+    for part in shapely.get_parts(free):
+        if isinstance(part, shapely.Polygon):
+            oriented = shapely.geometry.polygon.orient(part)
+            rings += [_corners(shapely.get_coordinates(ring)[:-1]) for ring in (oriented.exterior, *oriented.interiors)]
+
+    begin = np.concatenate([np.empty((0, 2)), *rings])
+    following = np.empty(len(begin), dtype=np.int64)
+    first = 0
+    for ring in rings:
+        following[first : first + len(ring)] = first + np.roll(np.arange(len(ring)), -1)
+        first += len(ring)
+    preceding = np.argsort(following)
+    end = begin[following]
+    direction = _unit(end - begin)
+    normals = np.column_stack([-direction[:, 1], direction[:, 0]])
+    convex = _cross(direction, direction[following]) < 0
+    return PolygonRegion(np.hstack([begin, end]), normals, following, preceding, convex)
+
+
+def _corners(ring: np.ndarray) -> np.ndarray:
+    """A ring (n, 2) without repeated and collinear vertices."""
+    ring = ring[np.any(ring != np.roll(ring, 1, axis=0), axis=1)]
+    arriving = _unit(ring - np.roll(ring, 1, axis=0))
+    leaving = _unit(np.roll(ring, -1, axis=0) - ring)
+    return ring[np.abs(_cross(arriving, leaving)) > COLLINEAR]
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    return vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]

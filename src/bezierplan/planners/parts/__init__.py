@@ -1,0 +1,1 @@
+"""Parts of algorithms: genetic operators, chaotic maps, diversity, paths as lists of cells."""

@@ -1,0 +1,323 @@
+"""Operators on paths over a lattice of cells, and a genetic algorithm of them.
+
+A path is an array (n,) of numbers of cells, each a neighbour of the one before on a lattice (`workspaces.lattice.Lattice`). `marks` is
+scratch (cells,) of whole numbers: all 0 when an operator begins, and when it ends.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from bezierplan.planners.parts.genetic import roulette
+
+ONE_CELL, RECONNECT, WALK = range(3)
+
+
+class Rules(NamedTuple):
+    """Settings of `evolve`.
+
+    crossover_probability: of a pair of parents. shorter_parts: whether the first child gets the shorter head and the shorter tail and the
+    second one is parent 2, or tails are swapped. mutation_probability: of a child. mutation: ONE_CELL, RECONNECT or WALK; longest_part: the
+    most cells of a part made by the last two; tries: see `forage`. cut_loops: whether children lose their loops. elitism: whether the best
+    so far replaces a child.
+    """
+
+    crossover_probability: float
+    shorter_parts: bool
+    mutation_probability: float
+    mutation: int
+    longest_part: int
+    tries: int
+    cut_loops: bool
+    elitism: int
+
+
+@njit(cache=True)
+def evolve(rng, lattice, paths, sizes, generations, rules):
+    """The shortest path (n,) found by a genetic algorithm from some paths, and the least length so far (generations + 1,).
+
+    paths: (population, longest path) with sizes: (population,); overwritten. A child that would be longer stays a copy of its parent.
+    """
+    population, longest = paths.shape
+    parents, parent_sizes = np.empty_like(paths), np.empty_like(sizes)
+    child, part = np.empty(longest + max(longest, rules.longest_part), dtype=np.int64), np.empty(rules.longest_part, dtype=np.int64)
+    marks = np.zeros(len(lattice.row), dtype=np.int64)
+    lengths = np.empty(population)
+    best, best_size, best_length = paths[0].copy(), sizes[0], np.inf
+    history = np.empty(generations + 1)
+
+    for generation in range(generations + 1):
+        for i in range(population):
+            lengths[i] = length(paths[i, : sizes[i]], lattice)
+            if lengths[i] < best_length:
+                best_size, best_length = put(paths[i, : sizes[i]], best, 0), lengths[i]
+        history[generation] = best_length
+        if generation == generations:
+            break
+
+        paths, parents = parents, paths
+        sizes, parent_sizes = parent_sizes, sizes
+        drawn = roulette(rng, 1.0 / lengths, population)
+        for i in range(population):
+            sizes[i] = put(parents[drawn[i], : parent_sizes[drawn[i]]], paths[i], 0)
+        for i in range(0, population, 2):
+            if rng.random() < rules.crossover_probability:
+                one, other = parents[drawn[i], : parent_sizes[drawn[i]]], parents[drawn[i + 1], : parent_sizes[drawn[i + 1]]]
+                k, m = common_cell(rng, one, other, marks)
+                if k == 0:
+                    continue
+                if rules.shorter_parts:
+                    head = one[: k + 1] if length(one[: k + 1], lattice) <= length(other[: m + 1], lattice) else other[: m + 1]
+                    tail = one[k:] if length(one[k:], lattice) <= length(other[m:], lattice) else other[m:]
+                    size = put(tail, child, put(head[:-1], child, 0))
+                else:
+                    size = put(one[k:], child, put(other[:m], child, 0))
+                    sizes[i + 1] = _replace(paths[i + 1], sizes[i + 1], child[:size], rules.cut_loops, marks)
+                    size = put(other[m:], child, put(one[:k], child, 0))
+                sizes[i] = _replace(paths[i], sizes[i], child[:size], rules.cut_loops, marks)
+        for i in range(population):
+            if rng.random() < rules.mutation_probability:
+                size = _mutant(rng, lattice, paths[i, : sizes[i]], rules, child, part, marks)
+                if size:
+                    sizes[i] = _replace(paths[i], sizes[i], child[:size], rules.cut_loops, marks)
+        if rules.elitism:
+            sizes[0] = put(best[:best_size], paths[0], 0)
+    return best[:best_size], history
+
+
+@njit(cache=True)
+def put(part, path, size):
+    """Write a part of a path behind the first `size` cells of a path. Returns the new size."""
+    for k in range(len(part)):
+        path[size + k] = part[k]
+    return size + len(part)
+
+
+@njit(cache=True)
+def _replace(path, size, child, cut, marks):
+    """Put a child, without its loops if they are to be cut, in the place of a path of some size, if it fits. Returns the new size."""
+    child_size = cut_loops(child, marks) if cut else len(child)
+    if child_size > len(path):
+        return size
+    return put(child[:child_size], path, 0)
+
+
+@njit(cache=True)
+def _mutant(rng, lattice, path, rules, child, part, marks):
+    """Make a mutant of a path. Returns its size, 0 if there is no change."""
+    if rules.mutation == ONE_CELL:
+        return change_cell(rng, lattice, path, child)
+    k, m = rng.integers(0, len(path)), rng.integers(0, len(path))
+    first, last = min(k, m), max(k, m)
+    if last - first < 2:
+        return 0
+    if rules.mutation == RECONNECT:
+        size = reconnect(rng, lattice, path[first], path[last], part, marks)
+    else:
+        size = walk(rng, lattice, path[first], path[last], rules.tries, part, marks)
+    if size == 0:
+        return 0
+    return put(path[last + 1 :], child, put(part[:size], child, put(path[:first], child, 0)))
+
+
+@njit(cache=True)
+def length(path, lattice):
+    """Length in cells, with the ways from start and to target; equal numbers of steps give equal lengths, in whatever order."""
+    diagonal = 0
+    for k in range(1, len(path)):
+        one, other = path[k - 1], path[k]
+        diagonal += lattice.row[one] != lattice.row[other] and lattice.column[one] != lattice.column[other]
+    return len(path) - 1 - diagonal + diagonal * lattice.diagonal + lattice.ends
+
+
+@njit(cache=True)
+def step_between(lattice, one, other):
+    """Which of the eight steps leads from a cell to another one, -1 if none does."""
+    for step in range(8):
+        if lattice.neighbours[one, step] == other:
+            return step
+    return -1
+
+
+@njit(cache=True)
+def join(lattice, cells, path, marks):
+    """Join cells (n,) to a path by inserting midpoints. Returns its size, 0 if they cannot be joined within len(path) cells.
+
+    From the first pair on, the cell in the middle is put between two cells that are no neighbours, its row and column rounded down. If it
+    is occupied, or one of the two, this is the first free cell around it, in the order of `workspaces.lattice.STEPS`, that is not in the
+    list yet. Equal cells that follow each other are merged.
+    """
+    if len(cells) > len(path):
+        return 0
+    # The list is the path so far, and behind it what waits, the next one on top.
+    waiting = np.empty(len(path), dtype=np.int64)
+    size, height = 0, 0
+    for cell in cells[::-1]:
+        waiting[height] = cell
+        height += 1
+        marks[cell] = 1
+    while height:
+        cell = waiting[height - 1]
+        if size == 0 or step_between(lattice, path[size - 1], cell) >= 0:
+            path[size] = cell
+            size += 1
+            height -= 1
+        elif cell == path[size - 1]:
+            height -= 1
+        else:
+            between = _between(lattice, path[size - 1], cell, marks)
+            if between < 0 or size + height == len(path):
+                break
+            waiting[height] = between
+            height += 1
+            marks[between] = 1
+    for k in range(size):
+        marks[path[k]] = 0
+    for k in range(height):
+        marks[waiting[k]] = 0
+    return 0 if height else size
+
+
+@njit(cache=True)
+def _between(lattice, one, other, marks):
+    """The cell that `join` puts between two cells, -1 if there is none."""
+    # Cells are numbered row by row, so the last one tells the number of columns.
+    columns = lattice.column[-1] + 1
+    row, column = (lattice.row[one] + lattice.row[other]) // 2, (lattice.column[one] + lattice.column[other]) // 2
+    middle = columns * row + column
+    if not lattice.occupied[middle] and middle != one and middle != other:
+        return middle
+    for cell in lattice.around[middle]:
+        if cell >= 0 and not marks[cell]:
+            return cell
+    return -1
+
+
+@njit(cache=True)
+def common_cell(rng, one, other, marks):
+    """Places, in two paths, of a random inner cell of the first one that is also an inner cell of the other one; the last place there.
+
+    (0, 0) if there is none.
+    """
+    for m in range(1, len(other) - 1):
+        marks[other[m]] = m
+    common = 0
+    for k in range(1, len(one) - 1):
+        common += marks[one[k]] > 0
+    k = m = 0
+    if common:
+        wanted = rng.integers(0, common)
+        while wanted >= 0:
+            k += 1
+            wanted -= marks[one[k]] > 0
+        m = marks[one[k]]
+    for cell in other:
+        marks[cell] = 0
+    return k, m
+
+
+@njit(cache=True)
+def cut_loops(path, marks):
+    """Cut, in place, what lies between two visits of a cell, from the first revisit on. Returns the new size."""
+    size = 0
+    for cell in path:
+        if marks[cell]:
+            for k in range(marks[cell], size):
+                marks[path[k]] = 0
+            size = marks[cell]
+        else:
+            path[size] = cell
+            size += 1
+            marks[cell] = size
+    for k in range(size):
+        marks[path[k]] = 0
+    return size
+
+
+@njit(cache=True)
+def change_cell(rng, lattice, path, child):
+    """Replace a random inner cell by a random other cell that is a neighbour of both cells beside it; if there is none and these two are
+    neighbours, drop it. Returns the child's size, 0 if there is no change: always for paths of fewer than 4 cells.
+    """
+    if len(path) < 4:
+        return 0
+    k = rng.integers(1, len(path) - 1)
+    chosen, candidates = -1, 0
+    for cell in lattice.neighbours[path[k - 1]]:
+        if cell >= 0 and cell != path[k] and step_between(lattice, cell, path[k + 1]) >= 0:
+            candidates += 1
+            if rng.integers(0, candidates) == 0:
+                chosen = cell
+    if candidates:
+        put(path, child, 0)
+        child[k] = chosen
+        return len(path)
+    if step_between(lattice, path[k - 1], path[k + 1]) >= 0:
+        return put(path[k + 1 :], child, put(path[:k], child, 0))
+    return 0
+
+
+@njit(cache=True)
+def reconnect(rng, lattice, first, last, part, marks):
+    """Join two cells by way of a random cell of their bounding box. Returns the part's size, 0 if that cell is occupied or out of reach."""
+    rows, columns = (lattice.row[first], lattice.row[last]), (lattice.column[first], lattice.column[last])
+    row = rng.integers(min(rows), max(rows) + 1)
+    cell = row * (lattice.column[-1] + 1) + rng.integers(min(columns), max(columns) + 1)
+    if lattice.occupied[cell]:
+        return 0
+    return join(lattice, np.array([first, cell, last]), part, marks)
+
+
+@njit(cache=True)
+def walk(rng, lattice, first, last, tries, part, marks):
+    """Forage from one cell until another one is met. Returns the part's size, 0 if the walk ends early or would be longer than the part."""
+    part[0] = first
+    marks[first] = 1
+    size = 1
+    while part[size - 1] != last and size < len(part):
+        cell = forage(rng, lattice, part[size - 1], last, tries, marks)
+        if cell < 0:
+            break
+        part[size] = cell
+        marks[cell] = 1
+        size += 1
+    for k in range(size):
+        marks[part[k]] = 0
+    return size if part[size - 1] == last else 0
+
+
+@njit(cache=True)
+def forage(rng, lattice, cell, target, tries, visited):
+    """A fish's next cell when it looks for prey (ma2020, reference 31), -1 if all neighbours are visited.
+
+    Of some random tries the first unvisited neighbour that is nearer to the target, otherwise a random unvisited neighbour.
+    """
+    neighbours = lattice.neighbours[cell]
+    present = unvisited = 0
+    for other in neighbours:
+        present += other >= 0
+        unvisited += other >= 0 and not visited[other]
+    if unvisited == 0:
+        return -1
+    near = distance_square(lattice, cell, target)
+    for _ in range(tries):
+        wanted = rng.integers(0, present)
+        for other in neighbours:
+            wanted -= other >= 0
+            if wanted < 0:
+                break
+        if not visited[other] and distance_square(lattice, other, target) < near:
+            return other
+    wanted = rng.integers(0, unvisited)
+    for other in neighbours:
+        wanted -= other >= 0 and not visited[other]
+        if wanted < 0:
+            break
+    return other
+
+
+@njit(cache=True)
+def distance_square(lattice, one, other):
+    """Square of the distance between the centres of two cells, a whole number."""
+    return (lattice.row[one] - lattice.row[other]) ** 2 + (lattice.column[one] - lattice.column[other]) ** 2

@@ -1,0 +1,247 @@
+"""A control: what a practitioner would drive, the exact shortest path with its corners rounded.
+
+At each obstacle that the shortest path turns round stands a circle of the turning radius, so that the obstacle's corner lies inside it; the
+path is the string pulled tight round these circles, of straight legs and arcs. Corners that are too near to each other for two circles, as
+those of a wall's end, are one turn of two circles side by side. The path is then shown to the certified check. Where an arc or a leg enters
+an obstacle, or there is no room for the circles, those beside it shrink, in the end to the corner itself: the shortest path is free, so
+this always ends in a free path.
+"""
+
+import math
+from typing import Annotated, NamedTuple
+
+import numpy as np
+from numba import njit
+
+from bezierplan.geometry import bounds, curves
+from bezierplan.geometry.checker import first_collision
+from bezierplan.geometry.region import from_origin, region
+from bezierplan.planners import Plan, Range
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.problem import Path, Problem
+
+exact = True
+deterministic = True
+
+# A vertex of the shortest path at which it turns by less, in radians, is no corner.
+_STRAIGHT = 1e-9
+
+# A circle shrinks by this factor at a time, and to its corner below this share of the turning radius.
+_SHRINKING = 0.8
+_SMALLEST = 0.01
+
+# An arc of at most this angle is one cubic piece, which lies outside of its circle by at most 4e-6 of the radius.
+_PIECE_ANGLE = math.pi / 4
+
+# A point of the shortest path this near to a circle, in units, lies on it.
+_ON_CIRCLE = 1e-3
+
+
+class Turns(NamedTuple):
+    """What the path turns round, from start to target, each (n,) or (n, 2).
+
+    corner: the obstacle's corner, or the centre of a circular obstacle; radius: that of the obstacle, 0 for a corner. before, after: unit
+    vectors, the path's direction. side: 1 for a turn to the left, -1 to the right.
+    """
+
+    corner: np.ndarray
+    radius: np.ndarray
+    before: np.ndarray
+    after: np.ndarray
+    side: np.ndarray
+
+
+def plan(
+    problem: Problem,
+    rng: np.random.Generator,
+    *,
+    turning_radius: Annotated[float, Range(0)],
+    offset: Annotated[float, Range(0)],
+) -> Plan:
+    """The exact shortest path (`exact.bounds`), rounded; its objective is its length, in units, or infinite without a path.
+
+    turning_radius: the least that the path should have, in units; 0 leaves the corners. offset: how far the path should keep from the
+    corners that it turns round, in units. Where there is no room, both are less: how much is told by the extra columns.
+
+    Extra columns: turns, the number of corners; tight_turns, those with less than the turning radius; least_radius, the smallest radius of
+    a turn, in units: 0 where a corner is left, infinite without a turn.
+    """
+    bound = bounds.shortest_path(problem)
+    if math.isinf(bound.length):
+        nothing = {"turns": 0, "tight_turns": 0, "least_radius": math.nan}
+        return Plan(None, math.inf, claimed_feasible=False, evaluations=1, history=np.array([math.inf]), stop="no way", extra=nothing)
+    turns = turns_of(bound.points, problem.workspace)
+    points, radii, tries = _rounded(problem, turns, turning_radius, offset)
+    path = Path("cubic_chain", points)
+    length = curves.length(path)
+    return Plan(
+        path=path,
+        objective=length,
+        claimed_feasible=True,
+        evaluations=tries,
+        history=np.array([length]),
+        stop="exact",
+        extra={
+            "turns": len(radii),
+            "tight_turns": int((radii < turning_radius * (1 - 1e-9)).sum()),
+            "least_radius": float(radii.min(initial=math.inf)),
+        },
+    )
+
+
+def turns_of(points: np.ndarray, workspace: object) -> Turns:
+    """The turns of a shortest path, a polyline (n, 2). Around circular obstacles the vertices of an arc are one turn."""
+    heading = _unit(np.diff(points, axis=0))
+    bend = heading[:-1, 0] * heading[1:, 1] - heading[:-1, 1] * heading[1:, 0]
+    bends = np.flatnonzero((np.abs(bend) > _STRAIGHT) | ((heading[:-1] * heading[1:]).sum(axis=1) < 0))
+    corner, radius = points[bends + 1], np.zeros(len(bends))
+    first = np.ones(len(bends), dtype=bool)
+    if isinstance(workspace, Circles) and len(bends) and len(workspace.radii):
+        depth = np.hypot(*(corner[:, None] - workspace.centres).transpose(2, 0, 1)) - workspace.radii
+        nearest = np.abs(depth).argmin(axis=1)
+        round_circle = np.abs(depth)[np.arange(len(bends)), nearest] < _ON_CIRCLE
+        corner = np.where(round_circle[:, None], workspace.centres[nearest], corner)
+        radius = np.where(round_circle, workspace.radii[nearest], 0.0)
+        first[1:] = ~(round_circle[1:] & round_circle[:-1] & (nearest[1:] == nearest[:-1]))
+    begin, end = _runs(first)
+    return Turns(corner[begin], radius[begin], heading[bends[begin]], heading[bends[end] + 1], np.sign(bend[bends[begin]]))
+
+
+def _runs(begins: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """First and last places (m,) of the runs that begin at some places, the first one among them: bool (n,)."""
+    first = np.flatnonzero(begins)
+    return first, np.append(first[1:], len(begins))[: len(first)] - 1
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    return vectors / np.maximum(np.hypot(*vectors.T), np.finfo(float).tiny)[:, None]
+
+
+def _rounded(problem: Problem, turns: Turns, turning_radius: float, offset: float) -> tuple[np.ndarray, np.ndarray, int]:
+    """Control points of the rounded path, radius (n,) of each turn, and how many paths were tried.
+
+    Where two circles of the same sense get into each other's way, they become one turn: they are pulled inwards the same way. Where that
+    does not help, circles are pulled inwards less far, and only then shrink.
+    """
+    count = len(turns.side)
+    blocked = region(problem.workspace)
+    # Of the wanted radius, and of the way inwards up to the corner's clearance; whether a turn begins at a corner.
+    share, pulled, begins = np.ones(count), np.ones(count), np.ones(count, dtype=bool)
+    tries = 0
+    while True:
+        tries += 1
+        radii, centres = _circles(turns, begins, share, pulled, turning_radius, offset)
+        legs, sweeps, bent_back, crowded = _string(problem, turns, centres, radii)
+        if bent_back.any() and _join(begins, bent_back, turns):
+            continue
+        wrong = _beside(bent_back) | crowded
+        if wrong.any():
+            slack = wrong & (pulled > 0) & (radii > turns.radius)
+            pulled[slack] = np.where(pulled[slack] > 0.1, pulled[slack] * _SHRINKING, 0.0)
+            _shrink(share, wrong & ~slack, begins)
+            continue
+        points, owner = _chain(legs, sweeps, centres, radii, turns)
+        pieces = np.ascontiguousarray(points[np.arange(0, len(points) - 1, 3)[:, None] + np.arange(4)])
+        hit = _colliding(from_origin(pieces, blocked), blocked)
+        bad = np.zeros(count + 2, dtype=bool)  # with start and target around the turns
+        bad[owner[hit].ravel()] = True
+        if not bad[1:-1].any() or not share[bad[1:-1]].any():
+            return points, radii, tries
+        _shrink(share, bad[1:-1], begins)
+
+
+def _shrink(share: np.ndarray, which: np.ndarray, begins: np.ndarray) -> None:
+    """Make the circles smaller that are marked, with all of their turns."""
+    turn = np.cumsum(begins)
+    which = np.isin(turn, turn[which])
+    share[which] = np.where(share[which] > _SMALLEST, share[which] * _SHRINKING, 0.0)
+
+
+def _join(begins: np.ndarray, bent_back: np.ndarray, turns: Turns) -> bool:
+    """Make corners at which the string is bent back one turn with the nearer neighbour of the same sense; false if there is none."""
+    joined = False
+    gap = np.hypot(*np.diff(turns.corner, axis=0).T)
+    gap = np.where((turns.side[1:] == turns.side[:-1]) & begins[1:], gap, np.inf)
+    beside = np.concatenate([[np.inf], gap, [np.inf]])
+    for i in np.flatnonzero(bent_back):
+        if min(beside[i], beside[i + 1]) < np.inf:
+            begins[i if beside[i] <= beside[i + 1] else i + 1] = False
+            joined = True
+    return joined
+
+
+def _beside(marked: np.ndarray) -> np.ndarray:
+    """Those that are marked (n,), and their neighbours."""
+    wide = np.concatenate([[False], marked, [False]])
+    return wide[:-2] | wide[1:-1] | wide[2:]
+
+
+def _circles(
+    turns: Turns, begins: np.ndarray, share: np.ndarray, pulled: np.ndarray, turning_radius: float, offset: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Radii (n,) and centres (n, 2) of the circles that the path goes round; the corners lie inside, as deep as the offset."""
+    margin = turns.radius + share * offset
+    radii = np.maximum(margin, share * turning_radius)
+    first, last = _runs(begins)
+    inward = _unit(turns.after[last] - turns.before[first])[np.cumsum(begins) - 1]
+    return radii, turns.corner + (pulled * (radii - margin))[:, None] * inward
+
+
+def _string(
+    problem: Problem, turns: Turns, centres: np.ndarray, radii: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Legs (n + 1, 2, 2) of the string round circles, sweeps (n,) of its arcs in their own sense, whether (n,) the string is bent back at
+    a circle, and whether a circle overlaps a neighbour so that no leg fits between them.
+    """
+    ends = np.vstack([problem.start, centres, problem.target])
+    signed = np.concatenate([[0.0], turns.side * radii, [0.0]])
+    step = np.diff(ends, axis=0)
+    distance = np.hypot(*step.T)
+    across = np.diff(signed)
+    fits = np.abs(across) <= distance
+    tilt = np.arcsin(np.divide(across, distance, out=np.zeros_like(across), where=fits & (distance > 0)))
+    direction = np.arctan2(step[:, 1], step[:, 0]) - tilt
+    normal = np.column_stack([-np.sin(direction), np.cos(direction)])
+    legs = np.stack([ends[:-1] - signed[:-1, None] * normal, ends[1:] - signed[1:, None] * normal], axis=1)
+    sweeps = turns.side * ((np.diff(direction) + math.pi) % math.tau - math.pi)
+    return legs, np.maximum(sweeps, 0.0), sweeps < -_STRAIGHT, ~fits[:-1] | ~fits[1:]
+
+
+def _chain(legs: np.ndarray, sweeps: np.ndarray, centres: np.ndarray, radii: np.ndarray, turns: Turns) -> tuple[np.ndarray, np.ndarray]:
+    """Control points (3 k + 1, 2) of legs and arcs as cubic pieces, and for each piece the two ends or turns, numbered from the start at 0,
+    that it lies between (k, 2); for an arc twice its turn.
+    """
+    points, owner = [legs[0, :1]], []
+    for number, (begin, end) in enumerate(legs):
+        points.append(begin + (end - begin) * np.array([[1 / 3], [2 / 3], [1.0]]))
+        owner.append((number, number + 1))
+        if number == len(sweeps) or radii[number] == 0.0 or sweeps[number] == 0.0:
+            continue
+        parts = math.ceil(sweeps[number] / _PIECE_ANGLE)
+        turned = turns.side[number] * sweeps[number] / parts
+        spoke = end - centres[number]
+        handle = 4 / 3 * math.tan(turned / 4)
+        for angle in turned * np.arange(parts):
+            a, b = (_turned(spoke, each) for each in (angle, angle + turned))
+            points.append(centres[number] + np.array([a + handle * _quarter(a), b - handle * _quarter(b), b]))
+            owner.append((number + 1, number + 1))
+        points[-1][-1] = legs[number + 1, 0]
+    return np.concatenate(points), np.array(owner)
+
+
+def _turned(vector: np.ndarray, angle: float) -> np.ndarray:
+    return math.cos(angle) * vector + math.sin(angle) * _quarter(vector)
+
+
+def _quarter(vector: np.ndarray) -> np.ndarray:
+    """A vector turned to the left by a right angle."""
+    return np.array([-vector[1], vector[0]])
+
+
+@njit(cache=True)
+def _colliding(pieces, blocked):
+    """Whether (n,) pieces (n, 4, 2) enter the blocked region."""
+    hit = np.empty(len(pieces), dtype=np.bool_)
+    for k in range(len(pieces)):
+        hit[k] = first_collision(pieces[k : k + 1], blocked)[0] < np.inf
+    return hit

@@ -1,0 +1,1 @@
+"""Runs: problems, chunks of runs, the contract of planners, digests and logs of jobs."""

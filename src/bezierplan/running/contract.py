@@ -1,0 +1,433 @@
+"""Contract tests for a planner, of this package or a reader's own: what `problem.py` asks of it, tried on small and degenerate problems.
+
+A planner with settings needs a value for each. The budget is counted by the planner itself: what it says is checked, not what it does.
+"""
+
+import copy
+import inspect
+import itertools
+import math
+import random
+import typing
+from collections.abc import Iterator
+from types import ModuleType
+from typing import Any, NamedTuple
+
+import numpy as np
+from numba import njit
+
+from bezierplan.geometry import checker, curves
+from bezierplan.geometry.region import Region, region
+from bezierplan.planners import Plan, Range, known_planners, planner_module, planner_settings, setting_fault
+from bezierplan.running import answer
+from bezierplan.running.execution import TAKEN
+from bezierplan.study.checked import Fault, closest
+from bezierplan.workspaces import grid
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.files import to_json
+from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.problem import Problem, Workspace
+
+# A plan is made for each of so many generators.
+_GENERATORS = 3
+
+_UNIT = "unit"
+
+
+class Finding(NamedTuple):
+    """What one fact of the contract came to on one problem. detail: the fault of a fact that failed, otherwise what there is to know."""
+
+    problem: str
+    fact: str
+    passed: bool
+    detail: str
+
+    def __str__(self) -> str:
+        return f"{'ok' if self.passed else 'FAILED':8}{self.problem:40}{self.fact:20}{self.detail}".rstrip()
+
+
+def check_planner(planner: str, settings: dict[str, Any]) -> Iterator[Finding]:
+    """Findings on a planner, a name or the path of a file, with these settings; each is made when it is asked for.
+
+    Raises Fault, in one line, before the first finding: for a file that is no planner, and for settings that are missing or do not fit.
+    """
+    module = _loaded(planner)
+    first = _check_settings(module, settings, planner)
+    return itertools.chain(first, _findings(module, settings))
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Before a planner is run: its module and its settings
+
+
+def _loaded(planner: str) -> ModuleType:
+    if not planner.endswith(".py") and planner not in known_planners():
+        raise Fault(f"{planner}: unknown planner, and not the path of a file that ends in .py{closest(planner, known_planners())}")
+    try:
+        module = planner_module(planner)
+    except Exception as error:  # a reader's file can fail in any way
+        raise Fault(f"{planner}: cannot be loaded ({_told(error)})") from error
+    if not inspect.isfunction(getattr(module, "plan", None)):
+        raise Fault(f"{planner}: has no function plan(problem, rng, *, <settings>)")
+    unknown = set(getattr(module, "workspaces", ())) - set(PROBLEMS)
+    if unknown:
+        raise Fault(f"{planner}: workspaces: {min(unknown)}: unknown{closest(min(unknown), PROBLEMS)}")
+    _check_signature(module, planner)
+    return module
+
+
+def _check_signature(module: ModuleType, planner: str) -> None:
+    """Raise Fault unless every setting is annotated as `problem.py` says, without a default value."""
+    expected = "expected bool, int, float, Literal, or Annotated with a Range"
+    for name, parameter in inspect.signature(module.plan).parameters.items():
+        if parameter.kind is inspect.Parameter.KEYWORD_ONLY and parameter.annotation is inspect.Parameter.empty:
+            raise Fault(f"{planner}: setting {name}: has no annotation; {expected}")
+        if parameter.default is not inspect.Parameter.empty:
+            raise Fault(f"{planner}: setting {name}: has a default value; a study gives a value to every setting")
+    for name, annotation in planner_settings(module).items():
+        try:
+            _wanted(annotation)
+        except KeyError:
+            raise Fault(f"{planner}: setting {name}: is annotated with {inspect.formatannotation(annotation)}; {expected}") from None
+
+
+def _check_settings(module: ModuleType, settings: dict[str, Any], planner: str) -> list[Finding]:
+    """What is found while settings are checked: whether the planner's own check, if it has one, leaves them as they are. Raises Fault."""
+    accepted = planner_settings(module)
+    for name in settings:
+        if name not in accepted:
+            raise Fault(f"{planner}: settings: {name}: unknown{closest(name, accepted)}")
+    missing = {name: annotation for name, annotation in accepted.items() if name not in settings}
+    if missing:
+        wanted = "; ".join(f"{name}: {_wanted(annotation)}" for name, annotation in missing.items())
+        raise Fault(f"{planner}: settings are missing: {wanted}")
+    for name, annotation in accepted.items():
+        wanted = setting_fault(annotation, settings[name])
+        if wanted:
+            raise Fault(f"{planner}: settings: {name}: {settings[name]!r}; expected {wanted}")
+    if not hasattr(module, "check"):
+        return []
+    handed = dict(settings)
+    try:
+        module.check(handed)
+    except ValueError as error:
+        raise Fault(f"{planner}: settings: {error}") from None
+    return [Finding("any problem", "settings unchanged", handed == settings, "" if handed == settings else "check(settings) changes them")]
+
+
+def _wanted(annotation: Any) -> str:
+    """What a setting takes, in words."""
+    limits = [str(part) for part in typing.get_args(annotation) if isinstance(part, Range)]
+    return " ".join([setting_fault(annotation, object()), *limits])
+
+
+def _told(error: Exception) -> str:
+    """An error in one line."""
+    return " ".join(f"{type(error).__name__}: {error}".split())
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# The problems
+
+_IN_THE_WAY = "obstacle in the way"
+_SAME = "start is target"
+_BESIDE = "target beside start"
+_SEALED = "sealed target"
+_ON_BOUNDARY = "start on a boundary"
+_FAR = "far from the origin"
+
+# Rows from the top; S start, T target, B both. Start and target are centres of cells, for planners over cells serve no others; so there
+# is no start on a boundary.
+_GRIDS = {
+    "open": ("......", ".S..T.", "..#...", "......"),
+    _IN_THE_WAY: ("......", ".S#.T.", "..#...", "......"),
+    _SAME: ("......", "..B#..", "......"),
+    _BESIDE: ("......", ".ST#..", "......"),
+    _SEALED: ("...###", ".S.#T#", "...###"),
+    "no obstacles": ("......", ".S..T.", "......"),
+    "3 x 5": ("..#..", "S.#.T", "....."),
+    _FAR: ("......", "..#...", ".S#.T.", "......"),
+}
+# A grid of a map file begins at the origin; what can be far is the end of large cells.
+_LARGE_CELL = 15_000.0
+
+# The other workspaces are this field, moved for the problem that lies far from the origin.
+_FIELD = (0.0, 10.0, 0.0, 10.0)
+_MOVED = (90_000.0, -70_000.0)
+
+_ENDS = {
+    "open": ((1.0, 5.0), (9.0, 5.0)),
+    _IN_THE_WAY: ((1.0, 5.0), (9.0, 5.0)),
+    _SAME: ((1.0, 5.0), (1.0, 5.0)),
+    _BESIDE: ((1.0, 5.0), (1.001, 5.0)),
+    _SEALED: ((1.0, 5.0), (7.0, 5.0)),
+    _ON_BOUNDARY: ((3.0, 5.0), (9.0, 5.0)),
+    "no obstacles": ((1.0, 5.0), (9.0, 5.0)),
+    _FAR: ((1.0, 5.0), (9.0, 5.0)),
+}
+
+_EIGHTHS = np.arange(8) * math.tau / 8
+_DISC = np.array([[5.0, 5.0, 2.0]])
+_RING = np.column_stack([7 + 2 * np.cos(_EIGHTHS), 5 + 2 * np.sin(_EIGHTHS), np.ones(8)])
+_CIRCLES = {"open": np.array([[5.0, 8.0, 1.0]]), _SEALED: _RING, "no obstacles": np.empty((0, 3))}
+
+
+def _box(middle: tuple[float, float], half: float) -> np.ndarray:
+    return np.array(middle) + half * np.array([(-1, -1), (1, -1), (1, 1), (-1, 1)])
+
+
+_BLOCK = ((_box((5, 5), 2),),)
+_POLYGONS = {"open": ((_box((5, 8), 1),),), _SEALED: ((_box((7, 5), 2), _box((7, 5), 1)),), "no obstacles": ()}
+
+
+def _grid_problems() -> Iterator[Problem]:
+    for title, rows in _GRIDS.items():
+        text = "".join(reversed(rows))
+        start, target = (next(cell for cell, mark in enumerate(text) if mark in end) for end in ("SB", "TB"))
+        lines = ["".join("#" if mark == "#" else "." for mark in row) for row in rows]
+        workspace = grid.from_lines(lines, _LARGE_CELL if title == _FAR else 1.0, _UNIT)
+        yield Problem(f"grid: {title}", workspace, workspace.centre(start), workspace.centre(target))
+
+
+def _circle_problems() -> Iterator[Problem]:
+    for title in _ENDS:
+        circles = _CIRCLES.get(title, _DISC)
+        move = _move(title)
+        yield _moved(f"circles: {title}", title, Circles(_bounds(move), circles[:, :2] + move, circles[:, 2].copy(), _UNIT))
+
+
+def _polygon_problems() -> Iterator[Problem]:
+    for title in _ENDS:
+        move = _move(title)
+        obstacles = tuple(tuple(ring + move for ring in rings) for rings in _POLYGONS.get(title, _BLOCK))
+        yield _moved(f"polygons: {title}", title, Polygons(_bounds(move), obstacles, _UNIT))
+
+
+def _move(title: str) -> np.ndarray:
+    return np.array(_MOVED if title == _FAR else (0.0, 0.0))
+
+
+def _bounds(move: np.ndarray) -> tuple[float, float, float, float]:
+    x_low, x_high, y_low, y_high = (np.array(_FIELD) + np.repeat(move, 2)).tolist()
+    return x_low, x_high, y_low, y_high
+
+
+def _moved(name: str, title: str, workspace: Workspace) -> Problem:
+    start, target = (tuple((np.array(end) + _move(title)).tolist()) for end in _ENDS[title])
+    return Problem(name, workspace, start, target)
+
+
+PROBLEMS = {"grid": _grid_problems, "circles": _circle_problems, "polygons": _polygon_problems}
+"""The problems of a kind of workspace, small ones, as an iterator that makes them anew."""
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Runs. The state of numpy's global generator can be had by its old functions only, which ruff (NPY002) warns of.
+
+
+class _Run(NamedTuple):
+    """plan: what came back. used: global generators that moved. changed: whether the problem is another than before."""
+
+    plan: Any
+    used: list[str]
+    changed: bool
+
+
+class _Case(NamedTuple):
+    """A planner's plans for one problem, all of them fit to be looked at.
+
+    blocked: the region of the problem. plans: one a generator. again: the first of them made again. reseeded: likewise, with the global
+    generators in another state. runs: all of these. columns: names of extra columns on the first problem. exact, keeps_best: what the
+    planner declares.
+    """
+
+    problem: Problem
+    blocked: Region
+    settings: dict[str, Any]
+    plans: list[Plan]
+    again: Plan
+    reseeded: Plan
+    runs: list[_Run]
+    columns: set[str]
+    exact: bool
+    keeps_best: bool
+
+
+def _findings(module: ModuleType, settings: dict[str, Any]) -> Iterator[Finding]:
+    columns = None
+    for kind in getattr(module, "workspaces", PROBLEMS):
+        for problem in PROBLEMS[kind]():
+            blocked = region(problem.workspace)
+            runs, fault = _runs(module, problem, settings)
+            yield Finding(problem.name, "plan", not fault, fault)
+            if fault:
+                continue
+            plan, again, reseeded, *others = (run.plan for run in runs)
+            columns = set(plan.extra) if columns is None else columns
+            declared = getattr(module, "exact", False), getattr(module, "keeps_best", True)
+            case = _Case(problem, blocked, settings, [plan, *others], again, reseeded, runs, columns, *declared)
+            for name, fact in _FACTS.items():
+                yield Finding(problem.name, name, *fact(case))
+            if problem.name.endswith(_SEALED):
+                yield Finding(problem.name, "no way", *_finds_no_way(case))
+
+
+def _runs(module: ModuleType, problem: Problem, settings: dict[str, Any]) -> tuple[list[_Run], str]:
+    """Runs in the order that `_findings` takes them, or the fault for which there are none to look at."""
+    runs = []
+    for seed, surroundings in [(0, 0), (0, 0), (0, 1), *((seed, 0) for seed in range(1, _GENERATORS))]:
+        try:
+            runs.append(_run(module, problem, settings, seed, surroundings))
+        except Exception as error:  # a planner can fail in any way
+            return [], f"raises {_told(error)}"
+        fault = answer.plan_fault(runs[-1].plan)
+        if fault:
+            return [], fault
+    return runs, ""
+
+
+def _run(module: ModuleType, problem: Problem, settings: dict[str, Any], seed: int, surroundings: int) -> _Run:
+    """One run on a copy of a problem. surroundings: seed of the global generators, which get their state back afterwards."""
+    given = copy.deepcopy(problem)
+    kept = np.random.get_state(), random.getstate()  # noqa: NPY002
+    try:
+        np.random.seed(surroundings)  # noqa: NPY002
+        random.seed(surroundings)
+        _seed_compiled(surroundings)
+        before = _global_states()
+        plan = module.plan(given, np.random.default_rng(seed), **settings)
+        used = [name for name, state in _global_states().items() if state != before[name]]
+    finally:
+        np.random.set_state(kept[0])  # noqa: NPY002
+        random.setstate(kept[1])
+    return _Run(plan, used, _content(given) != _content(problem))
+
+
+def _global_states() -> dict[str, tuple]:
+    name, keys, *rest = np.random.get_state()  # noqa: NPY002
+    return {"numpy.random": (name, keys.tobytes(), *rest), "random": random.getstate()}
+
+
+@njit(cache=True)
+def _seed_compiled(seed: int) -> None:
+    """Seed the global generators of compiled code, which numba keeps apart from Python's. Their state cannot be read."""
+    np.random.seed(seed)  # noqa: NPY002
+    random.seed(seed)
+
+
+def _content(problem: Problem) -> tuple:
+    return problem.name, problem.start, problem.target, to_json(problem.workspace)
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Facts: each tells whether it holds for a case, and a detail
+
+
+def _has_its_ends(case: _Case) -> tuple[bool, str]:
+    for plan in case.plans:
+        fault = answer.ends_fault(plan, case.problem)
+        if fault:
+            return False, fault
+    found = sum(plan.path is not None for plan in case.plans)
+    return True, f"{found} paths of {len(case.plans)} plans"
+
+
+def _history_falls(case: _Case) -> tuple[bool, str]:
+    for plan in case.plans:
+        # Written so that a value that is not a number fails as well.
+        if not (plan.history[1:] <= plan.history[:-1]).all():
+            return False, "rises; expected the best objective so far"
+        if plan.path is not None and plan.history[-1] != plan.objective and (case.keeps_best or plan.history[-1] > plan.objective):
+            return False, f"ends with {plan.history[-1]}; expected the objective, {plan.objective}"
+    return True, ""
+
+
+def _extra_is_free(case: _Case) -> tuple[bool, str]:
+    for plan in case.plans:
+        fault = answer.names_fault(plan, {*TAKEN, *case.settings})
+        if fault:
+            return False, fault
+        if plan.extra.keys() != case.columns:
+            return False, f"{min(plan.extra.keys() ^ case.columns)}: not in every plan; a table needs the same columns in each row"
+    return True, ""
+
+
+def _repeats(case: _Case) -> tuple[bool, str]:
+    different = _difference(case.plans[0], case.again)
+    return not different, f"{different}: another value from the same generator" if different else ""
+
+
+def _draws_from_its_own(case: _Case) -> tuple[bool, str]:
+    """A result that no repeat would give is not held against the global generators."""
+    used = next((run.used for run in case.runs if run.used), [])
+    if used:
+        return False, f"uses {' and '.join(used)}; expected rng alone"
+    different = _difference(case.plans[0], case.reseeded)
+    if different and not _difference(case.plans[0], case.again):
+        return False, f"{different}: depends on a global generator; expected rng alone"
+    return True, ""
+
+
+def _leaves_problem(case: _Case) -> tuple[bool, str]:
+    changed = any(run.changed for run in case.runs)
+    return not changed, "the problem is another after the run; copy what is to be changed" if changed else ""
+
+
+def _keeps_budget(case: _Case) -> tuple[bool, str]:
+    """The number of evaluations may differ from generator to generator: a search may end early."""
+    used = sorted(int(plan.evaluations) for plan in case.plans)
+    budget = case.settings.get("evaluations", math.inf)
+    if used[-1] > budget:
+        return False, f"{used[-1]} evaluations; expected at most {budget}"
+    for plan in case.plans:
+        if len(plan.history) > plan.evaluations:
+            return False, f"a history of {len(plan.history)} values from {plan.evaluations} evaluations"
+    return True, f"{used[0]} evaluations" if used[0] == used[-1] else f"{used[0]} to {used[-1]} evaluations"
+
+
+def _claims_hold(case: _Case) -> tuple[bool, str]:
+    """Only a planner that declares itself exact can fail."""
+    claims = [plan for plan in case.plans if plan.claimed_feasible]
+    agreed = _feasible(claims, case.blocked)
+    return agreed == len(claims) or not case.exact, f"{len(claims)} paths claimed feasible, {agreed} by the checker"
+
+
+def _finds_no_way(case: _Case) -> tuple[bool, str]:
+    feasible = _feasible(case.plans, case.blocked)
+    return not feasible, "a feasible path to a sealed target" if feasible else ""
+
+
+def _feasible(plans: list[Plan], blocked: Region) -> int:
+    """Number of plans whose path is feasible by the checker."""
+    return sum(plan.path is not None and checker.check(curves.bezier_pieces(plan.path), blocked).feasible for plan in plans)
+
+
+def _difference(one: Plan, other: Plan) -> str:
+    """The first field in which two plans differ by a bit, or nothing."""
+    bits = zip(_bits(one).items(), _bits(other).values(), strict=True)
+    return next((field for (field, value), counterpart in bits if value != counterpart), "")
+
+
+def _bits(plan: Plan) -> dict[str, Any]:
+    """The fields of a plan as values that are equal exactly if their bits are."""
+    return {
+        "path": plan.path and (plan.path.curve, plan.path.points.shape, plan.path.points.tobytes()),
+        "objective": np.float64(plan.objective).tobytes(),
+        "claimed_feasible": bool(plan.claimed_feasible),
+        "evaluations": int(plan.evaluations),
+        "history": plan.history.tobytes(),
+        "stop": plan.stop,
+        "extra": {name: np.float64(value).tobytes() for name, value in plan.extra.items()},
+    }
+
+
+_FACTS = {
+    "path": _has_its_ends,
+    "history": _history_falls,
+    "extra columns": _extra_is_free,
+    "same bits": _repeats,
+    "global generators": _draws_from_its_own,
+    "problem unchanged": _leaves_problem,
+    "budget": _keeps_budget,
+    "claims": _claims_hold,
+}

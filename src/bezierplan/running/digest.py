@@ -1,0 +1,127 @@
+"""Digests of source code.
+
+A digest names what a result depends on, so that an edit re-runs exactly the jobs that it can change; it also names the folder
+in which numba keeps the compiled kernels of a module, because numba itself does not notice an edit in a module that a kernel calls.
+"""
+
+import ast
+import hashlib
+import os
+import sys
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+PACKAGE = Path(__file__).parents[1]
+ROOT = PACKAGE.name
+
+
+# What decides how a job starts and ends, never what it writes.
+NEUTRAL = {f"{ROOT}.running.{name}" for name in ("digest", "kernel_cache", "log")}
+
+
+class _Module(NamedTuple):
+    """A module by its dotted name, and the folder in which that name is looked up: this package's, or that of a file outside of it."""
+
+    home: Path
+    name: str
+
+    def file(self) -> Path | None:
+        """The module's source file, or None."""
+        place = self.home.joinpath(*self.name.split("."))
+        return next((file for file in (place.with_suffix(".py"), place / "__init__.py") if file.is_file()), None)
+
+    def parents(self) -> set["_Module"]:
+        """The packages that the module lies in."""
+        parts = self.name.split(".")
+        return {_Module(self.home, ".".join(parts[:n])) for n in range(1, len(parts))}
+
+
+def _module(name: str) -> _Module:
+    """A module as `source_digest` is given it."""
+    if name.endswith(".py"):
+        file = Path(name).resolve()
+        return _Module(file.parent, file.stem)
+    return _Module(PACKAGE.parent, name)
+
+
+@cache
+def _parsed(file: Path) -> tuple[str, frozenset[tuple[int, str, str]]]:
+    """What a file computes, as text: its syntax tree without docstrings; and what it imports: (dots before, module, name in it)."""
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    imports = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            imports.update((0, alias.name, "") for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            imports.update((node.level, node.module or "", alias.name) for alias in node.names)
+        elif isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) and ast.get_docstring(node) is not None:
+            node.body = node.body[1:]
+    return ast.dump(tree), frozenset(imports)
+
+
+@cache
+def _imports(module: _Module) -> set[_Module]:
+    """The modules of this package, and of a file outside of it those beside the file, that a module imports; their packages included."""
+    file = module.file()
+    packages = module.name.split(".") if file.name == "__init__.py" else module.name.split(".")[:-1]
+    found = set()
+    for level, base, name in _parsed(file)[1]:
+        above = packages[: len(packages) - level + 1] if level else []
+        base = ".".join([*above, *filter(None, [base])])
+        for full in filter(None, {base, ".".join(filter(None, [base, name]))}):
+            found.add(_Module(PACKAGE.parent if full.split(".")[0] == ROOT else module.home, full))
+    # What lies beside this package is no part of it.
+    ours = {each for each in found if (each.home != PACKAGE.parent or each.name.split(".")[0] == ROOT) and each.file()}
+    return ours.union(*(each.parents() for each in ours))
+
+
+@cache
+def source_digest(*modules: str) -> str:
+    """Digest of modules and of every module that they import, directly or not: of this package, and beside a file those of its folder.
+
+    A module is a dotted name of this package or the path of a file, such as a reader's planner. Comments, docstrings and layout do not
+    count: the digest is taken over syntax trees. Raises ValueError for a module that is not there.
+    """
+    todo, texts = [], {}
+    for module in map(_module, modules):
+        if module.file() is None:
+            raise ValueError(f"no module {module.name} in {module.home}")
+        todo += [module, *module.parents()]
+    while todo:
+        module = todo.pop()
+        if module not in texts and module.file() and module.name not in NEUTRAL:
+            texts[module] = f"{module.name} {_parsed(module.file())[0]}"
+            todo += _imports(module)
+    return hashlib.sha256("\n".join(sorted(texts.values())).encode()).hexdigest()[:16]
+
+
+@cache
+def content_digest(*files: str) -> str:
+    """Digest of the content of files, in their order: unlike a date, it says whether one of them changed."""
+    contents = (Path(file).read_bytes() for file in files)
+    return hashlib.sha256(b"".join(hashlib.sha256(content).digest() for content in contents)).hexdigest()[:16]
+
+
+# numba tries them in this order; the others serve the libraries that keep kernels of their own.
+LOCATORS = "bezierplan.running.kernel_cache.KernelCacheLocator,InTreeCacheLocator,UserWideCacheLocator"
+
+
+def kernel_folder(module: str, file: str) -> Path:
+    """The folder of compiled kernels of a module, of this package or a reader's own, in its present state."""
+    ours = module.split(".")[0] == ROOT and _module(module).file() is not None
+    return Path(os.environ["NUMBA_CACHE_DIR"]) / f"{Path(file).stem}-{source_digest(module if ours else file)}"
+
+
+def point_numba_cache() -> None:
+    """Give compiled kernels a place: `.cache/kernels` of the working tree or, where that cannot be written, of the user's home.
+
+    numba reads the variables once, when it is imported; so an earlier import is corrected as well.
+    """
+    tree = PACKAGE.parents[1]
+    place = tree if os.access(tree, os.W_OK) else Path.home()
+    given = {"CACHE_DIR": str(place / ".cache" / "kernels"), "CACHE_LOCATOR_CLASSES": LOCATORS}
+    for name, value in given.items():
+        os.environ[f"NUMBA_{name}"] = value
+        if "numba" in sys.modules:
+            setattr(sys.modules["numba"].config, name, value)

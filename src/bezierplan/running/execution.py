@@ -1,0 +1,228 @@
+"""One chunk of runs: a method on every condition of an experiment, a block of repeats.
+
+A job is a mapping with these keys, all of them names and plain values (`study.job` makes it):
+
+    study, experiment, method    names
+    planner, settings            the planner and its settings, by name
+    problems                     problem name -> its workspace's name, and if it has them layout, obstacles, and settings that go with it
+    vary                         setting or level -> list of values; every combination of problems and values is a condition
+    levels                       level -> value, as text -> settings that go with it
+    seeds                        a run's seed comes from its id (`own`), from its id without the method (`shared`), or from study,
+                                 experiment, layout and repeat alone (`common`: all methods and conditions share their random numbers)
+    time_limit                   seconds after which a run ends its job, compiling included; no limit without this key
+    repeats                      [first, last): the repeats to run
+"""
+
+import hashlib
+import itertools
+import logging
+import math
+import time
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+import pyarrow as pa
+
+from bezierplan.geometry import checker, curves
+from bezierplan.geometry.region import Region, region
+from bezierplan.planners import PLACE, Plan, planner_module, planner_settings
+from bezierplan.running import answer, watchdog
+from bezierplan.workspaces.problem import Problem
+
+logger = logging.getLogger(__name__)
+
+RUN_COLUMNS = (
+    *("id", "study", "experiment", "condition", "problem", "workspace", "method", "repeat", "planner"),
+    *("objective", "length", "claimed_feasible", "feasible", "collision_at", "collision_depth", "clearance", "clearance_error"),
+    *("evaluations", "generations", "stop", "history", "path_curve", "path_points"),
+)
+"""Columns of every runs table; the settings and a planner's extra columns stand between `planner` and `objective`, and at the end.
+
+objective: the planner's own final value. length: exact arc length of the path, in units (not a number without a path).
+claimed_feasible: the planner's own test. feasible, collision_at, collision_depth, clearance, clearance_error: the certified check
+(`exact.checker.Check`). generations: done after the first one. history: best objective after each generation.
+path_curve, path_points: the path, its control points flat as x0, y0, x1, y1, ...; empty without a path.
+"""
+
+
+JOINED = ("straight_line", "bound", "least_length", "bound_path", "bound8", "cpu_s", "wall_s")
+"""Columns that are joined to a runs table when it is read: of `problems.bounds_of`, and the times."""
+
+TAKEN = frozenset((*RUN_COLUMNS, *PLACE, *JOINED))
+"""Names that no planner's extra column can have; the job's settings and what it varies are others."""
+
+# Runs are thrown away until so many in a row take the same CPU time but for this share, or so many seconds have gone into it after the
+# first, or one of them took so long that what it loaded is small beside it.
+_ALIKE = 3
+_STABLE = 0.1
+_WARM_UP = 0.2
+_LONG_RUN = 1.0
+
+# After so many runs each a line goes to the log.
+_LOGGED = 100
+
+NO_PATH = checker.Check(False, math.nan, math.nan, math.nan, math.nan, 0)
+
+
+class Condition(NamedTuple):
+    """A problem and the values of the varied settings."""
+
+    problem: str
+    values: dict[str, Any]
+
+    @property
+    def name(self) -> str:
+        return ",".join([self.problem, *(f"{key}={value}" for key, value in self.values.items())])
+
+
+def conditions(problems: list[str], vary: dict[str, list]) -> Iterator[Condition]:
+    """Every combination of problems and varied values, in the order given."""
+    for problem in problems:
+        for values in itertools.product(*vary.values()):
+            yield Condition(problem, dict(zip(vary, values, strict=True)))
+
+
+def run_id(job: dict, condition: Condition, repeat: int) -> str:
+    """The name of a run: study/experiment/condition/method/repeat."""
+    return f"{job['study']}/{job['experiment']}/{condition.name}/{job['method']}/{repeat}"
+
+
+def settings_in(job: dict, condition: Condition) -> dict[str, Any]:
+    """The settings of the job's method under a condition: what goes with its problem is put in, then what is varied. Levels stand for the
+    settings that go with them; what is varied and is no setting of the planner is left out.
+    """
+    settings = job["settings"] | job["problems"][condition.problem].get("settings", {})
+    for name, value in condition.values.items():
+        settings |= job["levels"][name][str(value).lower()] if name in job["levels"] else {name: value}
+    accepted = planner_settings(planner_module(job["planner"]))
+    return {name: value for name, value in settings.items() if name in accepted}
+
+
+def generator(job: dict, condition: Condition, repeat: int) -> np.random.Generator:
+    """The random generator of a run, from names only, so that nothing depends on order, cores or chunks."""
+    layout = job["problems"][condition.problem].get("layout", "")
+    parts = {
+        "own": [condition.name, job["method"]],
+        "shared": [condition.name],
+        "common": [str(layout)],
+    }
+    name = "/".join([job["study"], job["experiment"], *parts[job["seeds"]], str(repeat)])
+    return np.random.default_rng(int.from_bytes(hashlib.sha256(name.encode()).digest()))
+
+
+def run(job: dict, condition: Condition, repeat: int, problem: Problem) -> Plan:
+    """The plan of one run."""
+    plan = planner_module(job["planner"]).plan
+    return plan(problem, generator(job, condition, repeat), **settings_in(job, condition))
+
+
+def row(job: dict, condition: Condition, repeat: int, plan: Plan, problem: Problem, blocked: Region) -> dict[str, Any]:
+    """One row of the runs table; `blocked` is the region of the problem's workspace.
+
+    Raises RuntimeError, naming the run and the field, if the plan is none for this problem (`answer.fault`): a path that begins or ends
+    elsewhere, a column that would take the place of another.
+    """
+    settings = settings_in(job, condition)
+    fault = answer.fault(plan, problem, {*TAKEN, *settings, *condition.values})
+    if fault:
+        raise RuntimeError(f"run {run_id(job, condition, repeat)}: the answer of planner {job['planner']}: {fault}")
+    path = plan.path
+    check = NO_PATH if path is None else checker.check(curves.bezier_pieces(path), blocked)
+    return {
+        "id": run_id(job, condition, repeat),
+        "study": job["study"],
+        "experiment": job["experiment"],
+        "condition": condition.name,
+        "problem": condition.problem,
+        **{key: value for key, value in job["problems"][condition.problem].items() if key != "settings"},
+        "method": job["method"],
+        "repeat": repeat,
+        "planner": job["planner"],
+        **settings,
+        **condition.values,
+        "objective": float(plan.objective),
+        "length": math.nan if path is None else curves.length(path),
+        "claimed_feasible": bool(plan.claimed_feasible),
+        "feasible": check.feasible,
+        "collision_at": check.collision_at,
+        "collision_depth": check.depth,
+        "clearance": check.clearance,
+        "clearance_error": check.tolerance,
+        "evaluations": int(plan.evaluations),
+        "generations": len(plan.history) - 1,
+        "stop": plan.stop,
+        "history": plan.history.tolist(),
+        "path_curve": "" if path is None else path.curve,
+        "path_points": [] if path is None else path.points.ravel().tolist(),
+        **plan.extra,
+    }
+
+
+def run_chunk(problems: dict[str, Problem], job: dict) -> tuple[pa.Table, pa.Table]:
+    """The runs of a job (`RUN_COLUMNS`) and, in a table of their own because they never repeat, their times: id, cpu_s, wall_s.
+
+    Raises RuntimeError, naming the run, if a planner fails, or answers with something that is no plan for the problem (`row`).
+    """
+    blocked = {name: region(problem.workspace) for name, problem in problems.items() if name in job["problems"]}
+    given = list(conditions(list(job["problems"]), job["vary"]))
+    deterministic = getattr(planner_module(job["planner"]), "deterministic", False)
+    first, last = job["repeats"]
+    rows, times = {}, {}
+    with watchdog.watching(job.get("time_limit")) as watch:
+        for n, (k, repeat) in enumerate(_order(job, len(given), range(first, first + 1 if deterministic else last))):
+            condition, problem = given[k], problems[given[k].problem]
+            if not rows:
+                _warm_up(lambda: _guarded_run(job, condition, repeat, problem, watch))  # noqa: B023
+            plan, cpu, wall = _guarded_run(job, condition, repeat, problem, watch)
+            rows[k, repeat] = row(job, condition, repeat, plan, problem, blocked[condition.problem])
+            times[k, repeat] = {"id": rows[k, repeat]["id"], "cpu_s": cpu, "wall_s": wall}
+            if (n + 1) % _LOGGED == 0:
+                logger.info("%d runs done", n + 1)
+    if deterministic:
+        for k, repeat in itertools.product(range(len(given)), range(first + 1, last)):
+            rows[k, repeat] = rows[k, first] | {"id": run_id(job, given[k], repeat), "repeat": repeat}
+            times[k, repeat] = times[k, first] | {"id": rows[k, repeat]["id"]}
+    logger.info("all %d runs done", len(rows))
+    return _table([rows[key] for key in sorted(rows)]), pa.Table.from_pylist([times[key] for key in sorted(times)])
+
+
+def _table(rows: list[dict[str, Any]]) -> pa.Table:
+    """Rows as a table. Not every condition has the same columns, so they are gathered over all rows."""
+    columns = dict.fromkeys(column for each in rows for column in each)
+    return pa.table({column: [each.get(column) for each in rows] for column in columns})
+
+
+def _order(job: dict, conditions: int, repeats: range) -> list[tuple[int, int]]:
+    """All pairs of a condition's number and a repeat, in an order drawn from the job's name.
+
+    A processor's speed drifts, and a first call of compiled code loads it. In this order neither falls on one condition. No result depends
+    on it but times.
+    """
+    pairs = list(itertools.product(range(conditions), repeats))
+    name = "/".join([job["study"], job["experiment"], job["method"], str(repeats.start), "order"])
+    shuffled = np.random.default_rng(int.from_bytes(hashlib.sha256(name.encode()).digest())).permutation(len(pairs))
+    return [pairs[n] for n in shuffled]
+
+
+def _warm_up(once: Callable[[], tuple[Plan, float, float]]) -> None:
+    """Throw runs away until their CPU time is stable or they are long: the first ones of a process load code and wake the processor."""
+    taken = []
+    while len(taken) < _ALIKE or max(taken[-_ALIKE:]) > (1 + _STABLE) * min(taken[-_ALIKE:]):
+        taken.append(once()[1])
+        if taken[-1] > _LONG_RUN or sum(taken[1:]) > _WARM_UP:
+            return
+
+
+def _guarded_run(job: dict, condition: Condition, repeat: int, problem: Problem, watch: Callable[[str], None]) -> tuple[Plan, float, float]:
+    """The plan of one run, its CPU and its wall seconds. Raises RuntimeError, naming the run, if the planner fails."""
+    watch(f"run {run_id(job, condition, repeat)}: planner {job['planner']}")
+    try:
+        cpu, wall = time.process_time(), time.perf_counter()
+        plan = run(job, condition, repeat, problem)
+        return plan, time.process_time() - cpu, time.perf_counter() - wall
+    except Exception as error:
+        told = " ".join(f"{type(error).__name__}: {error}".split())
+        raise RuntimeError(f"run {run_id(job, condition, repeat)}: {told}") from error
+    finally:
+        watch("")

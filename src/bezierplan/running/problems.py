@@ -1,0 +1,177 @@
+"""The problems of an experiment: made from their descriptions, and kept in a file with one row a problem.
+
+Columns of a problem file: problem, workspace (its name), start_x, start_y, target_x, target_y (units), drawn (the workspace itself, as
+JSON: `workspaces.files.to_json`). Columns of a file of bounds: problem, straight_line, bound (units; infinite without a free path),
+least_length (what the checker's tolerance leaves of it), bound_path (the shortest path, flat as x0, y0, x1, y1, ...), bound8 (on grids the
+least of all lengths that count cells, `cell_length`, in units; otherwise not a number).
+"""
+
+import math
+from pathlib import Path
+
+import pyarrow as pa
+import pyarrow.parquet as parquet
+
+from bezierplan.geometry import cell_length
+from bezierplan.geometry.region import blocks, region
+from bezierplan.workspaces import files, lattice, random_blocks, random_circles, random_field
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.problem import Problem, Workspace
+
+
+def build(name: str, description: dict, workspace: Workspace) -> Problem:
+    """A problem from its description: start and target, (x, y) in units, or start_cell and target_cell, numbers of a grid's cells.
+
+    Raises ValueError, naming key and value, unless start and target are free places of the workspace.
+    """
+    return Problem(name, workspace, _end("start", description, workspace), _end("target", description, workspace))
+
+
+def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, float]:
+    key = end if end in description else f"{end}_cell"
+    value = description[key]
+    if key == end:
+        point = (float(value[0]), float(value[1]))
+    elif isinstance(workspace, Grid):
+        try:
+            point = workspace.centre(value)
+        except ValueError as error:
+            raise ValueError(f"{key}: {error}") from None
+    else:
+        raise ValueError(f"{key}: {value}: only a grid has cell numbers; expected {end}: [x, y]")
+    x_low, x_high, y_low, y_high = workspace.bounds
+    if not (x_low <= point[0] <= x_high and y_low <= point[1] <= y_high):
+        raise ValueError(
+            f"{key}: {value}: outside the workspace; expected x from {x_low:g} to {x_high:g} and y from {y_low:g} to {y_high:g}"
+        )
+    if blocks(region(workspace), point):
+        raise ValueError(f"{key}: {value}: in an obstacle; expected a free place of the workspace")
+    if isinstance(workspace, Grid) and workspace.drawn and workspace.occupied[workspace.cell_of(*point)]:
+        raise ValueError(f"{key}: {value}: in an occupied cell; expected a free one, or a smaller cell")
+    return point
+
+
+def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, str]]:
+    """Problems and the names of their workspaces, both by problem, from their descriptions (`study.problems_job`).
+
+    Map files are sought in a folder. Raises ValueError for a fault in any of them.
+    """
+    fixed = {name: files.load(each, folder) for name, each in job["workspaces"].items() if not each["kind"].startswith("random_")}
+    layouts: dict[tuple[str, int], Circles] = {}
+    problems = {}
+    for name, description in job["problems"].items():
+        home = description["workspace"]
+        if home in fixed:
+            workspace = fixed[home]
+        elif job["workspaces"][home]["kind"] == "random_field":
+            workspace = random_field.field(job["workspaces"][home], description, f"{job['study']}/{home}")
+        elif job["workspaces"][home]["kind"] == "random_blocks":
+            workspace = _block_map(job["workspaces"][home], description, f"{job['study']}/{home}")
+        else:
+            key = home, description["layout"]
+            if key not in layouts:
+                ends = [tuple(map(float, description[end])) for end in ("start", "target")]
+                layouts[key] = random_circles.layout(job["workspaces"][home], f"{job['study']}/{home}", description["layout"], ends)
+            workspace = random_circles.first(layouts[key], description["obstacles"])
+        if "scenario" in description:
+            description = description | scenario(job["workspaces"][home], description["scenario"], workspace, folder)
+        problems[name] = build(name, description, workspace)
+    return problems, {name: description["workspace"] for name, description in job["problems"].items()}
+
+
+# How near to the printed optimal length of a scenario ours must be, in cells.
+_SAME_OPTIMUM = 1e-3
+
+
+def scenario(description: dict, number: int, workspace: Grid, folder: Path) -> dict:
+    """Start and target of a scenario. Raises ValueError if it does not fit the map, or its length is not ours."""
+    from bezierplan.geometry import bounds
+
+    found = files.scenario(description, number, workspace, folder)
+    cells = (workspace.cell_of(*end) for end in (found.start, found.target))
+    length = bounds.lattice_path(workspace.occupied, *cells, math.sqrt(2), "none").length
+    if not abs(length - found.optimal) <= _SAME_OPTIMUM:
+        place = f"{description['scenarios']}: line {number + 1}"
+        raise ValueError(f"{place}: optimal length {found.optimal:g}; on {description['file']} it is {length:.8g}")
+    return {"start": found.start, "target": found.target}
+
+
+# How near to the wanted length that of the shortest lattice path must be, in cells.
+_SAME_LENGTH = 1e-4
+
+
+def _block_map(description: dict, problem: dict, name: str) -> Grid:
+    """The first map of blocks whose shortest path over the 8-connected lattice has the wanted length, in cells, if one is wanted.
+
+    Raises ValueError if there is none.
+    """
+    from bezierplan.geometry import bounds
+
+    wanted = description.get("lattice_length")
+    for grid in random_blocks.maps(description, problem, name):
+        ends = lattice.lattice(grid, tuple(problem["start"]), tuple(problem["target"]), description["corners"])
+        cells = (divmod(cell, problem["side"]) for cell in (ends.start, ends.target))
+        length = bounds.lattice_path(grid.occupied, *cells, ends.diagonal, description["corners"]).length + ends.ends
+        if math.isfinite(length) and (wanted is None or abs(length - wanted) < _SAME_LENGTH):
+            return grid
+    asked = "a path from start to target" if wanted is None else f"a shortest lattice path of lattice_length {wanted:g}"
+    raise ValueError(f"obstacles: {problem['obstacles']}: of {random_blocks.MOST_MAPS} maps none has so many occupied cells and {asked}")
+
+
+def write(problems: dict[str, Problem], workspaces: dict[str, str], file: str) -> None:
+    """Write problems, by name, with the names of their workspaces."""
+    rows = [
+        {
+            "problem": name,
+            "workspace": workspaces[name],
+            "start_x": problem.start[0],
+            "start_y": problem.start[1],
+            "target_x": problem.target[0],
+            "target_y": problem.target[1],
+            "drawn": files.to_json(problem.workspace),
+        }
+        for name, problem in problems.items()
+    ]
+    parquet.write_table(pa.Table.from_pylist(rows), file)
+
+
+def read(file: str) -> dict[str, Problem]:
+    """The problems of a file, by name, in its order. Problems in the same workspace share it."""
+    table = parquet.read_table(file).to_pylist()
+    drawn = {text: files.from_json(text) for text in {row["drawn"] for row in table}}
+    return {
+        row["problem"]: Problem(row["problem"], drawn[row["drawn"]], (row["start_x"], row["start_y"]), (row["target_x"], row["target_y"]))
+        for row in table
+    }
+
+
+def bounds_of(problems: dict[str, Problem]) -> pa.Table:
+    """The straight line and the exact shortest path of each problem, one row each."""
+    from bezierplan.geometry import bounds
+
+    rows = []
+    for name, problem in problems.items():
+        bound = bounds.shortest_path(problem)
+        rows.append(
+            {
+                "problem": name,
+                "straight_line": math.dist(problem.start, problem.target),
+                "bound": bound.length,
+                "least_length": bounds.least_length(bound),
+                "bound_path": bound.points.ravel().tolist(),
+                "bound8": _cell_bound(problem),
+            }
+        )
+    return pa.Table.from_pylist(rows)
+
+
+def _cell_bound(problem: Problem) -> float:
+    """The least length, in units, of a path over free cells with straight and diagonal steps, which may pass between two occupied cells."""
+    from bezierplan.geometry import bounds
+
+    grid = problem.workspace
+    if not isinstance(grid, Grid):
+        return math.nan
+    start, target = (grid.cell_of(*end) for end in (problem.start, problem.target))
+    return bounds.lattice_path(grid.occupied, start, target, cell_length.DIAGONAL, "free").length * grid.cell

@@ -1,1 +1,0 @@
-"""Parts of search algorithms: genetic operators, swarm steps, chaotic maps. Nothing here knows of paths."""

@@ -1,0 +1,122 @@
+"""Occupancy maps as ROS's map_server keeps them: an image and a YAML file that says what its pixels mean.
+
+YAML keys: image (a file beside it), resolution (units a pixel), origin [x, y, yaw] of the lower left pixel's corner, negate (0: dark pixels
+are occupied), occupied_thresh and free_thresh. A pixel is free if the share of it that is occupied is below free_thresh; occupied above
+occupied_thresh and unknown between them, which both count as occupied here. The image's first row is the top of the map.
+"""
+
+import math
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bezierplan.study import checked
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.limits import check_numbers
+from bezierplan.workspaces.text_file import read_text
+
+MOST_PIXELS = 16_000_000
+"""Most pixels of an image unless the description says otherwise: 4,000 x 4,000."""
+
+_KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
+_THRESHOLDS = {"occupied_thresh": 0.65, "free_thresh": 0.196}
+
+
+def read(file: Path, unit: str, robot_radius: float = 0.0, most_pixels: int = MOST_PIXELS) -> Grid:
+    """The grid of a map_server YAML file, a cell for each pixel.
+
+    robot_radius: in units; cells whose centre lies nearer than that to the centre of an occupied cell count as occupied too.
+
+    Raises ValueError, naming the key and what would be right.
+    """
+    content = _content(file)
+    resolution = content["resolution"]
+    occupied = _occupied(image_of(file, content), content, most_pixels)
+    if robot_radius > 0 and occupied.any():
+        from scipy.ndimage import distance_transform_edt
+
+        occupied |= distance_transform_edt(~occupied) * resolution < robot_radius
+    grid = Grid(occupied, float(resolution), unit, (float(content["origin"][0]), float(content["origin"][1])))
+    check_numbers(np.array(grid.bounds), "origin, resolution: the border")
+    return grid
+
+
+def image_of(file: Path, content: dict[str, Any] | None = None) -> Path:
+    """The image of a map_server YAML file. Raises ValueError if there is none."""
+    name = (content or _content(file))["image"]
+    image = file.parent / name
+    if not image.is_file():
+        raise ValueError(f"image: {name}: no such file in {file.parent}; expected the image beside its YAML file")
+    return image
+
+
+def _content(file: Path) -> dict[str, Any]:
+    """The keys of a map_server YAML file, checked."""
+    content = checked.parse(read_text(file), file.name)
+    if not isinstance(content, dict) or "image" not in content:
+        raise ValueError(f"image: missing; expected the keys {', '.join(_KEYS)} of a ROS map_server file")
+    content = _THRESHOLDS | {"negate": 0} | content
+    _expect(isinstance(content["image"], str), "image", content["image"], "the name of an image")
+    for key in ("resolution", "occupied_thresh", "free_thresh"):
+        _expect(_is_number(content.get(key)), key, content.get(key), "a number")
+    _expect(0 < content["resolution"] < math.inf, "resolution", content["resolution"], "a number above 0")
+    _expect(0 <= content["occupied_thresh"] <= 1, "occupied_thresh", content["occupied_thresh"], "a number from 0 to 1")
+    free = content["free_thresh"]
+    _expect(0 <= free <= content["occupied_thresh"], "free_thresh", free, "a number from 0 to occupied_thresh")
+    _expect(content["negate"] in (0, 1), "negate", content["negate"], "0 or 1")
+    _expect(content.get("mode", "trinary") == "trinary", "mode", content.get("mode"), "trinary")
+    origin = content.get("origin")
+    _expect(isinstance(origin, list) and len(origin) == 3 and all(map(_is_number, origin)), "origin", origin, "[x, y, yaw]")
+    _expect(origin[2] == 0, "origin", origin, "a yaw of 0: a map that is not turned")
+    return content
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def _expect(right: bool, key: str, value: Any, wanted: str) -> None:
+    if not right:
+        raise ValueError(f"{key}: {'missing' if value is None else value}; expected {wanted}")
+
+
+def _occupied(file: Path, content: dict[str, Any], most_pixels: int) -> np.ndarray:
+    """Which pixels are occupied or unknown: bool (rows, columns), the bottom row first."""
+    from PIL import Image
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # our own limit is told below
+        try:
+            with Image.open(file) as image:
+                columns, rows = image.size
+                if columns * rows > most_pixels:
+                    raise _too_large(f"{columns:,} x {rows:,} pixels", most_pixels)
+                light, known = _light(image)
+        except Image.DecompressionBombError:
+            raise _too_large("far too many pixels", most_pixels) from None
+        except (OSError, SyntaxError) as error:
+            raise ValueError(f"image: {content['image']}: cannot be read as an image ({type(error).__name__})") from None
+    share = light if content["negate"] else 1.0 - light
+    return ~((share < content["free_thresh"]) & known)[::-1]
+
+
+def _too_large(size: str, most_pixels: int) -> ValueError:
+    return ValueError(f"image: {size}; expected at most {most_pixels:,}; most_pixels raises the limit, as far as memory goes")
+
+
+def _light(image: Any) -> tuple[np.ndarray, np.ndarray]:
+    """How light (rows, columns) each pixel is, from 0 to 1, the mean of its colours, and whether it is known: not transparent."""
+    if image.mode.startswith("I"):
+        return np.asarray(image, dtype=float) / 65535.0, np.ones(image.size[::-1], dtype=bool)
+    transparent = "A" in image.getbands() or "transparency" in image.info
+    if transparent or image.mode == "P":
+        image = image.convert("RGBA")
+    elif image.mode not in ("L", "RGB"):
+        image = image.convert("L")
+    values = np.asarray(image)
+    if values.ndim == 2:
+        return values / 255.0, np.ones(values.shape, dtype=bool)
+    known = values[..., 3] > 0 if values.shape[2] == 4 else np.ones(values.shape[:2], dtype=bool)
+    return values[..., :3].mean(axis=2) / 255.0, known

@@ -1,0 +1,181 @@
+"""Maps that people have: ROS map_server maps and MovingAI grids, and every fault in one line."""
+
+import math
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from bezierplan.geometry import bounds
+from bezierplan.running import problems
+from bezierplan.workspaces import files
+
+YAML = "image: room.png\nresolution: 0.5\norigin: [-1.0, 2.0, 0.0]\nnegate: 0\noccupied_thresh: 0.65\nfree_thresh: 0.196\n"
+# Grey values, the top row first: free, unknown and occupied.
+PIXELS = np.array([[254, 254, 254, 254], [254, 205, 0, 254], [254, 254, 254, 254]], dtype=np.uint8)
+MAP = "type octile\nheight 4\nwidth 5\nmap\n.....\n.@@W.\n.TO..\nGS...\n"
+SCEN = "version 1\n0\troom.map\t5\t4\t0\t0\t4\t3\t7.00000000\n0\troom.map\t5\t4\t0\t3\t3\t2\t4.00000000\n"
+
+
+def ros_map(folder, yaml=YAML, pixels=PIXELS, image="room.png", **options):
+    Image.fromarray(pixels).save(folder / image)
+    (folder / "room.yaml").write_text(yaml)
+    return files.load({"kind": "ros_map", "unit": "m", "file": "room.yaml", **options}, folder)
+
+
+def moving_ai(folder, text=MAP, scen=SCEN):
+    (folder / "room.map").write_text(text)
+    (folder / "room.map.scen").write_text(scen)
+    return files.load(described(), folder)
+
+
+def described():
+    return {"kind": "moving_ai", "unit": "cell", "file": "room.map", "scenarios": "room.map.scen"}
+
+
+def test_a_ros_map(tmp_path):
+    grid = ros_map(tmp_path)
+    assert grid.occupied.tolist() == [[False] * 4, [False, True, True, False], [False] * 4]
+    assert grid.bounds == (-1.0, 1.0, 2.0, 3.5)
+    again = files.from_json(files.to_json(grid))
+    assert np.array_equal(again.occupied, grid.occupied)
+    assert again.bounds == grid.bounds
+
+
+@pytest.mark.parametrize("image", ["room.pgm", "room.bmp"])
+def test_image_formats(tmp_path, image):
+    grid = ros_map(tmp_path, YAML.replace("room.png", image), image=image)
+    assert grid.occupied.sum() == 2
+
+
+def test_colours_transparency_and_sixteen_bits_are_read(tmp_path):
+    coloured = np.stack([PIXELS] * 3 + [np.where(PIXELS == 205, 0, 255)], axis=2).astype(np.uint8)
+    coloured[1, 1, :3] = 254  # transparent, so unknown
+    assert np.array_equal(ros_map(tmp_path, pixels=coloured).occupied, ros_map(tmp_path).occupied)
+    assert np.array_equal(ros_map(tmp_path, pixels=coloured[..., :3]).occupied[1], [False, False, True, False])
+    assert np.array_equal(ros_map(tmp_path, pixels=PIXELS.astype(np.uint16) * 257).occupied, ros_map(tmp_path).occupied)
+
+
+def test_negated_colours(tmp_path):
+    assert np.array_equal(ros_map(tmp_path, YAML.replace("negate: 0", "negate: 1"), 255 - PIXELS).occupied, ros_map(tmp_path).occupied)
+
+
+def test_a_robots_radius_makes_obstacles_grow(tmp_path):
+    wide = np.full((9, 9), 254, dtype=np.uint8)
+    wide[4, 4] = 0
+    grid = ros_map(tmp_path, pixels=wide, robot_radius=1.1)
+    row, column = np.nonzero(grid.occupied)
+    assert grid.occupied.sum() == 13
+    assert np.hypot(row - 4, column - 4).max() == 2.0
+
+
+ROS_FAULTS = {
+    "resolution of 0": (("resolution: 0.5", "resolution: 0"), "room.yaml: resolution: 0; expected a number above 0"),
+    "resolution in words": (("resolution: 0.5", "resolution: fine"), "room.yaml: resolution: fine; expected a number"),
+    "no image": (("image: room.png", "image: hall.png"), "room.yaml: image: hall.png: no such file"),
+    "no key image": (("image: room.png\n", ""), "room.yaml: image: missing; expected the keys image, resolution"),
+    "no resolution": (("resolution: 0.5\n", ""), "room.yaml: resolution: missing; expected a number"),
+    "turned": (("2.0, 0.0]", "2.0, 0.3]"), "room.yaml: origin: .*; expected a yaw of 0"),
+    "origin": (("[-1.0, 2.0, 0.0]", "here"), r"room.yaml: origin: here; expected \[x, y, yaw\]"),
+    "thresholds": (("free_thresh: 0.196", "free_thresh: 0.9"), "room.yaml: free_thresh: 0.9; expected a number from 0 to occupied_thresh"),
+    "mode": (("negate: 0", "negate: 0\nmode: raw"), "room.yaml: mode: raw; expected trinary"),
+    "far away": (("[-1.0, 2.0, 0.0]", "[1e9, 0, 0]"), "room.yaml: origin, resolution: the border: 1e.09 is not a coordinate"),
+    "no mapping": ((YAML, "just a word\n"), "room.yaml: image: missing"),
+}
+
+
+@pytest.mark.parametrize("fault", ROS_FAULTS)
+def test_ros_fault_is_one_line(tmp_path, fault):
+    (old, new), told = ROS_FAULTS[fault]
+    with pytest.raises(ValueError, match=told) as found:
+        ros_map(tmp_path, YAML.replace(old, new))
+    assert "\n" not in str(found.value)
+
+
+def test_a_huge_image_is_refused_before_it_is_read(tmp_path):
+    ros_map(tmp_path)
+    header = b"P5\n100000 100000\n255\n"
+    (tmp_path / "huge.pgm").write_bytes(header)
+    (tmp_path / "room.yaml").write_text(YAML.replace("room.png", "huge.pgm"))
+    with pytest.raises(ValueError, match=r"image: .* pixels; expected at most 16,000,000; most_pixels raises the limit"):
+        files.load({"kind": "ros_map", "unit": "m", "file": "room.yaml"}, tmp_path)
+    with pytest.raises(ValueError, match=r"4 x 3 pixels; expected at most 11"):
+        ros_map(tmp_path, most_pixels=11)
+
+
+def test_what_is_no_image_is_refused(tmp_path):
+    ros_map(tmp_path)
+    (tmp_path / "room.png").write_text("P5, but not really")
+    with pytest.raises(ValueError, match=r"image: room.png: cannot be read as an image"):
+        files.load({"kind": "ros_map", "unit": "m", "file": "room.yaml"}, tmp_path)
+
+
+def test_a_moving_ai_map_and_its_scenarios(tmp_path):
+    grid = moving_ai(tmp_path)
+    assert grid.occupied.tolist() == [
+        [False] * 5,
+        [False, True, True, False, False],
+        [False, True, True, True, False],
+        [False] * 5,
+    ]
+    one = files.scenario(described(), 1, grid, tmp_path)
+    assert (one.start, one.target) == ((0.5, 3.5), (4.5, 0.5))
+    job = {"study": "s", "workspaces": {"w": described()}, "problems": {"p": {"workspace": "w", "scenario": 2}}}
+    problem = problems.build_all(job, tmp_path)[0]["p"]
+    assert (problem.start, problem.target) == ((0.5, 0.5), (3.5, 1.5))
+    length = bounds.lattice_path(grid.occupied, (0, 0), (1, 3), math.sqrt(2), "none").length
+    assert length == pytest.approx(4.0)
+
+
+MAP_FAULTS = {
+    "type": (("type octile", "type tile"), "line 1: type tile; expected type octile"),
+    "height": (("height 4", "height four"), "line 2: 'height four'; expected height and a whole number"),
+    "no width": (("width 5\n", ""), "line 3: 'map'; expected width"),
+    "word": (("map\n", "cells\n"), "line 4: expected the word map"),
+    "rows": (("GS...\n", ""), "height: 4; but 3 lines of cells follow"),
+    "ragged": (("GS...", "GS.."), "line 8 has 4 cells; expected 5"),
+    "character": (("GS...", "GX..."), "line 8: unknown character 'X'"),
+    "size": (("height 4\nwidth 5", "height 99999\nwidth 99999"), "line 2: 99999 x 99999 cells; expected at most"),
+    "empty": ((MAP, ""), "line 1: 'the file ends'; expected type"),
+}
+
+
+@pytest.mark.parametrize("fault", MAP_FAULTS)
+def test_map_fault_is_one_line(tmp_path, fault):
+    (old, new), told = MAP_FAULTS[fault]
+    assert old in MAP
+    with pytest.raises(ValueError, match=told) as found:
+        moving_ai(tmp_path, MAP.replace(old, new, 1))
+    assert str(found.value).startswith("room.map: ")
+
+
+SCEN_FAULTS = {
+    "another map": (("room.map", "hall.map"), "line 2: map hall.map; expected a scenario of room.map"),
+    "another size": (("5\t4\t0\t0", "6\t4\t0\t0"), "line 2: a map of 6 x 4 cells; room.map has 5 x 4"),
+    "start in an obstacle": (("5\t4\t0\t0", "5\t4\t1\t1"), "line 2: start 1 1: expected a free cell"),
+    "target outside": (("4\t3\t7.0", "5\t3\t7.0"), "line 2: target 5 3: expected a free cell"),
+    "words": (("7.00000000", "long"), "line 2: expected bucket, map"),
+    "version": (("version 1", "scenarios"), "line 1: expected version 1"),
+}
+
+
+@pytest.mark.parametrize("fault", SCEN_FAULTS)
+def test_scenario_fault_is_one_line(tmp_path, fault):
+    (old, new), told = SCEN_FAULTS[fault]
+    grid = moving_ai(tmp_path, scen=SCEN.replace(old, new, 1))
+    with pytest.raises(ValueError, match=told) as found:
+        files.scenario(described(), 1, grid, tmp_path)
+    assert str(found.value).startswith("room.map.scen: ")
+
+
+def test_a_scenario_that_is_not_there(tmp_path):
+    grid = moving_ai(tmp_path)
+    with pytest.raises(ValueError, match="scenario 3; expected a number from 1 to 2"):
+        files.scenario(described(), 3, grid, tmp_path)
+
+
+def test_an_optimal_length_of_another_map_is_told(tmp_path):
+    moving_ai(tmp_path, scen=SCEN.replace("7.00000000", "9.5"))
+    job = {"study": "s", "workspaces": {"w": described()}, "problems": {"p": {"workspace": "w", "scenario": 1}}}
+    with pytest.raises(ValueError, match=r"room\.map\.scen: line 2: optimal length 9\.5; on room\.map it is 7"):
+        problems.build_all(job, tmp_path)

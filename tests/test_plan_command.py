@@ -1,0 +1,134 @@
+"""`python -m bezierplan plan`: one path on a map of any kind, its examples, and every fault in one line with status 2."""
+
+import json
+import re
+import shlex
+
+import numpy as np
+import pytest
+from fields import BENCHMARK_MAPS
+from PIL import Image
+
+from bezierplan.__main__ import main
+from bezierplan.commands.plan import EXAMPLES
+
+GAPS = str(BENCHMARK_MAPS / "gaps.geojson")
+ENDS = ["--start", "2,10", "--target", "18,10"]
+SHORTEST = 29.565803670
+
+
+def planned(capsys, *words):
+    main(["plan", *map(str, words)])
+    lines = capsys.readouterr().out.splitlines()
+    return {line[:14].strip().replace("shortest path", "shortest"): line[14:] for line in lines}
+
+
+def refused(capsys, *words):
+    with pytest.raises(SystemExit) as found:
+        main(["plan", *map(str, words)])
+    told = capsys.readouterr().err
+    assert found.value.code == 2
+    assert told.count("\n") == 1
+    return told
+
+
+def test_without_a_planner_it_is_the_rounded_shortest_path(capsys):
+    found = planned(capsys, GAPS, *ENDS)
+    assert found["planner"] == "rounded_shortest_path"
+    assert found["shortest"] == "29.5658 m"
+    assert found["feasible"] == "yes"
+    length, gap = re.fullmatch(r"([\d.]+) m, ([\d.e-]+) % above the shortest path", found["length"]).groups()
+    assert float(length) / SHORTEST - 1 == pytest.approx(float(gap) / 100, abs=1e-5)
+    assert found["curvature"].startswith("at most 2.5")  # one over the turning radius of 0.02 times 20 m
+    assert found["CPU time"].endswith(" s")
+
+
+def test_help_has_two_examples_that_run(capsys, monkeypatch, tmp_path):
+    with pytest.raises(SystemExit) as found:
+        main(["plan", "--help"])
+    assert not found.value.code
+    shown = capsys.readouterr().out
+    assert EXAMPLES.strip() in shown
+    commands = re.findall(r"python -m bezierplan (plan (?:.|\n)*?)\n(?:\n|$)", EXAMPLES)
+    assert len(commands) == 2
+    for command in commands:
+        words = shlex.split(command.replace("\\\n", " "))
+        out = tmp_path / words[words.index("--out") + 1]
+        words[words.index("--out") + 1] = str(out)
+        main(words)
+        assert out.stat().st_size > 1000
+        assert "feasible" in capsys.readouterr().out
+
+
+def test_files_that_are_written(capsys, tmp_path):
+    planned(capsys, GAPS, *ENDS, "--out", tmp_path / "path.csv")
+    rows = np.loadtxt(tmp_path / "path.csv", delimiter=",", skiprows=1)
+    assert rows[0, :2].tolist() == [2.0, 10.0]
+    assert rows[-1, :2] == pytest.approx([18.0, 10.0])
+    assert np.abs(rows[:, 2]).max() == pytest.approx(2.5, rel=1e-3)
+    planned(capsys, GAPS, *ENDS, "--out", tmp_path / "path.geojson")
+    line = json.loads((tmp_path / "path.geojson").read_text())
+    assert line["geometry"]["coordinates"][0] == [2.0, 10.0]
+    assert line["properties"] == {"feasible": True}
+    planned(capsys, GAPS, *ENDS, "--out", tmp_path / "path.svg")
+    assert "</svg>" in (tmp_path / "path.svg").read_text()
+
+
+def test_a_path_that_collides_is_told_with_the_place(capsys):
+    found = planned(capsys, GAPS, *ENDS, "--planner", "straight_line")
+    assert found["feasible"].startswith("no: enters an obstacle at 4.75,10, ")
+
+
+def test_a_planner_takes_its_settings_from_its_study_and_a_seed_decides(capsys):
+    one, other, again = (
+        planned(capsys, GAPS, *ENDS, "--planner", "prm", "--settings", "{nodes: 800}", "--cell", 0.2, "--seed", seed) for seed in (1, 2, 1)
+    )
+    assert "nodes 800, " in one["settings"]
+    assert one["length"] == again["length"] != other["length"]
+
+
+def test_other_kinds_of_map(capsys, tmp_path):
+    (tmp_path / "room.txt").write_text("....\n.##.\n....\n")
+    assert planned(capsys, tmp_path / "room.txt", "--start", "0.5,1.5", "--target", "3.5,1.5")["shortest"] == "4 cell".replace(
+        "4 ", "3.41421 "
+    )
+    Image.fromarray(np.array([[254, 254, 254], [254, 0, 254], [254, 254, 254]], dtype=np.uint8)).save(tmp_path / "room.pgm")
+    (tmp_path / "room.yaml").write_text("image: room.pgm\nresolution: 2\norigin: [-3, -3, 0]\n")
+    found = planned(capsys, tmp_path / "room.yaml", "--start=-2,0", "--target", "2,0", "--settings", "{turning_radius: 0}")
+    assert found["shortest"] == "4.82843 m"
+    (tmp_path / "room.map").write_text("type octile\nheight 2\nwidth 3\nmap\n...\n.@.\n")
+    (tmp_path / "room.scen").write_text("version 1\n0 room.map 3 2 0 1 2 1 4\n")
+    scenario = ["--scenario", f"{tmp_path / 'room.scen'}:1"]
+    assert planned(capsys, tmp_path / "room.map", *scenario)["feasible"] == "yes"
+    assert "expected a number from 1 to 1" in refused(capsys, tmp_path / "room.map", "--scenario", f"{tmp_path / 'room.scen'}:2")
+
+
+FAULTS = {
+    "start in an obstacle": ([GAPS, "--start", "5,10", "--target", "18,10"], "start: .*in an obstacle; expected a free place"),
+    "target outside": ([GAPS, "--start", "2,10", "--target", "99,10"], "target: .*outside the workspace; expected x from 0 to 20"),
+    "no target": ([GAPS, "--start", "2,10"], "--target: missing; expected X,Y"),
+    "words": ([GAPS, "--start", "here", "--target", "18,10"], "--start: here; expected X,Y"),
+    "no map": (["nowhere.geojson", *ENDS], "nowhere.geojson: cannot be read"),
+    "kind of map": (["room.dwg", *ENDS], "room.dwg: unknown kind of map; expected a file that ends in .geojson"),
+    "planner": ([GAPS, *ENDS, "--planner", "pmr"], "--planner: pmr: unknown; did you mean prm"),
+    "planner of circles": ([GAPS, *ENDS, "--planner", "chaotic_pso"], "serves workspaces of kind circles, and a map is"),
+    "setting": ([GAPS, *ENDS, "--settings", "{radius: 1}"], "--settings: radius: no setting of rounded_shortest_path"),
+    "value": ([GAPS, *ENDS, "--settings", "{turning_radius: -1}"], "--settings: turning_radius: -1; expected a number at least 0"),
+    "settings": ([GAPS, *ENDS, "--settings", "fast"], "--settings: fast: expected '{name: value, ...}'"),
+    "out": ([GAPS, *ENDS, "--out", "path.pdf"], "--out: path.pdf; expected a file that ends in .svg, .png"),
+    "like": ([GAPS, *ENDS, "--like", "smooth"], "--like: smooth; expected STUDY/METHOD"),
+    "cell": ([GAPS, *ENDS, "--planner", "prm", "--cell", "0"], "--cell: 0; expected a number above 0"),
+    "scenario": ([GAPS, "--scenario", "a.scen:1"], "--scenario: a.scen:1; expected FILE:NUMBER"),
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_fault_is_one_line(capsys, fault):
+    words, told = FAULTS[fault]
+    assert re.search(told, refused(capsys, *words))
+
+
+def test_a_target_that_cannot_be_reached_is_told(capsys, tmp_path):
+    (tmp_path / "room.txt").write_text("..#.\n..#.\n")
+    told = refused(capsys, tmp_path / "room.txt", "--start", "0.5,0.5", "--target", "3.5,0.5")
+    assert told == "--target: 3.5,0.5: no free way leads there from the start; expected one that can be reached\n"

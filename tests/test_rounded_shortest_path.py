@@ -1,0 +1,172 @@
+"""The rounded shortest path: free on every kind of workspace, as curved as allowed, as far off as asked, nearly as short as possible."""
+
+import json
+import math
+import time
+
+import numpy as np
+import pytest
+from fields import BENCHMARK_MAPS, drawn
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bezierplan.geometry import curves
+from bezierplan.geometry.bounds import shortest_path
+from bezierplan.geometry.checker import check
+from bezierplan.geometry.region import region
+from bezierplan.planners import rounded_shortest_path
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.files import polygons_from_geojson
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.problem import Problem
+
+MAPS = ["back_and_forth", "bugtrap1", "complex2", "gaps", "hidden_U", "square_spiral"]
+# An arc of 45 degrees is curved by up to this much more than its circle, relatively.
+ARC = 1e-3
+
+
+def benchmark(name):
+    text = (BENCHMARK_MAPS / f"{name}.geojson").read_text()
+    properties = json.loads(text)["properties"]
+    return Problem(name, polygons_from_geojson(text, "m"), tuple(properties["start"]), tuple(properties["target"]))
+
+
+def rounded(problem, turning_radius, offset=0.0):
+    return rounded_shortest_path.plan(problem, np.random.default_rng(0), turning_radius=turning_radius, offset=offset)
+
+
+def most_curved(path):
+    return np.nanmax(np.abs(curves.curvature(path, 4001)[0]))
+
+
+def one_corner():
+    """A square beside the way from (0, 0) to (10, 0), so that the path turns at its corners (4, 2) and (6, 2), by symmetry alike."""
+    square = np.array([[4.0, -5.0], [6.0, -5.0], [6.0, 2.0], [4.0, 2.0]])
+    return Problem("", Polygons((-5.0, 15.0, -5.0, 15.0), ((square,),), "m"), (0.0, 0.0), (10.0, 0.0))
+
+
+def assert_sound(problem, plan, turning_radius):
+    """Free by the certified check, from start to target, without a corner where no turn is tight, and not shorter than possible."""
+    found = check(curves.bezier_pieces(plan.path), region(problem.workspace))
+    assert found.feasible
+    assert plan.path.points[0].tolist() == list(problem.start)
+    assert np.allclose(plan.path.points[-1], problem.target, atol=1e-12)
+    bound = shortest_path(problem)
+    assert plan.objective >= bound.length - 1e-6
+    if plan.extra["tight_turns"] == 0 and turning_radius > 0:
+        assert most_curved(plan.path) <= (1 + ARC) / turning_radius
+        assert math.isfinite(curves.curvature_jump(plan.path))
+    return found, bound
+
+
+@pytest.mark.parametrize("name", MAPS)
+@pytest.mark.parametrize(("turning_radius", "offset"), [(0.3, 0.0), (0.5, 0.2), (3.0, 0.0), (0.0, 0.4)])
+def test_benchmark_maps(name, turning_radius, offset):
+    problem = benchmark(name)
+    plan = rounded(problem, turning_radius, offset)
+    found, bound = assert_sound(problem, plan, turning_radius)
+    if turning_radius < 1:
+        assert plan.extra["tight_turns"] == 0
+        assert found.clearance >= 0.15 if offset else plan.objective < 1.04 * bound.length
+
+
+def test_without_a_radius_it_is_the_shortest_path():
+    problem = benchmark("complex2")
+    assert rounded(problem, 0.0).objective == pytest.approx(shortest_path(problem).length, abs=1e-12)
+
+
+def test_one_corner_by_hand():
+    """Legs from (0, 0) and to (10, 0) touch circles of radius 1 below the corners; the arc between them is flat for 2 m."""
+    problem = one_corner()
+    plan = rounded(problem, 1.0)
+    # Both turns have the inward direction of the whole bend only if they are joined; here each has room of its own.
+    inward = np.array([math.sin(math.atan2(2, 4) / 2), -math.cos(math.atan2(2, 4) / 2)])
+    centre = np.array([4.0, 2.0]) + inward
+    leg = math.sqrt(centre @ centre - 1)
+    heading = math.atan2(centre[1], centre[0]) + math.asin(1 / math.hypot(*centre))
+    assert plan.objective == pytest.approx(2 * (leg + heading) + 10 - 2 * centre[0], rel=1e-5)
+    assert plan.extra == {"turns": 2, "tight_turns": 0, "least_radius": 1.0}
+
+
+def test_corners_of_a_walls_end_are_one_turn():
+    wall = np.array([[4.9, -5.0], [5.1, -5.0], [5.1, 8.0], [4.9, 8.0]])
+    problem = Problem("", Polygons((-5.0, 15.0, -5.0, 15.0), ((wall,),), "m"), (4.0, 0.0), (6.0, 0.0))
+    plan = rounded(problem, 2.0)
+    found, _ = assert_sound(problem, plan, 2.0)
+    assert found.clearance < 1e-6
+    assert plan.extra["tight_turns"] == 0
+
+
+def test_one_circle_is_gone_round_by_its_own_arc():
+    """The tangents and the arc of a unit circle are 2 sqrt 3 + pi / 3 long; a larger turn touches the circle at its top alone."""
+    disc = Problem("", Circles((-5.0, 5.0, -5.0, 5.0), np.zeros((1, 2)), np.ones(1), "m"), (-2.0, 0.0), (2.0, 0.0))
+    plan = rounded(disc, 0.5)
+    assert plan.objective == pytest.approx(2 * math.sqrt(3) + math.pi / 3, rel=1e-5)
+    assert plan.extra == {"turns": 1, "tight_turns": 0, "least_radius": 1.0}
+    found, _ = assert_sound(disc, rounded(disc, 1.5), 1.5)
+    assert found.clearance < 1e-4
+    found, _ = assert_sound(disc, rounded(disc, 0.5, 0.7), 0.5)
+    assert found.clearance == pytest.approx(0.7, abs=1e-4)
+
+
+@settings(max_examples=40)
+@given(st.integers(0, 10_000), st.sampled_from([0.2, 1.0, 4.0]), st.sampled_from([0.0, 0.5]))
+def test_random_circles(seed, turning_radius, offset):
+    rng = np.random.default_rng(seed)
+    centres, radii = rng.uniform(-9, 9, (12, 2)), rng.uniform(0.3, 2.5, 12)
+    start, target = (-9.5, -9.5), (9.5, 9.5)
+    problem = Problem("", Circles((-10.0, 10.0, -10.0, 10.0), centres, radii, "m"), start, target)
+    plan = rounded(problem, turning_radius, offset)
+    if plan.path is None:
+        assert math.isinf(shortest_path(problem).length)
+    else:
+        assert_sound(problem, plan, turning_radius)
+
+
+@settings(max_examples=40)
+@given(st.integers(0, 10_000), st.sampled_from([0.1, 0.5, 3.0]), st.sampled_from([0.0, 0.3]))
+def test_random_cells(seed, turning_radius, offset):
+    rng = np.random.default_rng(seed)
+    occupied = rng.random((14, 14)) < 0.25
+    occupied[0, 0] = occupied[-1, -1] = False
+    problem = Problem("", Grid(occupied, 0.5, "m"), (0.25, 0.25), (6.75, 6.75))
+    plan = rounded(problem, turning_radius, offset)
+    if plan.path is None:
+        assert math.isinf(shortest_path(problem).length)
+        assert not plan.claimed_feasible
+    else:
+        assert_sound(problem, plan, turning_radius)
+
+
+def test_random_fields():
+    for number in range(4):
+        assert_sound(drawn(number), rounded(drawn(number), 2.0), 2.0)
+
+
+def test_start_is_target():
+    plan = rounded(one_corner()._replace(target=(0.0, 0.0)), 1.0)
+    assert plan.objective == 0.0
+    assert plan.claimed_feasible
+
+
+def test_no_way():
+    wall = np.array([[4.0, -5.0], [6.0, -5.0], [6.0, 15.0], [4.0, 15.0]])
+    plan = rounded(one_corner()._replace(workspace=Polygons((-5.0, 15.0, -5.0, 15.0), ((wall,),), "m")), 1.0)
+    assert plan.path is None
+    assert plan.objective == math.inf
+
+
+def test_rounding_is_fast():
+    """At most 5 ms a map beside the shortest path itself; the best of some runs, for other processes take time as well."""
+    for name in MAPS:
+        problem = benchmark(name)
+        seconds = []
+        for _ in range(7):
+            begin = time.process_time()
+            bound = shortest_path(problem)
+            middle = time.process_time()
+            rounded(problem, 0.5)
+            seconds.append(time.process_time() - middle - (middle - begin))
+            assert bound.length > 0
+        assert min(seconds) < 0.005
