@@ -47,7 +47,7 @@ mutants: .venv/ready ## plant each fault of tests/mutants, and see that its test
 	$(RUN) tests/mutants/run.py $(ARGS)
 
 compare: .cache/comparison/ready ## the chaotic swarm of tharwat2018 beside pyswarms, pymoo and DEAP
-	cd $(<D) && bin/python $(CURDIR)/tests/benchmark/compare.py
+	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare.py'
 
 outcome: .venv/ready ## everything at scale full with the alternatives, then docs/outcome and the README's table from it
 	@$(UNLOCK)
@@ -65,11 +65,16 @@ clean: ## remove results and caches
 distclean: clean ## remove the environment (.venv) as well
 	rm -rf .venv
 
+# What a shell reads in the double quotes that venv and pip put around paths.
+unsafe = $(strip $(findstring $$,$(CURDIR)) $(findstring `,$(CURDIR)) $(findstring ",$(CURDIR)))
+
 # Set-up. The file .venv/ready is written last, so that what an interrupted set-up left is made anew; so is an environment whose Python has gone.
 fits  = import ensurepip, sys, venv; sys.exit(not (3, 11) <= sys.version_info[:2] < (3, 14))
 found = $(firstword $(foreach p,$(PYTHON),$(shell $(p) -c '$(fits)' >/dev/null 2>&1 && echo $(p))))
 
 .venv/ready: environment-build.txt environment.txt $(shell .venv/bin/python -c '' 2>/dev/null || echo anew)
+	$(if $(unsafe),$(error bezierplan cannot be set up in $(CURDIR): programs of an environment read $(unsafe) in a path as a command; \
+	  move the folder))
 	$(if $(found),,$(error bezierplan needs Python 3.11 to 3.13 with venv. On Debian or Ubuntu: sudo apt install python3 python3-venv; \
 	  elsewhere, or for another Python: make PYTHON=/path/to/python3))
 	@echo "Setting up .venv with $(found): about 1 GB, one to a few minutes"

@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
-from bezierplan import study_file
 from bezierplan.checked import Fault
+from bezierplan.study import reading
 
 
 def told(file: Path, old: str, new: str, study: Path) -> str:
@@ -14,6 +14,6 @@ def told(file: Path, old: str, new: str, study: Path) -> str:
     assert old in text
     file.write_text(text.replace(old, new, 1))
     with pytest.raises(Fault) as caught:
-        study_file.load([study])
+        reading.load([study])
     assert "\n" not in str(caught.value)
     return str(caught.value)

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from scipy import stats
-from test_lattice_planners import COLONY, environment, plan
+from test_lattice_planners import colony_rules, environment, plan
 
 from bezierplan.planners import ant_colony
 from bezierplan.workspaces.grid import Grid
@@ -17,7 +17,7 @@ PLACES = lattice(GRID, (0.0, 0.0), (6.0, 6.0), "one")
 
 
 def search(seed=0, places=PLACES, **changes):
-    return ant_colony.search(places, np.random.default_rng(seed), COLONY | changes)
+    return ant_colony.search(places, np.random.default_rng(seed), colony_rules(**changes))
 
 
 def test_the_first_step_is_drawn_by_nearness_of_the_target():

@@ -1,14 +1,15 @@
 """Every alternative of an assumption that governs a setting changes what a run finds: an option that nothing reads is a defect."""
 
 import json
+from functools import cache
 
 import pytest
 
-from bezierplan import problems, running, study_file
+from bezierplan import problems, running
 from bezierplan.exact.region import region
-from bezierplan.study import alternatives, job, methods_changed, methods_of_claims, problems_job, tried, with_alternative
+from bezierplan.study import alternatives, job, methods_changed, methods_of_claims, problems_job, reading, tried, with_alternative
 
-STUDIES = study_file.load(study_file.read_config({}))
+STUDIES = reading.load(reading.read_config({}))
 # What a run finds beside its extra columns, as opposed to the settings that it was given.
 FOUND = ("objective", "history", "path_points", "evaluations")
 REPEATS = 3
@@ -31,7 +32,13 @@ def found(study, experiment, method):
 
 def home(study, method):
     """The first experiment that has a method."""
-    return next(name for name, experiment in study.experiments.items() if method in experiment["methods"])
+    return next(name for name, experiment in study.experiments.items() if method in experiment.methods)
+
+
+@cache
+def found_in_force(key, method):
+    """What the few runs of a method find with the values in force."""
+    return found(STUDIES[key], home(STUDIES[key], method), method)
 
 
 @pytest.mark.parametrize(("key", "name"), [(key, name) for key, study in STUDIES.items() for name in alternatives(study)])
@@ -39,12 +46,11 @@ def test_alternative_changes_what_a_run_finds(key, name):
     """Of one method at least: a choice about chaotic sequences does not concern a swarm without one."""
     study = STUDIES[key]
     changed = with_alternative(study, name)
-    runs = ((home(study, method), method) for method in methods_changed(study, name))
-    assert any(found(changed, *run) != found(study, *run) for run in runs)
+    assert any(found(changed, home(study, method), method) != found_in_force(key, method) for method in methods_changed(study, name))
 
 
 def claims(study, *wanted):
-    return [claim for claim in study.claims if claim["id"] in wanted]
+    return [claim for claim in study.claims if claim.id in wanted]
 
 
 @pytest.mark.parametrize(
@@ -59,10 +65,32 @@ def claims(study, *wanted):
 )
 def test_alternatives_run_only_what_their_claims_compare(claim, experiment, methods):
     study = STUDIES["tharwat2018"]
-    every = [name for name in study.experiments[experiment]["methods"] if "variant_of" not in study.methods[name]]
+    every = [name for name in study.experiments[experiment].methods if not study.methods[name].variant_of]
     assert methods_of_claims(study, claims(study, claim), experiment) == (every if methods is None else methods)
 
 
-def test_every_setting_that_tharwat2018_leaves_open_is_tried():
-    study = STUDIES["tharwat2018"]
-    assert tried(study) == list(alternatives(study))
+@pytest.mark.parametrize("key", STUDIES)
+def test_every_setting_that_a_paper_leaves_open_is_tried(key):
+    assert tried(STUDIES[key]) == list(alternatives(STUDIES[key]))
+
+
+@pytest.mark.parametrize("key", STUDIES)
+def test_defaults_are_the_values_in_force(key):
+    """Of the methods that a default names, or of the study."""
+    study = STUDIES[key]
+    for assumption in study.assumptions:
+        if "setting" in assumption:
+            setting, default = assumption["setting"], assumption["default"]
+            if isinstance(default, dict):
+                assert {method: study.resolved(method)[setting] for method in default} == default, assumption["id"]
+            else:
+                assert study.settings[setting] == default, assumption["id"]
+
+
+@pytest.mark.parametrize("key", STUDIES)
+def test_what_goes_along_with_an_alternative_is_for_methods_that_it_changes(key):
+    study = STUDIES[key]
+    for assumption in study.assumptions:
+        if "with" in assumption:
+            changed = methods_changed(study, f"{assumption['id']}_{assumption['alternatives'][0]}")
+            assert set(assumption["with"]) <= set(changed), assumption["id"]

@@ -15,6 +15,7 @@ from bezierplan.problem import Problem, planner_settings, setting_fault
 from bezierplan.workspaces.grid import Grid, from_lines
 
 SETTINGS = {
+    "curve": "bezier",
     "control_points": 8,
     "samples": 201,
     "initial": "uniform",
@@ -310,7 +311,25 @@ def test_a_full_map_is_an_error():
         plan(Grid(np.ones((3, 3), dtype=bool), 1.0, "cell"))
 
 
-@pytest.mark.parametrize(("changes", "named"), [({"population": 21}, "population: 21"), ({"length_weight": 0}, "length_weight: 0")])
+def test_a_chain_of_pieces_is_measured_like_its_path():
+    found = plan(random_grid(1), curve="piecewise_quadratic", samples=701, generations=20)
+    assert found.path.curve == "piecewise_quadratic"
+    assert len(found.path.points) == 10
+    if found.claimed_feasible:
+        assert found.objective == pytest.approx(curves.length(found.path), rel=1e-4)
+    single = plan(random_grid(1), generations=20)
+    assert not np.array_equal(found.history, single.history)
+
+
+@pytest.mark.parametrize(
+    ("changes", "named"),
+    [
+        ({"population": 21}, "population: 21"),
+        ({"length_weight": 0}, "length_weight: 0"),
+        ({"curve": "piecewise_quadratic", "control_points": 0}, "control_points: 0"),
+        ({"curve": "piecewise_quadratic", "control_points": 8, "samples": 8}, "samples: 8"),
+    ],
+)
 def test_settings_that_do_not_fit_together_are_named(changes, named):
     with pytest.raises(ValueError, match=named):
         bca.check(SETTINGS | changes)

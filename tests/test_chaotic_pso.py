@@ -200,7 +200,7 @@ UNUSED = np.random.default_rng(0)
 def swarm(where, x):
     """The swarm of no iterations that starts at x (particles, 6)."""
     field, rules = np.full(6, 10.0), chaotic_pso._Rules(10, 1.5, 1.5, 1.0, 1.0, 0, 0, False, 0, True)
-    objective = chaotic_pso._objective(where, SETTINGS)
+    objective = chaotic_pso._objective(where, chaotic_pso.Settings(**SETTINGS))
     return chaotic_pso.Swarm(*chaotic_pso._swarm(UNUSED, x, np.empty((0, 1, 1)), -field, field, field, objective, rules), 0, 0)
 
 

@@ -1,6 +1,7 @@
 """From a study to its jobs and results: every repeat is run, and read once; which experiments are compared pair by pair."""
 
-from types import SimpleNamespace
+from dataclasses import fields
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -14,9 +15,15 @@ from bezierplan.problem import Problem
 from bezierplan.workspaces.grid import from_lines
 
 
+def study_of(**experiment):
+    """A study of one experiment, and of nothing else."""
+    empty = {field.name: {} for field in fields(study.Study)} | {"key": "s", "folder": Path(), "title": "A study", "claims": []}
+    return study.Study(**empty | {"experiments": {"first": experiment}})
+
+
 @pytest.mark.parametrize(("repeats", "chunk", "count"), [(10, 4, 3), (8, 4, 2), (1, 4, 1), (9, 3, 3), (100, 1, 100), (4, 5, 1)])
 def test_chunks_hold_all_repeats_and_no_chunk_more(repeats, chunk, count):
-    own = SimpleNamespace(experiments={"first": {"repeats": {"full": repeats}, "chunk": {"full": chunk}}})
+    own = study_of(repeats={"full": repeats}, chunk={"full": chunk})
     assert list(study.chunks(own, "first", "full")) == list(range(count))
 
 
@@ -25,9 +32,7 @@ def test_chunks_hold_all_repeats_and_no_chunk_more(repeats, chunk, count):
 )
 def test_runs_are_pairs_where_methods_share_their_random_numbers(seeds, paired):
     """Runs of two methods with seeds of their own have nothing to do with each other."""
-    own = SimpleNamespace(
-        key="s", module=lambda: None, tables={}, figures={}, methods={}, experiments={"first": {"repeats": {"full": 10}, **seeds}}
-    )
+    own = study_of(repeats={"full": 10}, **seeds)
     claims = [{"id": "C1", "checks": [{"test": "lower", "experiment": "first"}]}]
     assert study.claims_job(own, claims)["paired"] == {"first": paired}
 

@@ -314,6 +314,7 @@ VERDICTS = [
     ("+++00-", "in part", "supported"),
     ("+---", "seldom", "supported"),
     ("+0000?", "seldom", "supported"),
+    ("+-???", "undecided", "supported"),
     ("+?", "undecided", "supported"),
     ("-0", "contradicted", "no effect"),
     ("-?", "contradicted", "undecided"),
@@ -364,7 +365,7 @@ def test_a_large_family_of_ten_fields_can_be_contradicted():
     ("apart", "wrong"), [(0.0, {"supported", "contradicted", "mostly", "in part", "seldom"}), (1.0, {"contradicted", "no effect"})]
 )
 def test_at_most_one_sentence_in_twenty_is_judged_wrongly(apart, wrong):
-    """Of sentences of twenty comparisons without an effect few get another verdict than undecided or no effect; true ones are never refused."""
+    """Of sentences of twenty comparisons without an effect few get another verdict than undecided; true ones are never refused."""
     verdicts = []
     for number in range(100):
         rng = statistics.generator(f"sentence {number}")
@@ -434,6 +435,14 @@ def marked(holds) -> list[Marked]:
 )
 def test_words_for_where_a_claim_holds(holds, words):
     assert claim_verdicts.where_it_holds(marked(holds), {"prm": "roadmap"}) == words
+
+
+def test_words_for_columns_and_for_what_stays_mixed():
+    found = [Marked({"obstacles": count}, "-" if count == 5 else "+") for count in (5, 10, 15, 20, 25)]
+    assert claim_verdicts.where_it_holds(found, {}) == "at obstacles other than 5"
+    mixed = [Marked({"method": name}, mark) for name, marks in (("a", "++"), ("b", "+-")) for mark in marks]
+    assert claim_verdicts.where_it_holds(mixed, {}) == "for a; for b (1 of 2)"
+    assert claim_verdicts.where_it_holds([Marked({}, "+"), Marked({"against": 1}, "-")], {}) == "(1 of 2)"
 
 
 def test_words_for_many_rivals_name_the_exceptions():

@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bezierplan import contract, running, study_file
+from bezierplan import contract, running
 from bezierplan.checked import Fault
 from bezierplan.exact import bounds, checker
 from bezierplan.exact.region import region
 from bezierplan.problem import known_planners
-from bezierplan.study import job
+from bezierplan.study import job, reading
 
 ROOT = Path(__file__).parents[1]
 STUDIES = ("song2016", "elhoseny2017", "tharwat2018", "ma2020", "meledje")
@@ -21,7 +21,7 @@ STUDIES = ("song2016", "elhoseny2017", "tharwat2018", "ma2020", "meledje")
 def settings_in_force() -> dict[str, dict]:
     """Planner -> its settings in the first experiment of a study that runs it."""
     found = {}
-    for study in study_file.load([ROOT / "config" / "studies" / name for name in STUDIES]).values():
+    for study in reading.load([ROOT / "config" / "studies" / name for name in STUDIES]).values():
         for experiment in study.experiments:
             for method in study.methods_of(experiment):
                 described = job(study, experiment, method, "smoke", 0)

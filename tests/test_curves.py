@@ -166,7 +166,7 @@ def test_only_cubic_splines_and_a_single_bezier_have_continuous_curvature(curve,
 
 
 def test_curvature_jumps_by_the_difference_where_an_s_changes_sides():
-    """Two quadratic pieces, point-symmetric about their joint: the curvature there is -3 / (4 sqrt 2) before it, and the opposite behind."""
+    """Two quadratic pieces, point-symmetric about their joint: the curvature before it is -3 / (4 sqrt 2), behind it the opposite."""
     points = np.array([[-3, 0], [-1, 1], [1, -1], [3, 0.0]])
     assert curves.curvature_jump(Path("piecewise_quadratic", points)) == pytest.approx(3 / (2 * math.sqrt(2)))
 

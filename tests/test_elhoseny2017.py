@@ -8,10 +8,11 @@ import pandas as pd
 import pytest
 from faults import told
 
-from bezierplan import checked, study_file
+from bezierplan import checked
 from bezierplan.analysis import audit
 from bezierplan.analysis.results import Results
 from bezierplan.studies import elhoseny2017
+from bezierplan.study import reading
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "elhoseny2017"
 PUBLISHED = {file.stem: audit.read_published(str(file)) for file in sorted((FOLDER / "published").glob("*.csv"))}
@@ -141,10 +142,14 @@ FAULTS = {
     "no side": ("    side: 100\n", "", "problems: case1_100: workspace: published_like: side is needed"),
     "no cell of the field": ("target: [100, 100]", "target: [101, 100]", "target: [101, 100]: outside the field; expected x and y from 0"),
     "a start without coordinates": ("start: [0, 0]\n    target: [100, 100]", "start_cell: 0\n    target_cell: 5", "start_cell: 0: "),
-    "no layouts": ("layouts: &fields {smoke: 2, full: 10, extended: 100}", "layouts: &fields 5", "layouts: 5: expected numbers for smoke"),
-    "obstacles below 0": ("[5, 10, 15, 20, 25]", "[-5, 10, 15, 20, 25]", "obstacles: 0: -5: a whole number of at least 0"),
+    "no layouts": (
+        "layouts: &fields {smoke: 2, full: 10, extended: 100}",
+        "layouts: &fields 5",
+        "layouts: 5: expected a mapping with smoke, full, extended",
+    ),
+    "obstacles below 0": ("[5, 10, 15, 20, 25]", "[-5, 10, 15, 20, 25]", "obstacles: 0: -5: expected a whole number from 0"),
     "a field with no way through": ("radius: 0.06,", "radius: 0.4,", "radius: "),
-    "a radius of 0": ("radius: 0.025,", "radius: 0,", "radius: 0: a number above 0"),
+    "a radius of 0": ("radius: 0.025,", "radius: 0,", "radius: 0: expected the radius of every circle"),
     "an odd population": ("population: 60 ", "population: 61 ", "population: 61; parents are crossed in pairs"),
     "a population of none": ("population: 60 ", "population: 0 ", "population: 0; expected a whole number at least 2"),
     "no iterations": ("iterations: 80 ", "iterations: 0 ", "iterations: 0; expected a whole number at least 1"),
@@ -156,7 +161,7 @@ FAULTS = {
 
 
 def test_the_study_itself_has_no_fault(folder):
-    assert study_file.load([folder])["elhoseny2017"].title
+    assert reading.load([folder])["elhoseny2017"].title
 
 
 @pytest.mark.parametrize("fault", FAULTS, ids=str)
@@ -174,7 +179,7 @@ def test_means_of_fields_follow_the_free_diagonals():
 
 
 def test_memory_is_of_the_fields_of_the_study():
-    described = checked.read(FOLDER / "experiments.yaml", "experiments")
+    described = checked.read(FOLDER / "experiments.yaml")
     gravel = described["problems"]["gravel"]
     assert described["workspaces"]["gravel"] == {"kind": "random_field", **elhoseny2017.GRAVEL}
     assert {key: gravel[key] for key in elhoseny2017.GRAVEL_FIELD} == elhoseny2017.GRAVEL_FIELD

@@ -7,12 +7,13 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan import cell_length, curves, study, study_file
+from bezierplan import cell_length, curves, study
 from bezierplan.exact.checker import check
 from bezierplan.exact.region import region
 from bezierplan.figures import drawing
 from bezierplan.problem import Path
 from bezierplan.studies import elhoseny2017
+from bezierplan.study import reading
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 
@@ -85,7 +86,7 @@ def test_mutation_changes_one_digit():
 
 
 def test_figures_may_show_controls_by_name():
-    own = study_file.load(study_file.read_config({"studies": ["elhoseny2017"]}))["elhoseny2017"]
+    own = reading.load(reading.read_config({"studies": ["elhoseny2017"]}))["elhoseny2017"]
     assert study.methods_of(own, "figure7", "fields100") == ["straight_line"]
     assert study.methods_of(own, "figure10", "fields100") == ["prm", "abc_ep", "ga", "mga"]
     assert study.caption(own, "figure7", "full").startswith(own.figures["figure7"]["title"])

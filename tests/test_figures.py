@@ -10,14 +10,12 @@ from pathlib import Path as File
 import numpy as np
 import pandas as pd
 import pytest
-import yaml
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from bezierplan import curves, figures, sheet, style
 from bezierplan.analysis.results import Results
-from bezierplan.checked import SCHEMAS
 from bezierplan.figures import along_path, bars, boxes, convergence, drawing, lines, paths, workspace
 from bezierplan.problem import Path, Problem, Workspace
 from bezierplan.workspaces import random_field
@@ -587,20 +585,10 @@ def test_equal_data_gives_equal_bytes_in_another_process(tmp_path):
     assert "generation (-)" in (here / "figure.svg").read_text(), "words of a figure stay words"
 
 
-def described_options(kind):
-    """Options of a kind by the schema: all, and those that a panel must have."""
-    schema = yaml.safe_load((SCHEMAS / "artefacts.schema.yaml").read_text())["$defs"]["panel"]
-    assert kind in schema["properties"]["kind"]["enum"]
-    for rule in schema["allOf"]:
-        condition = rule["if"]["properties"]["kind"]
-        if kind in condition.get("enum", [condition.get("const")]):
-            return set(rule["then"]["properties"]) - set(sheet.PANEL_KEYS), set(rule["then"]["required"]) - set(sheet.PANEL_KEYS)
-    return None
-
-
-@pytest.mark.parametrize("kind", sorted(file.stem for file in File(figures.__file__).parent.glob("[!_]*.py")))
-def test_schema_gives_the_options_of_a_kind(kind):
+@pytest.mark.parametrize("kind", figures.kinds())
+def test_options_of_a_kind_are_the_arguments_of_its_data(kind):
+    """With the same defaults, which `data` needs for whoever calls it without a panel."""
     parameters = inspect.signature(sheet.kind_module(kind).data).parameters.values()
-    options = {parameter.name: parameter.default for parameter in parameters if parameter.kind is inspect.Parameter.KEYWORD_ONLY}
-    needed = {name for name, default in options.items() if default is inspect.Parameter.empty}
-    assert described_options(kind) == (set(options), needed)
+    arguments = {parameter.name: parameter.default for parameter in parameters if parameter.kind is inspect.Parameter.KEYWORD_ONLY}
+    fields = {name: field for name, field in figures.kinds()[kind].model_fields.items() if name not in sheet.PANEL_KEYS}
+    assert {name: inspect.Parameter.empty if field.is_required() else field.default for name, field in fields.items()} == arguments

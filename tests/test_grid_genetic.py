@@ -129,7 +129,7 @@ def test_same_seed_gives_the_same_bits():
 
 def walker(grid, longest_walk=1000, detour=(3, 4), straight_on=0.8):
     walled = np.pad(grid, 1, constant_values=True)
-    return walled.ravel(), walled.shape[1], longest_walk, *detour, straight_on
+    return grid_genetic._Walker(walled.ravel(), walled.shape[1], longest_walk, *detour, straight_on)
 
 
 def is_path(cells, walled, columns):
@@ -143,7 +143,7 @@ def test_walks_go_to_their_goal_over_free_neighbours():
     grid = rng.random((30, 30)) < 0.3
     grid[0, 0] = grid[29, 29] = False
     given = walker(grid)
-    columns = given[1]
+    columns = given.columns
     walk = np.empty(2000, dtype=np.int64)
     walk[0] = columns + 1
     reached = 0
@@ -153,7 +153,7 @@ def test_walks_go_to_their_goal_over_free_neighbours():
         if count:
             reached += 1
             assert walk[count - 1] == 30 * columns + 30
-            assert is_path(walk[:count], given[0], columns)
+            assert is_path(walk[:count], given.walled, columns)
     assert reached > 40
 
 
@@ -222,16 +222,16 @@ def test_mutation_replaces_what_lies_between_two_cells():
     rng = np.random.default_rng(0)
     grid = np.zeros((20, 20), dtype=bool)
     given = walker(grid)
-    columns = given[1]
+    columns = given.columns
     # Along the left border and then along the upper one.
     path = np.array([row * columns + 1 for row in range(1, 21)] + [20 * columns + column for column in range(2, 21)])
-    walk, last_visit = np.empty(3000, dtype=np.int64), np.empty(len(given[0]), dtype=np.int64)
+    walk, last_visit = np.empty(3000, dtype=np.int64), np.empty(len(given.walled), dtype=np.int64)
     shorter = 0
     for _ in range(200):
         walk[: len(path)] = path
         count = grid_genetic._walk_anew(rng, given, walk, len(path), last_visit)
         assert (walk[0], walk[count - 1]) == (path[0], path[-1])
-        assert is_path(walk[:count], given[0], columns)
+        assert is_path(walk[:count], given.walled, columns)
         # Head and tail are the path's own, in their places from its two ends; a free field is crossed straight between them.
         after, both = walk[:count], min(count, len(path))
         head = int((after[:both] == path[:both]).cumprod().sum())
@@ -246,9 +246,9 @@ def test_mutation_replaces_what_lies_between_two_cells():
 
 def test_a_failed_walk_leaves_the_path_as_it_is():
     given = walker(np.zeros((20, 20), dtype=bool), longest_walk=1)
-    columns = given[1]
+    columns = given.columns
     path = np.array([row * columns + 1 for row in range(1, 21)])
-    walk, last_visit = np.empty(3000, dtype=np.int64), np.empty(len(given[0]), dtype=np.int64)
+    walk, last_visit = np.empty(3000, dtype=np.int64), np.empty(len(given.walled), dtype=np.int64)
     walk[:20] = path
     for seed in range(20):
         assert grid_genetic._walk_anew(np.random.default_rng(seed), given, walk, 20, last_visit) == 20

@@ -9,6 +9,7 @@ import pytest
 from bezierplan import curves
 from bezierplan.exact import bounds, checker
 from bezierplan.exact.region import region
+from bezierplan.planners import ant_colony
 from bezierplan.problem import Problem, planner_module
 from bezierplan.workspaces.grid import from_lines
 
@@ -64,6 +65,13 @@ VARIANTS = {
 each_variant = pytest.mark.parametrize("name", VARIANTS)
 
 SEALED = from_lines(["....", "..##", "..#."][::-1], 2.0, "unit")
+
+
+def colony_rules(**changes):
+    """The settings of an ant colony as its search takes them."""
+    settings = COLONY | changes
+    named = {name: settings[name] for name in ant_colony.Rules._fields if name in settings}
+    return ant_colony.Rules(best_only=settings["trail_update"] == "ant_colony_system", **named)
 
 
 def environment(number):

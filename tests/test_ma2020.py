@@ -18,7 +18,7 @@ from bezierplan.studies import ma2020
 from bezierplan.workspaces import files
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "ma2020"
-STUDY = checked.read(FOLDER / "experiments.yaml", "experiments")
+STUDY = checked.read(FOLDER / "experiments.yaml")
 PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
 
 
@@ -240,14 +240,3 @@ def test_continuous_curvature(points, feasible, mark, count):
     found = ma2020.continuous_curvature({"experiment": "environments"}, results(points, feasible), {})
     assert (found[0], found[2], found[3]) == (mark, None, count)
     assert count == 0 or found[1] == 0
-
-
-def test_assumptions_are_the_values_in_force():
-    assumptions = checked.read(FOLDER / "assumptions.yaml", "assumptions")["assumptions"]
-    governed = [assumption for assumption in assumptions if "setting" in assumption]
-    assert len(governed) >= 14
-    for assumption in governed:
-        setting, default = assumption["setting"], assumption["default"]
-        for method, value in default.items() if isinstance(default, dict) else [("bca", default), ("bca_q", default)]:
-            assert (STUDY["settings"] | STUDY["methods"][method].get("settings", {}))[setting] == value, assumption["id"]
-        assert assumption["claims"], assumption["id"]

@@ -62,7 +62,12 @@ FAULTS = {
         "obstacles: [390]",
         "obstacles: 390: of 500 maps none has so many",
     ),
-    "blocks of no cell": (EXPERIMENTS, "largest_block: 4", "largest_block: 0", "largest_block: 0: the most cells of a block's side"),
+    "blocks of no cell": (
+        EXPERIMENTS,
+        "largest_block: 4",
+        "largest_block: 0",
+        "largest_block: 0: expected the most cells of a block's side",
+    ),
     "blocks without a rule for corners": (
         EXPERIMENTS,
         "corners: none, lattice_length: 31.2132",

@@ -177,5 +177,5 @@ def test_a_scenario_that_is_not_there(tmp_path):
 def test_an_optimal_length_of_another_map_is_told(tmp_path):
     moving_ai(tmp_path, scen=SCEN.replace("7.00000000", "9.5"))
     job = {"study": "s", "workspaces": {"w": described()}, "problems": {"p": {"workspace": "w", "scenario": 1}}}
-    with pytest.raises(ValueError, match=r"room.map.scen: line 2: optimal length 9.5; on room.map it is 7"):
+    with pytest.raises(ValueError, match=r"room\.map\.scen: line 2: optimal length 9\.5; on room\.map it is 7"):
         problems.build_all(job, tmp_path)

@@ -9,18 +9,18 @@ import pandas as pd
 import pytest
 import shapely
 
-from bezierplan import checked, problems, running, study_file
+from bezierplan import checked, problems, running
 from bezierplan.checked import Fault
 from bezierplan.exact import bounds
 from bezierplan.figures import drawing
 from bezierplan.planners import node_genetic
-from bezierplan.problem import planner_settings, setting_fault
 from bezierplan.studies import meledje
-from bezierplan.study import job, problems_job
+from bezierplan.study import job, problems_job, reading
 from bezierplan.workspaces import files, grid
+from bezierplan.workspaces.ground import centres, cheapest, edge_energy, ground_of, obstacles_met
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "meledje"
-STUDY = study_file.load([FOLDER])["meledje"]
+STUDY = reading.load([FOLDER])["meledje"]
 PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
 
 
@@ -43,8 +43,8 @@ def test_counts_of_the_published_tables_add_to_the_trials():
 
 
 def test_repeats_are_the_trials_of_the_paper():
-    assert STUDY.experiments["operators"]["repeats"]["full"] == meledje.TRIALS
-    assert STUDY.experiments["operators"]["seeds"] == "shared"
+    assert STUDY.experiments["operators"].repeats["full"] == meledje.TRIALS
+    assert STUDY.experiments["operators"].seeds == "shared"
 
 
 def test_every_title_of_a_number_or_picture_on_the_maps_says_that_they_are_reconstructed():
@@ -54,27 +54,13 @@ def test_every_title_of_a_number_or_picture_on_the_maps_says_that_they_are_recon
             assert "reconstructed" in artefact["title"]
 
 
-def test_assumptions_are_those_in_force_and_alternatives_are_legal():
-    governed = [assumption for assumption in STUDY.assumptions if "setting" in assumption]
-    assert len(governed) == 13
-    annotations = planner_settings(node_genetic)
-    for assumption in governed:
-        setting, default = assumption["setting"], assumption["default"]
-        methods = default if isinstance(default, dict) else dict.fromkeys(meledje.OTHERS, default)
-        for method, value in methods.items():
-            assert STUDY.resolved(method)[setting] == value, assumption["id"]
-            for alternative in assumption["alternatives"]:
-                assert setting_fault(annotations[setting], alternative) is None, assumption["id"]
-                node_genetic.check(STUDY.resolved(method) | {setting: alternative})
-
-
 @pytest.mark.parametrize("name", ["env1_initial", "env1_modified", "env2_initial", "env2_modified"])
 def test_optimum_is_the_shortest_path_over_centres_of_the_exact_geometry(name):
     where = problem(name)
-    energy, path = node_genetic.cheapest(node_genetic.ground_of(where.workspace, 1.0), 0, 255)
+    energy, path = cheapest(ground_of(where.workspace, 1.0), 0, 255)
     exact = bounds.centre_path(where)
     assert energy == pytest.approx(exact.length, rel=1e-12)
-    points = node_genetic.centres(where.workspace, path)
+    points = centres(where.workspace, path)
     assert np.hypot(*np.diff(points, axis=0).T).sum() == pytest.approx(exact.length, rel=1e-12)
 
 
@@ -83,9 +69,9 @@ def test_maps_change_as_the_paper_says():
     for environment in ("env1", "env2"):
         before, after = (workspace(f"{environment}_{state}") for state in ("initial", "modified"))
         assert before.occupied.shape == after.occupied.shape == (16, 16)
-        _, path = node_genetic.cheapest(node_genetic.ground_of(before, 1.0), 0, 255)
-        ground = node_genetic.ground_of(after, 1.0)
-        assert sum(node_genetic.obstacles_met(ground, *edge) for edge in itertools.pairwise(path.tolist())) == 2
+        _, path = cheapest(ground_of(before, 1.0), 0, 255)
+        ground = ground_of(after, 1.0)
+        assert sum(obstacles_met(ground, *edge) for edge in itertools.pairwise(path.tolist())) == 2
 
 
 # Share of the way, of the exact optimum, after which the map changes -> cell (column, row), what remains, and that with what was gone;
@@ -104,13 +90,13 @@ DRIVEN = {
 def test_the_robot_plans_anew_from_the_cell_where_it_is(environment, percent):
     (column, row), remaining, total = DRIVEN[environment, percent]
     before = problem(f"{environment}_initial")
-    energy, cells = node_genetic.cheapest(node_genetic.ground_of(before.workspace, 1.0), 0, 255)
-    driven = shapely.LineString(node_genetic.centres(before.workspace, cells))
+    energy, cells = cheapest(ground_of(before.workspace, 1.0), 0, 255)
+    driven = shapely.LineString(centres(before.workspace, cells))
     at = driven.interpolate(percent / 100, normalized=True)
     assert before.workspace.cell_of(at.x, at.y) == (row, column)
     after = problem(f"{environment}_after_{percent}")
     assert after.start == (column + 0.5, row + 0.5)
-    rest, _ = node_genetic.cheapest(node_genetic.ground_of(after.workspace, 1.0), 16 * row + column, 255)
+    rest, _ = cheapest(ground_of(after.workspace, 1.0), 16 * row + column, 255)
     assert rest == pytest.approx(remaining, abs=1e-4)
     assert percent / 100 * energy + rest == pytest.approx(total, abs=1e-3)
 
@@ -137,12 +123,12 @@ def test_children_of_the_drawn_crossover_exchange_their_tails():
 
 def test_drawn_mutations_show_what_is_said_of_them():
     home = workspace("operators")
-    ground = node_genetic.ground_of(home, 1.0)
+    ground = ground_of(home, 1.0)
     marks = drawing.data(meledje.mutations(home))
     met = {}
     for (operator, label), line in marks[marks["mark"] == "line"].groupby(["operator", "group"]):
         cells = (np.floor(line["y"]) * 10 + np.floor(line["x"])).astype(int).tolist()
-        met[operator, label] = sum(node_genetic.obstacles_met(ground, *edge) for edge in itertools.pairwise(cells))
+        met[operator, label] = sum(obstacles_met(ground, *edge) for edge in itertools.pairwise(cells))
     assert met["random", "before"] == 0 < met["random", "after"]
     assert met["ref12", "before"] > 0
     assert met["ref12", "after"] > 0
@@ -193,10 +179,10 @@ def climbed(path, heights):
 def test_the_cheapest_path_is_not_the_shortest():
     flat, hill = problem("plain"), problem("hill")
     start, target = 52, 64
-    _, shortest = node_genetic.cheapest(node_genetic.ground_of(flat.workspace, 1.0), start, target)
-    energy, cheapest = node_genetic.cheapest(node_genetic.ground_of(hill.workspace, 1.0), start, target)
-    lengths = [np.hypot(*np.diff(node_genetic.centres(hill.workspace, path), axis=0).T).sum() for path in (shortest, cheapest)]
-    climbs = [climbed(node_genetic.centres(hill.workspace, path).tolist(), hill.workspace.heights) for path in (shortest, cheapest)]
+    _, shortest = cheapest(ground_of(flat.workspace, 1.0), start, target)
+    energy, best = cheapest(ground_of(hill.workspace, 1.0), start, target)
+    lengths = [np.hypot(*np.diff(centres(hill.workspace, path), axis=0).T).sum() for path in (shortest, best)]
+    climbs = [climbed(centres(hill.workspace, path).tolist(), hill.workspace.heights) for path in (shortest, best)]
     assert lengths[0] < lengths[1]
     assert energy == pytest.approx(lengths[1] + climbs[1])
     assert energy < lengths[0] + climbs[0]
@@ -214,11 +200,11 @@ def test_energy_is_length_and_climb_over_friction(cell):
     heights = np.array([[0.0, 1.0, 0.5], [0.0, 3.0, 2.0]]) * cell
     home = grid.Grid(np.zeros((2, 3), dtype=bool), cell, "m", heights=heights)
     for friction in (1.0, 0.5):
-        ground = node_genetic.ground_of(home, friction)
-        assert node_genetic.edge_energy(ground, 0, 2) == 2 + 1 / friction
-        assert node_genetic.edge_energy(ground, 2, 0) == 2 + 0.5 / friction
-        assert node_genetic.edge_energy(ground, 0, 4) == pytest.approx(math.sqrt(2) + 3 / friction)
-        assert node_genetic.edge_energy(ground, 0, 5) == pytest.approx(math.sqrt(5) + 3 / friction)
+        ground = ground_of(home, friction)
+        assert edge_energy(ground, 0, 2) == 2 + 1 / friction
+        assert edge_energy(ground, 2, 0) == 2 + 0.5 / friction
+        assert edge_energy(ground, 0, 4) == pytest.approx(math.sqrt(2) + 3 / friction)
+        assert edge_energy(ground, 0, 5) == pytest.approx(math.sqrt(5) + 3 / friction)
 
 
 def test_heights_come_back_from_text_bit_by_bit():
@@ -258,7 +244,8 @@ methods:
   proposed: {planner: node_genetic, settings: {mutation: proposed}}
   repaired: {planner: node_genetic, settings: {mutation: random_repair}}
 settings: {population: 20, generations: 15, stall: 15, initial: feasible, most_nodes: 12, selection: linear_rank,
-  crossover_probability: 1.0, cut: same, mutation_probability: 0.3, without_obstacle: any_node, keep_better: false, direction: forward,
+  crossover_probability: 1.0, cut: same, mutation_probability: 0.3, mutation_for: path, without_obstacle: any_node,
+  obstacle_node: edge, keep_better: false, direction: forward, ref21_test: edges, corners: open,
   random_node: free, penalty: 15.0, elitism: 0, result: last_generation, optimal_within: 1e-6, friction: 1.0}
 workspaces:
   yard: {kind: grid, file: yard.txt, cell: 0.5, unit: m}
@@ -277,7 +264,7 @@ YARD = "\n".join(["." * 19] * 5 + ["." * 4 + "#" * 13 + ".."] * 3 + ["." * 19] *
 def own_study(folder, experiments=OWN, yard=YARD):
     (folder / "experiments.yaml").write_text(experiments)
     (folder / "yard.txt").write_text(yard)
-    return study_file.load([folder])[folder.name]
+    return reading.load([folder])[folder.name]
 
 
 def test_an_own_map_of_any_size_needs_configuration_alone(tmp_path):
@@ -330,4 +317,4 @@ def test_bad_maps_are_told_before_any_run(yard, told, tmp_path):
 
 
 def test_schemas_know_heights():
-    assert checked.read(FOLDER / "experiments.yaml", "experiments")["workspaces"]["hill"]["heights"] == "workspaces/hill_heights.txt"
+    assert checked.read(FOLDER / "experiments.yaml")["workspaces"]["hill"]["heights"] == "workspaces/hill_heights.txt"

@@ -112,6 +112,14 @@ def test_occupied_control_points():
     assert value("occupied_points", "bezier", [[15, 10], [10, 15], [15, 15], [15, 20], [20, 15]]) == 3
 
 
+def test_a_cell_is_its_column_and_its_row():
+    """The third cell from the left in the lowest row, and not the first one in the third row."""
+    grid = {"across": PROBLEMS["across"]._replace(workspace=from_lines(["....", "....", "....", "..#."], 10.0, "unit"))}
+    table = runs([("bezier", [[25, 5], [5, 25], [5, 5]]), ("bezier", [[5, 25], [5, 25], [5, 5]])])
+    assert metrics.values(table, "occupied_points", grid).to_list() == [1, 0]
+    assert metrics.values(table, "fine_bad", grid).gt(0).to_list() == [True, False]
+
+
 def test_fine_samples_of_a_line_through_the_occupied_cell():
     # A third of the way from x = 5 to 35 lies between 10 and 20.
     inside = value("fine_bad", "polyline", [[5, 15], [35, 15]])

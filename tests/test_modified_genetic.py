@@ -2,6 +2,9 @@
 
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra import numpy
 
 from bezierplan import cell_length
 from bezierplan.curves import bezier_pieces
@@ -10,7 +13,8 @@ from bezierplan.exact.checker import check as certified
 from bezierplan.exact.region import region
 from bezierplan.planners import modified_genetic as planner
 from bezierplan.problem import Problem
-from bezierplan.search import diversity
+from bezierplan.search import diversity, gene_lists
+from bezierplan.search.sorting import ascending
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
@@ -26,7 +30,12 @@ SETTINGS = {
     "eta_decay": 0.99,
     "most_batches": 1,
     "gene_lattice": "coarse",
+    "gene_order": "columns",
     "point_order": "projection",
+    "first_population": "random",
+    "most_roadmaps": 0,
+    "roadmap_nodes": 250,
+    "roadmap_neighbours": 8,
     "first_points": 5,
     "first_draws": 400,
     "replacements": 1,
@@ -37,6 +46,7 @@ SETTINGS = {
     "penalty": 20.0,
     "survival": "best_of_all",
     "offspring": "both",
+    "children_per_parent": 1,
 }
 FEW = {"population": 20, "iterations": 10}
 
@@ -48,36 +58,27 @@ def problem(number=0, side=100, radius=0.06, obstacles=15, route=1):
     return Problem("field", grid, tuple(map(float, start)), tuple(map(float, target)))
 
 
-def field(side=100, *circles, ends=None, gene_lattice="coarse", point_order="projection"):
+BARE = problem(side=10, obstacles=0)
+
+
+def field(side=100, *circles, ends=None, gene_lattice="coarse", gene_order="columns", point_order="projection"):
     table = np.array(circles, dtype=float).reshape(-1, 3)
     grid = random_field.from_circles(Circles((0.0, side, 0.0, side), table[:, :2], table[:, 2], "cell"))
     ends = np.array(((0, 0), (side, side)) if ends is None else ends, dtype=float)
-    return planner.field_of(grid, grid.in_cells(ends), gene_lattice, point_order)
+    return planner.field_of(grid, grid.in_cells(ends), gene_lattice, gene_order, point_order)
 
 
 def rules(**changed):
-    settings = SETTINGS | changed
-    return planner.Rules(
-        settings["population"],
-        settings["iterations"],
-        settings["crossover_probability"],
-        ("gene", "chromosome", "one_flip").index(settings["mutation"]),
-        settings["mutation_rate"],
-        ("none", "more_offspring", "relaxing", "unique").index(settings["diversity"]),
-        settings["eta"],
-        settings["eta_decay"],
-        settings["most_batches"],
-        settings["first_points"],
-        settings["first_draws"],
-        settings["replacements"],
-        settings["least_distance"],
-        settings["curve"] == "composite",
-        ("length", "cells4", "cells8").index(settings["fitness_length"]),
-        settings["invalid"] == "penalty",
-        settings["penalty"],
-        settings["survival"] == "generational",
-        settings["offspring"] == "both",
-    )
+    """The settings as `plan` hands them to the search."""
+    seen = []
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(planner, "search", lambda rng, field, rules, first, counts: seen.append(rules) or nothing_found())
+        planner.plan(BARE, np.random.default_rng(0), **(SETTINGS | changed))
+    return seen[0]
+
+
+def nothing_found():
+    return planner.Found(np.empty(0, dtype=np.int64), np.inf, np.zeros(1), np.zeros(1), np.zeros(1), 0, 1, 1.0)
 
 
 def run(task, seed=0, **changed):
@@ -112,6 +113,15 @@ def test_the_lattice_of_any_side_ends_in_the_corners(side):
     assert set(np.floor(np.arange(21) * side / 20 + 0.5)) == set(steps)
 
 
+def test_genes_are_numbered_by_columns_or_by_rows():
+    by_columns, by_rows = (field(100, (50, 50, 6), gene_order=order) for order in ("columns", "rows"))
+    np.testing.assert_array_equal(by_columns.points[21 * 3 + 16] - 0.5, (15, 80))
+    np.testing.assert_array_equal(by_rows.points[21 * 3 + 16] - 0.5, (80, 15))
+    # Points are joined in one order, however they are numbered.
+    places = [{tuple(found.points[gene]): found.rank[gene] for gene in range(441)} for found in (by_columns, by_rows)]
+    assert places[0] == places[1]
+
+
 def test_every_cell_can_be_a_gene():
     found = field(9, (4, 4, 1.2), gene_lattice="cell")
     assert len(found.points) == 100
@@ -129,7 +139,7 @@ def test_a_field_without_a_free_gene_is_told():
     grid = Grid(np.ones((21, 21), dtype=bool), 1.0, "cell", (-0.5, -0.5))
     grid.occupied[[0, -1], [0, -1]] = False
     with pytest.raises(ValueError, match="no free gene"):
-        planner.field_of(grid, np.array([[0.5, 0.5], [20.5, 20.5]]), "coarse", "projection")
+        planner.field_of(grid, np.array([[0.5, 0.5], [20.5, 20.5]]), "coarse", "columns", "projection")
 
 
 # Decoding.
@@ -202,7 +212,9 @@ def test_first_sights_never_change_a_verdict():
     free = colliding = 0
     for number in range(20):
         task = problem(number)
-        found = planner.field_of(task.workspace, task.workspace.in_cells(np.array([task.start, task.target])), "coarse", "projection")
+        found = planner.field_of(
+            task.workspace, task.workspace.in_cells(np.array([task.start, task.target])), "coarse", "columns", "projection"
+        )
         for _ in range(100):
             ones = np.sort(rng.choice(found.choices, rng.integers(1, 6), replace=False))
             points = planner.polygon(ones, found)
@@ -226,7 +238,7 @@ def test_a_target_on_the_border_is_looked_at_within_the_grid():
         # A sample on a grid line is left to the walk over the cells.
         assert not planner._is_free_at_first_sight.py_func(x, y, occupied)
         assert not planner._is_free_at_first_sight(x, y, occupied)
-    x, y = np.linspace(0.5, 19.4, 50), np.linspace(0.6, 19.7, 50)
+    x, y = np.linspace(0.513, 19.417, 50), np.linspace(0.619, 19.731, 50)
     assert planner._is_free_at_first_sight.py_func(x, y, occupied)
 
 
@@ -377,13 +389,13 @@ def test_other_readings_of_the_mutation_rate_change_one_gene():
 
 
 def test_crossover_cuts_between_genes():
-    pool = planner._empty_pool(2)
-    planner._put(np.array([3, 50, 300]), 3, 1.0, True, pool, 0)
-    planner._put(np.array([50, 60]), 2, 1.0, True, pool, 1)
+    pool = gene_lists.empty_pool(2, 120)
+    gene_lists.put(np.array([3, 50, 300]), 3, 1.0, True, pool, 0)
+    gene_lists.put(np.array([50, 60]), 2, 1.0, True, pool, 1)
     child = np.empty(120, dtype=np.int64)
     for cut, expected in ((50, [3, 50, 60]), (51, [3, 50, 60]), (61, [3, 50]), (3, [50, 60]), (4, [3, 50, 60]), (301, [3, 50, 300])):
-        assert list(child[: planner._cross(pool, 0, 1, cut, child)]) == expected
-    assert list(child[: planner._cross(pool, 1, 0, 60, child)]) == [50, 300]
+        assert list(child[: gene_lists.cross(pool, 0, 1, cut, child)]) == expected
+    assert list(child[: gene_lists.cross(pool, 1, 0, 60, child)]) == [50, 300]
 
 
 def test_parents_differ_and_are_drawn_in_proportion_to_fitness():
@@ -404,13 +416,13 @@ def test_parents_differ_and_are_drawn_in_proportion_to_fitness():
 
 def batch(seed, pool, field_, **changed):
     """The chromosomes, as lists of genes, that a batch of offspring of a pool's two chromosomes adds."""
-    given = planner._empty_pool(200)
+    filled_pool = gene_lists.empty_pool(200, planner._ROOM)
     for place, ones in enumerate(pool):
-        planner._put(np.array(ones), len(ones), 100.0, True, given, place)
+        gene_lists.put(np.array(ones), len(ones), 100.0, True, filled_pool, place)
     child = np.empty(planner._ROOM, dtype=np.int64)
-    arguments = (given, len(pool), np.cumsum(np.ones(len(pool))), 10, 0.8, child, field_, rules(**changed))
+    arguments = (filled_pool, len(pool), np.cumsum(np.ones(len(pool))), 0.8, child, field_, rules(population=20, **changed))
     filled, tried, invalid = planner._add_offspring(np.random.default_rng(seed), *arguments)
-    return [given.ones[place, : given.count[place]].tolist() for place in range(len(pool), filled)], tried, invalid
+    return [filled_pool.ones[place, : filled_pool.count[place]].tolist() for place in range(len(pool), filled)], tried, invalid
 
 
 def test_children_and_mutants_join_the_pool_or_mutants_alone():
@@ -441,11 +453,22 @@ def test_children_in_the_pool_make_the_population_alike():
     assert both.evaluations > 1.5 * alone.evaluations
 
 
+def test_twice_as_many_children():
+    parents, found = [[gene(20, 40)], [gene(30, 20)]], field(100)
+    assert batch(0, parents, found, offspring="mutated", replacements=0)[1] == 20
+    assert batch(0, parents, found, offspring="mutated", replacements=0, children_per_parent=2)[1] == 40
+
+
+@given(numpy.arrays(float, st.integers(0, 30), elements=st.integers(0, 5).map(float)))
+def test_ascending_is_a_stable_order(values):
+    assert ascending(values).tolist() == np.argsort(values, kind="stable").tolist()
+
+
 def test_the_best_survive_and_of_equal_ones_the_first():
-    pool, spare = planner._empty_pool(6), planner._empty_pool(3)
+    pool, spare = gene_lists.empty_pool(6, 120), gene_lists.empty_pool(3, 120)
     for place, cost in enumerate([5.0, 3.0, 4.0, 3.0, 9.0, 4.0]):
-        planner._put(np.array([place]), 1, cost, True, pool, place)
-    planner._select(pool, 0, 6, spare)
+        gene_lists.put(np.array([place]), 1, cost, True, pool, place)
+    gene_lists.select(pool, 0, 6, spare)
     assert pool.ones[:3, 0].tolist() == [1, 3, 2]
     assert pool.cost[:3].tolist() == [3.0, 3.0, 4.0]
 
@@ -455,17 +478,17 @@ def test_q_of_a_pool_is_the_mean_over_all_pairs():
     rows = rng.random((12, 441)) < 0.02
     rows[:, 7] = True
     rows[5] = rows[3]
-    pool = planner._empty_pool(12)
+    pool = gene_lists.empty_pool(12, 120)
     for place, row in enumerate(rows):
         ones = np.flatnonzero(row)
-        planner._put(ones, len(ones), 1.0, True, pool, place)
+        gene_lists.put(ones, len(ones), 1.0, True, pool, place)
     every = [diversity.q_of_rows(rows[i], rows[j]) for j in range(12) for i in range(j)]
-    assert planner._sum_of_q(pool, 0, 12, 441) == pytest.approx(sum(every), rel=1e-12)
+    assert gene_lists.sum_of_q(pool, 0, 12, 441) == pytest.approx(sum(every), rel=1e-12)
     first = [diversity.q_of_rows(rows[i], rows[j]) for j in range(8) for i in range(j)]
-    parts = planner._sum_of_q(pool, 0, 8, 441) + planner._sum_of_q(pool, 8, 12, 441)
+    parts = gene_lists.sum_of_q(pool, 0, 8, 441) + gene_lists.sum_of_q(pool, 8, 12, 441)
     assert parts == pytest.approx(sum(every), rel=1e-12)
     assert sum(first) != sum(every)
-    assert planner._distinct(pool, 12) == 11
+    assert gene_lists.distinct(pool, 12) == 11
 
 
 def test_q_statistic():

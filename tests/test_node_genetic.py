@@ -17,7 +17,9 @@ from bezierplan.exact.region import region
 from bezierplan.planners import node_genetic
 from bezierplan.problem import Problem, planner_settings, setting_fault
 from bezierplan.workspaces import files
+from bezierplan.workspaces import ground as ground_of_cells
 from bezierplan.workspaces.grid import Grid, from_lines
+from bezierplan.workspaces.ground import cheapest, edge_energy, ground_of, obstacles_met
 
 MAPS = File(__file__).parents[1] / "config" / "studies" / "meledje" / "workspaces"
 # Least energies from the lower left to the upper right corner, by a program of its own.
@@ -33,8 +35,12 @@ SETTINGS = {
     "crossover_probability": 1.0,
     "cut": "same",
     "mutation_probability": 0.3,
+    "mutation_for": "path",
     "without_obstacle": "any_node",
+    "obstacle_node": "edge",
     "keep_better": False,
+    "ref21_test": "edges",
+    "corners": "open",
     "direction": "forward",
     "random_node": "free",
     "penalty": 15.0,
@@ -47,6 +53,7 @@ OPERATORS = ("random", "random_repair", "ref12", "ref21", "proposed")
 # As far as operators and first paths read them; words are places in the lists of the planner.
 RULES = node_genetic.Rules(
     mutation=0,
+    population=2,
     generations=0,
     stall=1,
     initial=0,
@@ -55,9 +62,12 @@ RULES = node_genetic.Rules(
     crossover_probability=1.0,
     one_cut=True,
     mutation_probability=1.0,
+    each_node=False,
     any_node=True,
+    beside_obstacle=False,
     keep_better=False,
     same_signs=False,
+    whole_path=False,
     penalty=15.0,
     elitism=0,
     best_so_far=False,
@@ -120,24 +130,24 @@ def length(one, other, columns):
 @settings(max_examples=40, deadline=None)
 def test_edges_meet_the_cells_whose_interior_they_pass(seed, shape):
     grid = Grid(np.random.default_rng(seed).random(shape) < 0.4, 1.0, "cell")
-    ground = node_genetic.ground_of(grid, 1.0)
+    ground = ground_of(grid, 1.0)
     for one, other in np.random.default_rng(seed).integers(0, grid.occupied.size, (40, 2)).tolist():
-        assert node_genetic.obstacles_met(ground, one, other) == met(one, other, grid)
-        assert node_genetic.edge_energy(ground, one, other) == length(one, other, shape[1])
+        assert obstacles_met(ground, one, other) == met(one, other, grid)
+        assert edge_energy(ground, one, other) == length(one, other, shape[1])
 
 
 def test_an_edge_between_two_cells_that_touch_at_a_corner_is_free():
-    ground = node_genetic.ground_of(from_lines([".#.", "#..", "..."], 1.0, "cell"), 1.0)
-    assert node_genetic.obstacles_met(ground, 3, 7) == 2
-    assert node_genetic.obstacles_met(ground, 4, 6) == 0
+    ground = ground_of(from_lines([".#.", "#..", "..."], 1.0, "cell"), 1.0)
+    assert obstacles_met(ground, 3, 7) == 2
+    assert obstacles_met(ground, 4, 6) == 0
 
 
 @pytest.mark.parametrize("mutation", OPERATORS)
 def test_edges_measured_on_demand_give_the_same_bits(mutation, monkeypatch):
     where = ENVIRONMENTS["env2_modified"]
     with_table = plan(where, mutation=mutation)
-    monkeypatch.setattr(node_genetic, "TABLE_CELLS", 0)
-    assert node_genetic.ground_of(where.workspace, 1.0).met.size == 0
+    monkeypatch.setattr(ground_of_cells, "TABLE_CELLS", 0)
+    assert ground_of(where.workspace, 1.0).met.size == 0
     on_demand = plan(where, mutation=mutation)
     assert on_demand.history.tobytes() == with_table.history.tobytes()
     assert on_demand.path.points.tobytes() == with_table.path.points.tobytes()
@@ -162,7 +172,7 @@ def reference_optimum(grid, start, target):
 @pytest.mark.parametrize("name", OPTIMA)
 def test_optimum_of_the_four_maps(name):
     grid = ENVIRONMENTS[name].workspace
-    energy, path = node_genetic.cheapest(node_genetic.ground_of(grid, 1.0), 0, 255)
+    energy, path = cheapest(ground_of(grid, 1.0), 0, 255)
     assert energy == pytest.approx(OPTIMA[name], abs=1e-6)
     assert math.fsum(length(a, b, 16) for a, b in itertools.pairwise(path.tolist())) == pytest.approx(energy)
     assert all(met(a, b, grid) == 0 for a, b in itertools.pairwise(path.tolist()))
@@ -172,7 +182,7 @@ def test_optimum_of_the_four_maps(name):
 @pytest.mark.parametrize("seed", range(8))
 def test_optimum_of_random_maps(seed):
     grid = random_grid(seed, (6, 7), 0.4)
-    energy, _ = node_genetic.cheapest(node_genetic.ground_of(grid, 1.0), 0, grid.occupied.size - 1)
+    energy, _ = cheapest(ground_of(grid, 1.0), 0, grid.occupied.size - 1)
     assert energy == pytest.approx(reference_optimum(grid, 0, grid.occupied.size - 1))
 
 
@@ -262,7 +272,7 @@ def test_without_a_penalty_infeasible_results_are_told():
 
 def first_paths(grid, initial="feasible", count=300, most_nodes=12, seed=0):
     """Random first paths, as lists of cells."""
-    ground = node_genetic.ground_of(grid, 1.0)
+    ground = ground_of(grid, 1.0)
     rules = RULES._replace(initial=("feasible", "rejection", "unrestricted").index(initial))
     free = np.setdiff1d(np.flatnonzero(~grid.occupied), [0, grid.occupied.size - 1])
     rng, paths = np.random.default_rng(seed), []
@@ -320,12 +330,76 @@ def test_random_first_paths(initial):
 # Operators
 
 
+def test_closed_corners_are_met():
+    """Of (0, 0) to (2, 2) on a map with a block beside the way; the straight way passes two corners."""
+    for rows, open_, closed in (
+        (["...", ".#.", "..."], 1, 1),
+        (["...", "#..", "..."], 0, 1),
+        ([".#.", "#..", "..."], 0, 2),
+        (["..."] * 3, 0, 0),
+    ):
+        grid = from_lines(rows, 1.0, "cell")
+        for one, other in ((0, 8), (8, 0)):
+            assert obstacles_met(ground_of(grid, 1.0), one, other) == open_
+            assert obstacles_met(ground_of(grid, 1.0, closed=True), one, other) == closed
+        # Along a row nothing changes, and what passes an interior is met by either rule.
+        for one, other in itertools.product(range(9), repeat=2):
+            assert obstacles_met(ground_of(grid, 1.0, True), one, other) >= obstacles_met(ground_of(grid, 1.0), one, other)
+
+
+@pytest.mark.parametrize("name", OPTIMA)
+def test_optima_of_the_maps_touch_corners(name):
+    """So that the rule of corners matters: with closed ones every optimum is longer."""
+    found = plan(ENVIRONMENTS[name], corners="closed", generations=2)
+    assert found.extra["optimum"] > OPTIMA[name] + 0.01
+    assert plan(ENVIRONMENTS[name], generations=2).extra["optimum"] == pytest.approx(OPTIMA[name], abs=1e-6)
+
+
+def test_a_node_beside_an_obstacle_encounters_it():
+    """Below the block and past it: the edges are free, the first inner node lies beside the block, the second does not."""
+    path = [0, 3, 11, 23]
+    for seed in range(20):
+        by_edge, by_neighbour = (
+            mutated(path, BLOCK, "proposed", seed, any_node=False, beside_obstacle=beside)[0] for beside in (False, True)
+        )
+        assert by_edge == path
+        assert by_neighbour[1] != 3
+        assert by_neighbour[2] == 11
+    far = from_lines(["........", "........", "........", "......##"], 1.0, "cell")
+    assert mutated([0, 8, 31], far, "proposed", any_node=False, beside_obstacle=True)[0] == [0, 8, 31]
+
+
+def test_reference_21_leaves_a_path_that_is_blocked_elsewhere_if_it_tests_the_whole():
+    # The last edge passes the block, so that no new node makes the path feasible.
+    path = [0, 1, 6, 12, 11]
+    assert met(12, 11, BLOCK) > 0
+    changed = [mutated(path, BLOCK, "ref21", seed, whole_path=False)[0] != path for seed in range(40)]
+    whole = [mutated(path, BLOCK, "ref21", seed, whole_path=True)[0] for seed in range(40)]
+    assert any(changed)
+    for after in whole:
+        assert after == path or sum(met(a, b, BLOCK) for a, b in itertools.pairwise(after)) == 0
+
+
+def test_mutation_once_a_node_mutates_more():
+    often, seldom = (plan(ENVIRONMENTS["env1_initial"], mutation_for=each, generations=10) for each in ("node", "path"))
+    assert often.evaluations > 2 * seldom.evaluations
+
+
+def test_roulette_draws_by_the_reciprocal_of_the_objective():
+    """Paths of nearly equal energy are then drawn nearly alike, so selection presses less than by ranks."""
+    spins, ranks = (
+        np.mean([plan(ENVIRONMENTS["env1_initial"], seed, selection=selection, mutation_probability=0.0).objective for seed in range(10)])
+        for selection in ("roulette", "linear_rank")
+    )
+    assert spins > ranks
+
+
 def mutated(path, grid, mutation, seed=0, **changes):
     """A path after one mutation, and how many paths were evaluated."""
     rules = RULES._replace(mutation=OPERATORS.index(mutation), **changes)
     path = np.array(path)
     drawn = np.setdiff1d(np.flatnonzero(~grid.occupied), [path[0], path[-1]])
-    tried = node_genetic.mutate(np.random.default_rng(seed), path, drawn, node_genetic.ground_of(grid, 1.0), rules)
+    tried = node_genetic.mutate(np.random.default_rng(seed), path, drawn, ground_of(grid, 1.0), rules)
     return path.tolist(), tried
 
 

@@ -5,8 +5,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from bezierplan import outcome
 from bezierplan.analysis import summary
+from bezierplan.commands import outcome
 
 ROOT = Path(__file__).parents[1]
 
@@ -16,27 +16,29 @@ def test_readme_shows_the_outcome_that_is_kept():
     assert summary.with_block(readme, outcome.BLOCK, outcome.table(ROOT / outcome.KEPT)) == readme
 
 
-def comparison(values, ours):
+def comparison(values, ours, methods=("plain", "other")):
     reproduced = [abs(a - b) < 1 for a, b in zip(values, ours, strict=True)]
-    frame = {"problem": "a", "method": ["plain", "other"], "metric": "length", "value_published": values, "value_ours": ours}
-    return pd.DataFrame(frame | {"reproduced": reproduced})
+    frame = {"problem": "a", "method": methods, "metric": "length", "value_published": values, "value_ours": ours}
+    verdict = ["reproduced" if each else "not reproduced" for each in reproduced]
+    return pd.DataFrame(frame | {"statistic": "mean", "n_published": 10, "reproduced": reproduced, "verdict": verdict, "possible": True})
 
 
 def test_readings_that_do_not_decide_are_not_counted():
     numbers = summary.numbers({("one", "table1"): comparison([1.0, 9.0], [1.2, 1.2])}, {"one": ["other"]})
     claims = pd.DataFrame(
         {"study": "one", "id": ["C1", "C1", "C2"], "decides": [True, False, True], "verdict": ["supported", "in part", "no effect"]}
+        | {"finding": False}
     )
-    counted = summary.outcome(numbers, claims).loc["one"]
-    assert (counted["numbers"], counted["reproduced"]) == (1, 1)
-    assert (counted["supported"], counted["in part"], counted["no effect"]) == (1, 0, 1)
+    found = summary.outcome(numbers, claims).loc["one"]
+    assert (found["numbers"], found["reproduced"]) == (1, 1)
+    assert (found["supported"], found["in part"], found["no effect"]) == (1, 0, 1)
 
 
 def test_published_number_that_is_wrong_is_counted_as_not_reproduced():
     numbers = summary.numbers({("one", "table1"): comparison([1.0, 9.0], [1.2, 1.2])}, {"one": []})
-    claims = pd.DataFrame({"study": ["one"], "id": ["C1"], "decides": [True], "verdict": ["supported"]})
-    counted = summary.outcome(numbers, claims).loc["one"]
-    assert (counted["numbers"], counted["reproduced"]) == (2, 1)
+    claims = pd.DataFrame({"study": ["one"], "id": ["C1"], "decides": [True], "finding": [False], "verdict": ["supported"]})
+    found = summary.outcome(numbers, claims).loc["one"]
+    assert (found["numbers"], found["reproduced"]) == (2, 1)
 
 
 def test_numbers_without_a_published_value_are_left_out():
@@ -48,6 +50,39 @@ def test_other_conditions_than_the_deciding_one_are_not_counted():
     table = comparison([1.0, 9.0], [1.2, 9.0]).assign(workspace=["first", "second"])
     numbers = summary.numbers({("one", "table1"): table}, {"one": []}, {("one", "table1"): {"workspace": "first"}})
     assert numbers["decides"].tolist() == [True, False]
+
+
+def counted(*tables):
+    return summary.numbers({("one", f"table{n}"): table for n, table in enumerate(tables)}, {"one": []})["counted"].tolist()
+
+
+def test_repeats_in_another_table_are_counted_once():
+    first = comparison([1.0, 9.0], [1.2, 9.0])
+    assert counted(first, comparison([1.0, 8.0], [1.2, 9.0])) == [True, True, False, True]
+    assert counted(first, comparison([1.0, 9.0], [1.2, 9.0]).assign(problem="b")) == [True] * 4
+    # Two tables may tell different columns apart: what both have decides.
+    assert counted(first, first.drop(columns="problem")) == [True, True, False, False]
+
+
+def test_impossible_and_unjudged_numbers_are_not_counted():
+    table = comparison([1.0, 9.0], [1.2, 9.0])
+    assert counted(table.assign(possible=[True, False])) == [True, False]
+    assert counted(table.assign(reproduced=pd.array([None, True], dtype="boolean"))) == [False, True]
+
+
+def test_counts_that_add_up_are_one_number_fewer():
+    table = comparison([4.0, 6.0], [4.0, 6.0]).assign(method="plain", metric=["optimal", "infeasible"], statistic="count")
+    assert counted(table) == [True, False]
+    assert counted(table.assign(n_published=11)) == [True, True]
+    assert counted(table.assign(method=["plain", "other"])) == [True, True]
+
+
+def test_outcome_counts_verdicts_of_numbers():
+    words = ["reproduced", "not told apart", "cannot fail", "not reproduced"]
+    table = comparison([1.0, 2.0, 3.0, 9.0], [1.2, 2.2, 3.2, 4.0], list("abcd")).assign(verdict=words)
+    claims = pd.DataFrame({"study": ["one"], "id": ["C1"], "decides": [True], "verdict": ["supported"]})
+    found = summary.outcome(summary.numbers({("one", "table1"): table}, {"one": []}), claims).loc["one"]
+    assert found[["numbers", *words]].to_list() == [4, 1, 1, 1, 1]
 
 
 def test_text_without_the_part_is_told():

@@ -1,6 +1,9 @@
-"""A study of a reader's own, outside of the repository: a map, a planner, a table, a figure, claims, and a wrong published number."""
+"""A study of a reader's own, outside of the repository: a map, a planner with a module beside it, a table, a figure, claims, an
+alternative, and a wrong published number.
+"""
 
 import math
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -12,17 +15,20 @@ ROOT = Path(__file__).parents[1]
 
 PLANNER = """
 import numpy as np
+import nearby
 from bezierplan import curves
 from bezierplan.problem import Path, Plan
 
 workspaces = ("circles",)
 
 def plan(problem, rng, *, bend: float):
-    middle = (np.array(problem.start) + problem.target) / 2 + [0, bend + rng.normal(0, 0.01)]
+    middle = (np.array(problem.start) + problem.target) / 2 + [0, bend + rng.normal(0, nearby.SPREAD)]
     path = Path("bezier", np.array([problem.start, middle, problem.target]))
     length = curves.length(path)
     return Plan(path, length, claimed_feasible=True, evaluations=1, history=np.array([length]), stop="one", extra={})
 """
+
+NEARBY = "SPREAD = 0.01\n"
 
 EXPERIMENTS = """
 title: A bend round a disc
@@ -43,12 +49,18 @@ experiments:
     methods: [low, high, line]
     repeats: {smoke: 2, full: 30, extended: 60}
     chunk: {smoke: 2, full: 30, extended: 30}
+  again:
+    problems: [across]
+    methods: [low, high]
+    repeats: {smoke: 2, full: 30, extended: 60}
+    chunk: {smoke: 2, full: 30, extended: 30}
 """
 
 ARTEFACTS = """
 tables:
   lengths:
-    {title: Lengths, kind: pivot, experiment: bends, published: lengths.csv, index: [method], columns: [value], values: [
+    {title: "Lengths </script><b> `x`_ .. include:: bend.py",
+    kind: pivot, experiment: bends, published: lengths.csv, index: [method], columns: [value], values: [
       {metric: length, statistic: mean, label: length, decimals: 2}, {metric: feasible, statistic: share, label: feasible, decimals: 2}]}
 figures:
   paths: {title: One bend, columns: 1, panels: [{kind: paths, experiment: bends, where: {method: low}, pick: {lowest: length}}]}
@@ -60,7 +72,8 @@ claims:
     place: invented
     statement: The low bend is shorter than the high one.
     artefact: lengths
-    checks: [{test: lower, experiment: bends, metric: length, groups: [low], than: [high], direction: lower, margin: 0.01}]
+    checks: [{test: lower, experiment: [bends, again], every: [experiment], metric: length, groups: [low], than: [high],
+              direction: lower, margin: 0.01}]
   - id: C2
     place: invented
     statement: The high bend is shorter than the low one, which is false.
@@ -68,9 +81,23 @@ claims:
     checks: [{test: lower, experiment: bends, metric: length, groups: [high], than: [low], direction: lower, margin: 0.01}]
 """
 
+ASSUMPTIONS = """
+assumptions:
+  - {id: O1, detail: How far the low bend goes, setting: bend, default: {low: 3.0}, alternatives: [6.0], claims: [C1],
+     reason: invented, source: assumed}
+"""
+
 # The first is the length of the parabola of height 1.5 over a base of 8; the second is shorter than any path round the disc.
 LOW = math.sqrt(64 + 16 * 1.5**2) / 2 + 64 / (8 * 1.5) * math.asinh(4 * 1.5 / 8)
 PUBLISHED = f"problem,method,metric,statistic,n,unit,value\nacross,low,length,mean,30,m,{LOW:.2f}\nacross,high,length,mean,30,m,8.00\n"
+
+
+def snakemake(folder, *words):
+    command = [sys.executable, "-m", "snakemake", "-s", str(ROOT / "Snakefile"), "--workflow-profile", "none", "--cores", "2", *words]
+    command += ["--config", f"studies=[{folder / 'bends'}]", "--rerun-triggers", "mtime", "input", "params"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout + done.stderr
 
 
 @pytest.fixture(scope="module")
@@ -81,15 +108,15 @@ def results(tmp_path_factory):
     (study / "published").mkdir(parents=True)
     for name, text in {
         "bend.py": PLANNER,
+        "nearby.py": NEARBY,
+        "assumptions.yaml": ASSUMPTIONS,
         "experiments.yaml": EXPERIMENTS,
         "artefacts.yaml": ARTEFACTS,
         "claims.yaml": CLAIMS,
         "published/lengths.csv": PUBLISHED,
     }.items():
         (study / name).write_text(text)
-    command = [sys.executable, "-m", "snakemake", "-s", str(ROOT / "Snakefile"), "--workflow-profile", "none", "--cores", "2"]
-    done = subprocess.run([*command, "--config", f"studies=[{study}]"], cwd=folder, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stderr
+    snakemake(folder, "all", "alternatives")
     return folder / "results" / "full" / "bends"
 
 
@@ -111,13 +138,41 @@ def test_wrong_published_number_is_flagged(results):
 
 def test_published_length_below_the_bound_is_audited(results):
     audit = pd.read_csv(results / "audit.csv")
-    assert audit.set_index("place")["consistent"].to_dict() == {"problem=across, method=low": True, "problem=across, method=high": False}
+    assert audit.set_index("place")["consistent"].to_dict() == {
+        f"problem=across, method={method}, metric=length, statistic=mean": method == "low" for method in ("low", "high")
+    }
 
 
 def test_claim_that_is_false_is_contradicted_and_its_contrary_supported(results):
     claims = pd.read_csv(results / "claims.csv").set_index("id")
     assert claims.loc["C1", "verdict"] == "supported"
     assert claims.loc["C2", "verdict"] == "contradicted"
+
+
+def test_alternative_changes_the_verdict(results):
+    (row,) = pd.read_csv(results / "sensitivity.csv").to_dict("records")
+    assert (row["assumption"], row["claim"], row["alternative"]) == ("O1", "C1", 6)
+    assert (row["verdict"], row["verdict_alternative"], row["changed"]) == ("supported", "contradicted", True)
+
+
+def test_only_an_edit_of_the_code_beside_the_planner_reruns_its_methods(results):
+    folder = results.parents[2]
+    near = folder / "bends" / "nearby.py"
+    near.write_text("# a comment\n" + NEARBY)
+    assert "Nothing to be done" in snakemake(folder, "-n", "all")
+    near.write_text("SPREAD = 0.02\n")
+    printed = snakemake(folder, "-n", "all")
+    near.write_text(NEARBY)
+    methods = re.findall(r"^rule runs:.*?method=(\w+)", printed, flags=re.M | re.S)
+    assert sorted(set(methods)) == ["high", "low"]
+
+
+def test_words_of_a_title_are_no_markup_in_the_report(results):
+    folder = results.parents[2]
+    snakemake(folder, "all", "--report", str(folder / "report.html"))
+    report = (folder / "report.html").read_text()
+    assert "Lengths &lt;/script&gt;&lt;b&gt; `x`_ .. include:: bend.py" in report
+    assert "Lengths </script>" not in report
 
 
 def test_figure_shows_the_own_planner(results):
@@ -127,4 +182,4 @@ def test_figure_shows_the_own_planner(results):
 
 def test_summary_counts_the_study(results):
     summary = (results.parent / "summary.md").read_text()
-    assert "| bends | 2 | 1 | 1 | 0 | 1 | 0 | 0 | 0 |" in summary
+    assert "| bends | 2 | 1 | 0 | 0 | 1 | 1 | 0 | 1 | 0 | 0 | 0 |" in summary

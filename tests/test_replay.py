@@ -2,11 +2,12 @@
 
 import pytest
 
-from bezierplan import problems, replay, running, study_file
+from bezierplan import problems, running
 from bezierplan.checked import Fault
-from bezierplan.study import job, problems_job
+from bezierplan.commands import replay
+from bezierplan.study import job, problems_job, reading
 
-STUDIES = study_file.load(study_file.read_config({"studies": ["song2016"]}))
+STUDIES = reading.load(reading.read_config({"studies": ["song2016"]}))
 
 
 def test_run_made_again_equals_the_row_of_its_chunk(tmp_path):

@@ -4,7 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import results
+from bezierplan.analysis import audit, results
 from bezierplan.problem import Problem
 from bezierplan.workspaces.circles import Circles
 
@@ -47,3 +47,27 @@ def test_no_feasible_run_is_no_pick():
 
 def test_of_equal_runs_the_first_repeat_is_picked():
     assert results.pick(runs([5.0, 5.0]).iloc[::-1], {"lowest": "objective"})["repeat"] == 0
+
+
+def test_published_length_is_audited_against_the_bound_of_its_problem():
+    """A row names its problem or workspace, the table's reading does, or the experiment has only one; spreads are no lengths."""
+    rows = [("a", "length", "min", 8.9), ("a", "length", "mean", 9.1), ("a", "length", "std", 0.5), ("a", "cpu_s", "mean", 0.1)]
+    table = pd.DataFrame(rows, columns=["method", "metric", "statistic", "value"]).assign(printed=["8.9", "9.1", "0.5", "0.1"])
+    one, two = (pd.DataFrame({"bound": [9.0, 5.0][:n]}, index=["disc", "other"][:n]) for n in (1, 2))
+
+    def audited(table, bounds, decides):
+        return [row["consistent"] for row in audit.below_bound({"t": table}, {"t": bounds}, {"t": decides} if decides else {})]
+
+    assert audited(table, one, None) == [False, True]
+    assert audited(table, two, None) == []
+    assert audited(table, two, {"workspace": "other"}) == [True, True]
+    assert audited(table.assign(workspace="disc"), two, None) == [False, True]
+    assert audited(table.assign(problem="other"), two, None) == [True, True]
+    assert audited(table.assign(problem="elsewhere"), one, None) == []
+
+
+@pytest.mark.parametrize(("printed", "consistent"), [("8.95", True), ("8.94", False), ("8.5", False), ("9", True), ("8.9", False)])
+def test_audit_allows_half_a_unit_of_the_last_printed_digit(printed, consistent):
+    table = pd.DataFrame({"problem": ["disc"], "metric": "length", "statistic": "min", "value": [float(printed)], "printed": [printed]})
+    (row,) = audit.below_bound({"t": table}, {"t": pd.DataFrame({"bound": [8.9549]}, index=["disc"])}, {})
+    assert row["consistent"] == consistent

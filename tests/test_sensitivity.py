@@ -45,6 +45,8 @@ def test_a_verdict_changes_where_the_alternative_has_another_one():
         ("30", 30.51, False),
         ("30.0", 30.049, True),
         ("30.0", 30.051, False),
+        ("30.00", 30.0049, True),
+        ("30.00", 30.0051, False),
         ("31", 30.0, True),
     ],
 )

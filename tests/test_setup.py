@@ -96,6 +96,21 @@ def test_no_fitting_python_ends_with_one_line_that_says_what_to_do(tree, tmp_pat
     assert not (tree / ".venv").exists()
 
 
+@pytest.mark.parametrize("name", ["$(touch bad)", "`touch bad`", 'a"b'])
+def test_a_folder_whose_name_is_a_command_is_refused(tree, name):
+    tree = tree.rename(tree.parent / name)
+    answer = make(tree, "smoke", f"PYTHON={sys.executable}")
+    assert answer.returncode != 0
+    assert len(answer.stderr.splitlines()) == 1
+    assert "bezierplan cannot be set up in" in answer.stderr
+    assert not (tree / "bad").exists()
+
+
+def test_a_folder_with_blanks_is_no_matter(tree):
+    tree = tree.rename(tree.parent / "a clone")
+    assert f"{sys.executable} -m venv .venv" in make(tree, "-n", "smoke", f"PYTHON={sys.executable}").stdout
+
+
 def test_the_first_fitting_python_is_taken(tree, tmp_path):
     old = executable(tmp_path / "old", other_version(3, 10))
     good = executable(tmp_path / "good", other_version(3, 12))

@@ -207,6 +207,56 @@ def test_yardstick_refuses_what_is_far_off(name, away):
     assert not yardstick(name, values, statistic(name, values) + (away if name != "share" else -away), 30, None, generator("far"))[1]
 
 
+@pytest.mark.parametrize(("ours", "theirs"), [(10, 10), (30, 30), (10, 40), (200, 10)])
+@pytest.mark.parametrize(("shape", "most"), [("normal", 0.08), ("gamma", 0.12), ("exponential", 0.2)])
+def test_yardstick_refuses_few_true_standard_deviations(shape, most, ours, theirs):
+    """Draws from resamples would refuse up to a quarter of those of a normal sample, and more of skewed ones."""
+    rng = np.random.default_rng(9)
+    draw = {"normal": rng.normal, "gamma": lambda size: rng.gamma(5, size=size), "exponential": lambda size: rng.exponential(size=size)}[
+        shape
+    ]
+    refused = 0
+    for _ in range(400):
+        values, published = draw(size=ours), statistic("std", draw(size=theirs))
+        refused += not yardstick("std", values, published, theirs, None, generator("std"))[1]
+    assert refused / 400 <= most
+
+
+def test_standard_deviation_far_off_is_refused():
+    for factor in (0.4, 2.5):
+        assert not yardstick("std", OURS, factor * statistic("std", OURS), 30, None, generator("far"))[1]
+    assert yardstick("std", np.full(30, 5.0), 0.0, 30, None, generator("same")) == (0.5, True)
+
+
+@pytest.mark.parametrize(
+    ("published", "ends", "possible", "fails"),
+    [
+        (4.0, (3.0, 9.0), (-math.inf, math.inf), True),
+        (4.0, (-math.inf, 9.0), (-math.inf, math.inf), False),
+        (4.0, (3.0, 9.0), (3.0, math.inf), False),
+        (6.0, (-math.inf, 9.0), (-math.inf, math.inf), True),
+        (6.0, (3.0, math.inf), (-math.inf, math.inf), False),
+        (6.0, (3.0, 9.0), (0.0, 9.0), False),
+        (5.0, (-math.inf, 9.0), (-math.inf, math.inf), True),
+        (5.0, (-math.inf, math.inf), (-math.inf, math.inf), False),
+    ],
+)
+def test_test_can_fail_on_the_side_of_the_published_number_alone(published, ends, possible, fails):
+    assert statistics.can_fail(published, 5.0, ends, possible) == fails
+
+
+def test_power_is_the_share_of_numbers_beyond_the_ends():
+    assert statistics.told_apart(np.array([1.0, 2.0, 3.0, 9.0]), (2.0, 4.0)) == 0.5
+
+
+def test_no_extreme_lies_beyond_what_is_possible():
+    assert statistics.chance("min", OURS, 60, generator("bound"), (80.0, math.inf))[0] == 80.0
+    assert yardstick("min", OURS, 80.0, 60, None, generator("bound"), (80.0, math.inf))[1]
+    assert not yardstick("min", OURS, 79.99, 60, None, generator("bound"), (80.0, math.inf))[1]
+    assert yardstick("min", OURS, 79.99, 60, None, generator("bound"))[1]
+    assert statistics.chance("max", OURS, 60, generator("bound"), (80.0, 130.0))[1] == 130.0
+
+
 def test_predicted_mean_has_the_error_of_both_samples():
     values = np.random.default_rng(1).normal(size=50)
     drawn = predicted("mean", values, 20, generator("both"))
@@ -224,3 +274,10 @@ def test_chance_is_what_the_yardstick_accepts():
             if np.isfinite(published):
                 assert statistics.yardstick(name, values, published, 10, None, statistics.generator(name))[1] == within, (name, published)
     assert np.isnan(statistics.chance("mean", np.array([]), 10, statistics.generator("empty"))).all()
+
+
+def test_holm_against_a_worked_example():
+    """Times 4, 3, 2 and 1 from the least p on, never below the one before, and at most 1 (Holm 1979)."""
+    assert statistics.holm(np.array([0.01, 0.04, 0.03, 0.005])) == pytest.approx([0.03, 0.06, 0.06, 0.02])
+    assert statistics.holm(np.array([0.9, 0.8])) == pytest.approx([1, 1])
+    assert len(statistics.holm(np.array([]))) == 0

@@ -11,14 +11,14 @@ from bezierplan import checked, metrics, problems
 from bezierplan.analysis import audit
 from bezierplan.analysis.results import Results
 from bezierplan.planners import chaotic_pso
-from bezierplan.problem import planner_module, planner_settings, setting_fault
 from bezierplan.search import chaotic_maps
 from bezierplan.studies import song2016, tharwat2018
+from bezierplan.study import checks, reading
 from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
 
 STUDIES = File(__file__).parents[1] / "config" / "studies"
-THARWAT = checked.read(STUDIES / "tharwat2018" / "experiments.yaml", "experiments")
+THARWAT = checked.read(STUDIES / "tharwat2018" / "experiments.yaml")
 # Of the planner's settings in force.
 SAMPLES, BETA = 100, 100.0
 
@@ -180,10 +180,10 @@ def test_a_bowl_holds_only_with_several_minima(monkeypatch, waves, mark):
 WAYS = {"above": [(-4, 2), (-2, 8), (2, 8)], "below": [(6, 0), (6, 3), (6, 6)], "between": list(tharwat2018.BEST_KNOWN["equal"])}
 
 
-def run(way, feasible=True, curve="bezier"):
+def run(way, feasible=True, curve="bezier", length=8.0):
     points = [(0, 0), *WAYS[way], (4, 6)]
     flat = [float(number) for point in points for number in point]
-    return {"problem": "equal", "feasible": feasible, "path_curve": curve, "path_points": flat}
+    return {"problem": "equal", "feasible": feasible, "path_curve": curve, "path_points": flat, "length": length}
 
 
 def test_homotopy_class():
@@ -198,9 +198,10 @@ def test_homotopy_class():
 @pytest.mark.parametrize(
     ("runs", "mark", "classes", "counted"),
     [
-        ([run("above"), run("above")], "-", 1, 2),
-        ([run("above"), run("below"), run("between"), run("above")], "+", 3, 4),
-        ([run("above"), run("below", feasible=False)], "-", 1, 1),
+        ([run("above"), run("above")], "?", 1, 2),
+        ([run("above")] * 59, "-", 1, 59),
+        ([run("above"), run("below"), run("between"), run("above"), run("below")], "+", 2, 5),
+        ([run("above"), run("above", feasible=False), run("below"), run("below", length=8.2)], "?", 0, 3),
     ],
 )
 def test_several_homotopy_classes(runs, mark, classes, counted):
@@ -289,16 +290,15 @@ def test_methods_of_tharwat2018():
     assert set(plan.history.tolist()) == {plan.objective}
 
 
-def test_assumptions_of_tharwat2018():
-    """With a setting, the default is the value in force, and every alternative is legal."""
-    assumptions = checked.read(STUDIES / "tharwat2018" / "assumptions.yaml", "assumptions")["assumptions"]
-    governed = [assumption for assumption in assumptions if "setting" in assumption]
-    assert len(governed) >= 15
+@pytest.mark.parametrize("folder", sorted(STUDIES.iterdir()), ids=lambda folder: folder.name)
+def test_every_default_of_an_assumption_is_in_force(folder):
+    """Of all five studies; `load` refuses a default that is not, which is tried here with a value that no setting has."""
+    study = reading.read_study(folder)
+    governed = [assumption for assumption in study.assumptions if assumption.setting]
+    assert len(governed) >= {"song2016": 9, "tharwat2018": 15, "ma2020": 14}.get(folder.name, 5)
     for assumption in governed:
-        setting, default = assumption["setting"], assumption["default"]
-        for method, value in default.items() if isinstance(default, dict) else [("pso", default)]:
-            described = THARWAT["methods"][method]
-            annotation = planner_settings(planner_module(described["planner"]))[setting]
-            assert (THARWAT["settings"] | described["settings"])[setting] == value, assumption["id"]
-            for alternative in assumption["alternatives"]:
-                assert setting_fault(annotation, alternative) is None, assumption["id"]
+        checks.check_assumption(study, assumption, "here")
+        named = isinstance(assumption.default, dict)
+        other = dict.fromkeys(assumption.default, "none such") if named else "none such"
+        with pytest.raises(checked.Fault, match="not in force"):
+            checks.check_assumption(study, assumption.but(default=other), "here")

@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 from faults import told
 
-from bezierplan import running, study_file
+from bezierplan import running
 from bezierplan import study as studies
 from bezierplan.checked import Fault
+from bezierplan.study import keys, reading
 
 SONG = Path(__file__).parents[1] / "config" / "studies" / "song2016"
 
@@ -94,7 +95,7 @@ FAULTS = {
         EXPERIMENTS,
         "start_cell: 0, target_cell: 15}",
         "start_cell: 0}",
-        "0_15: {'workspace': 'figure2', 'start_cell': 0}: either start and",
+        "0_15: start_cell: expected either start and target, or start_cell and target_cell",
     ),
     "unknown workspace": (EXPERIMENTS, "{workspace: figure2,", "{workspace: figur2,", "workspace: figur2: unknown; did you mean figure2?"),
     "unknown kind of workspace": (EXPERIMENTS, "kind: grid", "kind: gird", "kind: gird: unknown; did you mean grid?"),
@@ -102,7 +103,7 @@ FAULTS = {
         EXPERIMENTS,
         "workspaces/figure2.txt",
         "workspaces/figure3.txt",
-        "workspaces/figure3.txt: cannot be read",
+        "file: workspaces/figure3.txt: no such file in workspaces",
     ),
     "ragged map": (MAP, "....##..........\n", "....##.........\n", "workspaces/figure2.txt: line 2 has 16 cells, the first line has 15"),
     "unknown character in a map": (
@@ -211,7 +212,7 @@ FAULTS = {
 
 
 def test_the_study_itself_has_no_fault(folder):
-    assert study_file.load([folder])["song2016"].title
+    assert reading.load([folder])["song2016"].title
 
 
 @pytest.mark.parametrize("fault", FAULTS, ids=str)
@@ -224,17 +225,17 @@ def test_fault_is_told_in_one_line(fault, folder):
 
 def test_unknown_study_is_told_with_the_closest_name():
     with pytest.raises(Fault, match=r"song2061.*did you mean song2016\?"):
-        study_file.read_config({"studies": ["song2061"]})
+        reading.read_config({"studies": ["song2061"]})
 
 
 def test_unknown_key_of_the_configuration_is_told():
     with pytest.raises(Fault, match=r"studys: unknown key; did you mean studies\?"):
-        study_file.read_config({"studys": ["song2016"]})
+        reading.read_config({"studys": ["song2016"]})
 
 
 def test_the_same_study_twice_is_told():
     with pytest.raises(Fault, match="name song2016 is there already"):
-        study_file.load([SONG, SONG])
+        reading.load([SONG, SONG])
 
 
 def test_settings_of_a_problem_stand_between_those_of_the_study_and_of_a_method(folder):
@@ -242,7 +243,7 @@ def test_settings_of_a_problem_stand_between_those_of_the_study_and_of_a_method(
     place = "\n  0_255: {workspace: figure2,"
     assert place in file.read_text()
     file.write_text(file.read_text().replace(place, place + " settings: {genes: 5, samples: 7, generations: 9},", 1))
-    study = study_file.load([folder])["song2016"]
+    study = reading.load([folder])["song2016"]
     job = studies.job(study, "routes", "smooth", "smoke", 0)
     first, second = (running.settings_in(job, running.Condition(problem, {})) for problem in ("0_15", "0_255"))
     assert (first["genes"], first["generations"], first["samples"]) == (6, 100, 601)
@@ -251,3 +252,20 @@ def test_settings_of_a_problem_stand_between_those_of_the_study_and_of_a_method(
     assert "settings" not in studies.job(study, "routes", "shortest_path", "smoke", 0)["problems"]["0_255"]
     assert "On 0 to 255: genes 5, samples 7, generations 9" in studies.caption(study, "table1", "smoke")
     assert all("settings" not in problem for problem in studies.problems_job(study, "routes", "smoke")["problems"].values())
+
+
+def test_tables_of_keys_are_those_of_the_models():
+    """`python -m bezierplan.study.keys` renews them."""
+    text = keys.README.read_text(encoding="utf-8")
+    assert keys.renewed(text) == text
+    assert all(f"<!-- keys of {name}.yaml -->" in text for name in keys.GROUPS)
+
+
+def test_settings_of_a_planner_stand_between_those_of_the_study_and_of_a_method(folder):
+    file = folder / EXPERIMENTS
+    text = file.read_text().replace("  genes: 6", "  binary_genetic: {generations: 7, samples: 7}\n  genes: 6", 1)
+    file.write_text(text)
+    study = reading.load([folder])["song2016"]
+    resolved = study.resolved("smooth")
+    assert (resolved["generations"], resolved["samples"], resolved["genes"]) == (7, 601, 6)
+    assert study.resolved("shortest_path") == {}

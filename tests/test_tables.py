@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from bezierplan import metrics
 from bezierplan.analysis import comparison, listing, statistics, tables
 from bezierplan.analysis.results import Results
 from bezierplan.problem import Problem
@@ -179,7 +180,8 @@ def test_rows_do_not_depend_on_the_others():
 def test_columns_of_the_comparison():
     assert ",".join(compare(results()).columns) == (
         "problem,method,metric,statistic,unit,n_published,value_published,n_ours,value_ours,best,mean,median,quartile1,quartile3,"
-        "low95_ours,high95_ours,low95_chance,high95_chance,quantile_published,reproduced,share_claimed,share_feasible,bound,gap"
+        "low95_ours,high95_ours,low95_chance,high95_chance,quantile_published,reproduced,can_fail,power,verdict,possible,"
+        "share_claimed,share_feasible,bound,gap"
     )
 
 
@@ -234,6 +236,68 @@ def test_shares_bound_and_gap():
     assert found["gap"] == pytest.approx(feasible.median() / 9 - 1)
 
 
+LEAST = SPEC | {"values": [{"metric": "length", "statistic": "min", "label": "length", "decimals": 2}]}
+
+
+def least(plain, fast=11.0, n=20):
+    """The row of the least length of `plain` on the problem `long`, whose bound is 9, beside published ones."""
+    printed = {"problem": "long", "method": ["plain", "fast"], "metric": "length", "statistic": "min", "n": n, "unit": "m"}
+    table = comparison.compare(results(), LEAST, pd.DataFrame(printed | {"value": [plain, fast]}), {}, [], "study/table1")
+    return row(table, "long", "plain", "length")
+
+
+def test_published_minimum_below_the_bound_is_not_reproduced():
+    found = least(8.99)
+    assert not found["reproduced"]
+    assert (found["can_fail"], found["verdict"], found["possible"]) == (True, "not reproduced", True)
+
+
+def test_published_minimum_between_the_bound_and_ours_cannot_fail():
+    found = least(9.0)
+    assert found["reproduced"]
+    assert found["low95_chance"] == 9.0
+    assert (found["can_fail"], found["verdict"]) == (False, "cannot fail")
+
+
+def test_what_would_accept_another_method_too_is_not_told_apart():
+    ours = results().runs.query("feasible and problem == 'long' and method == 'plain'")["length"]
+    apart, alike = (compare(results(), plain=f"{ours.median()}"), least(float(ours.min()) + 0.05, fast=float(ours.min()) + 0.06))
+    assert (alike["reproduced"], alike["power"], alike["verdict"]) == (True, 0.0, "not told apart")
+    found = row(apart, "long", "plain", "length")
+    assert (found["power"], found["verdict"]) == (float(found["low95_chance"] > 10 or found["high95_chance"] < 10), "not told apart")
+
+
+def test_without_another_method_a_tenth_is_what_matters():
+    found = row(compare(results()), "long", "fast", "evaluations")
+    assert (found["power"], found["verdict"]) == (1.0, "reproduced")
+
+
+def test_number_that_the_metric_cannot_have_is_not_possible():
+    spec = SPEC | {"values": [{"metric": "evaluations", "statistic": "mean", "label": "e", "decimals": 0}]}
+    printed = {"problem": "long", "method": ["plain", "fast"], "metric": "evaluations", "statistic": "mean", "n": 9, "unit": "-"}
+    table = comparison.compare(results(), spec, pd.DataFrame(printed | {"value": [-1.0, 1000.0]}), {}, [], "study/table1")
+    assert [row(table, "long", method, "evaluations")["possible"] for method in ("plain", "fast")] == [False, True]
+
+
+def test_size_of_the_paper_is_not_cut_to_the_share_that_counts(monkeypatch):
+    """A fifth of our runs failed; the paper's ten are ten."""
+    sizes = []
+    monkeypatch.setattr(statistics, "yardstick", lambda *given: sizes.append(given[3]) or (0.5, True))
+    least(10.0, n=10)
+    assert set(sizes) == {10, None}
+
+
+def test_lengths_that_count_cells_carry_their_own_bound_and_gap():
+    ours = results()
+    ours = ours._replace(runs=ours.runs.assign(bound8=11.0, path_curve="", path_points=None))
+    wanted = {"length": "gap", "cells4": "gap4", "cells8": "gap8"}
+    values = [{"metric": metric, "statistic": "mean", "label": metric, "decimals": 1} for metric in wanted]
+    cells = tables.cells(ours, SPEC | {"values": values, "where": {"problem": "long"}}, ["problem", "method"])
+    assert cells.groupby("metric")["bound"].unique().map(list).to_dict() == {"length": [9.0], "cells4": [11.0], "cells8": [11.0]}
+    assert {metric: metrics.METRICS[metric].gap for metric in wanted} == wanted
+    assert cells.groupby("metric")["least"].unique().map(list).to_dict() == {"length": [9.0], "cells4": [11.0], "cells8": [11.0]}
+
+
 def test_published_number_without_runs_keeps_its_row():
     found = row(compare(results(), spec=SPEC | {"where": {"method": ["fast"]}}), "long", "plain", "length")
     assert found["value_published"] == 10
@@ -284,7 +348,9 @@ def test_a_comparison_shows_published_numbers_with_what_chance_gives(tmp_path):
     second = pd.DataFrame([("plain", 3, "length", "mean", 10, 4.5, 10, 4.0, 3.0, 5.0)], columns=["method", "obstacles", *columns])
     rows = pd.concat([first, first.assign(workspace="other"), first.assign(value_published=None), first.assign(metric="rank")])
     for name, table in (("table3", rows), ("table6", second)):
-        table.assign(quantile_published=0.25, reproduced=True).to_csv(tmp_path / f"{name}.comparison.csv", index=False)
+        table.assign(quantile_published=0.25, reproduced=True, verdict="reproduced").to_csv(
+            tmp_path / f"{name}.comparison.csv", index=False
+        )
     spec = {"kind": "comparison", "of": ["table3", "table6"], "metrics": ["length"], "where": {"workspace": "equal"}}
     files = [str(tmp_path / f"{name}.comparison.csv") for name in spec["of"]]
     shown = listing.table(spec, files, {}, {"plain": "plain curves", "equal": "equal circles"})
@@ -293,3 +359,10 @@ def test_a_comparison_shows_published_numbers_with_what_chance_gives(tmp_path):
     assert shown["method"].to_list() == ["plain curves"] * 2
     assert shown["95 % by chance, from"].to_list() == [2.123, 3.0]
     assert shown["published"].to_list() == [2.5, 4.5]
+
+
+def test_a_printed_length_is_compared_with_the_metric_that_the_table_reads_it_as(tmp_path):
+    file = tmp_path / "table.csv"
+    file.write_text("method,metric,statistic,n,unit,value\nplain,length,mean,10,m,3\nplain,cpu_s,mean,10,s,4\n")
+    assert comparison.read_published(str(file), SPEC | {"reads": {"length": "cells4"}})["metric"].to_list() == ["cells4", "cpu_s"]
+    assert comparison.read_published(str(file), SPEC)["metric"].to_list() == ["length", "cpu_s"]

@@ -11,9 +11,10 @@ from bezierplan.analysis import results
 from bezierplan.figures import landscape, tracks
 from bezierplan.planners import chaotic_pso
 from bezierplan.problem import Problem
+from bezierplan.search import penalised
 from bezierplan.workspaces.circles import Circles
 
-SETTINGS = checked.read(File(__file__).parents[1] / "config" / "studies" / "tharwat2018" / "experiments.yaml", "experiments")["settings"]
+SETTINGS = checked.read(File(__file__).parents[1] / "config" / "studies" / "tharwat2018" / "experiments.yaml")["settings"]
 FIELD = Problem("field", Circles((-10.0, 10.0, -10.0, 10.0), np.array([[2.0, 3.0]]), np.array([1.0]), "m"), (0.0, 0.0), (4.0, 6.0))
 JOB = {
     "study": "study",
@@ -62,12 +63,12 @@ def test_ways_are_those_of_the_runs(found):
     ways = [tracks.data(found, by="homotopy", runs=1, point=point).query("part == 'way'") for point in range(5)]
     points = np.stack([way[["x", "y"]].to_numpy() for way in ways], axis=1)
     run = found.runs.set_index("id").loc[ways[0]["run"].iloc[0]]
-    again = chaotic_pso._objective(FIELD, JOB["settings"])
+    again = chaotic_pso._objective(FIELD, chaotic_pso.Settings(**JOB["settings"]))
     buffers = [np.empty(SETTINGS["samples"]) for _ in range(3)]
     for best, position in zip(run["history"], points[:, 1:-1]):
-        length = chaotic_pso._length(position.T.ravel(), again, *buffers)
-        violation, _ = chaotic_pso._violation(buffers[0], buffers[1], again.circles, buffers[2])
-        assert chaotic_pso._fitness(length, violation, again) == pytest.approx(best, rel=1e-12)
+        length = penalised.length(position.T.ravel(), again, *buffers)
+        violation, _ = penalised.violation(buffers[0], buffers[1], again.circles, buffers[2])
+        assert penalised.fitness(length, violation, again) == pytest.approx(best, rel=1e-12)
     np.testing.assert_array_equal(points[-1].ravel(), run["path_points"])
 
 

@@ -1,22 +1,35 @@
-"""YAML files read strictly and checked against a schema; every fault in one line that names file, key, value and what would be right."""
+"""YAML files read strictly, within stated limits; every fault in one line that says where it is.
+
+YAML is written by people and read from folders of unknown origin, so what could stop the reader is refused before it is built: files
+that are no regular files, long ones, deep nesting, and aliases that stand for more than a file could hold. Tags are not read, for plain
+scalars have their types without them.
+"""
 
 import difflib
 import re
+import stat
 from collections.abc import Iterable
-from functools import cache
 from pathlib import Path
 from typing import Any
 
 import yaml
 
-SCHEMAS = Path(__file__).parent / "schemas"
+LONGEST_FILE = 4_000_000
+"""Bytes of the longest file that is read: a study's YAML, maps, published numbers."""
+DEEPEST = 20
+"""Levels of the deepest nesting in YAML."""
+MOST_NODES = 200_000
+"""Values in one YAML file, aliases counted as what they stand for."""
 
 
 class Fault(ValueError):
-    """Something in a file that a reader has to mend, in one line."""
+    """Something in a file that a reader has to mend, in one line: whatever the file holds, no character of it breaks the line."""
+
+    def __init__(self, text: str) -> None:
+        super().__init__("".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text))
 
 
-class _Loader(yaml.SafeLoader):
+class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):
     """YAML 1.2's plain scalars: `no` is a word, `0_15` is a word, `010` is ten, `1e-3` is a number; a key may stand only once."""
 
 
@@ -24,7 +37,7 @@ _Loader.yaml_implicit_resolvers = {}
 for _tag, _pattern, _first in (
     ("null", r"|null|~", ["", "n", "~"]),
     ("bool", r"true|false", list("tf")),
-    ("int", r"[-+]?[0-9]+", list("-+0123456789")),
+    ("int", r"[-+]?[0-9]{1,18}", list("-+0123456789")),
     ("float", r"[-+]?(\.[0-9]+|[0-9]+(\.[0-9]*)?)([eE][-+]?[0-9]+)?|[-+]?\.inf|\.nan", list("-+.0123456789")),
 ):
     _Loader.add_implicit_resolver(f"tag:yaml.org,2002:{_tag}", re.compile(f"^(?:{_pattern})$"), _first)
@@ -32,80 +45,80 @@ _Loader.add_constructor("tag:yaml.org,2002:int", lambda loader, node: int(node.v
 
 
 def _mapping(loader: _Loader, node: yaml.MappingNode) -> dict:
-    keys = [key.value for key, _ in node.value]
-    for number, key in enumerate(keys):
-        if key in keys[:number]:
-            raise yaml.MarkedYAMLError(problem=f"{key}: this key stands here twice", problem_mark=node.value[number][0].start_mark)
-    # Names are text even when they look like numbers.
-    return {key.value: loader.construct_object(value, deep=True) for key, value in node.value}
+    content = {}
+    for key, value in node.value:
+        if not isinstance(key, yaml.ScalarNode):
+            raise yaml.MarkedYAMLError(problem="a key is a list or a mapping; expected a name", problem_mark=key.start_mark)
+        if key.value in content:
+            raise yaml.MarkedYAMLError(problem=f"{key.value}: this key stands here twice", problem_mark=key.start_mark)
+        # Names are text even when they look like numbers.
+        content[key.value] = loader.construct_object(value, deep=True)
+    return content
 
 
 _Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
 
 
-def read(file: Path, schema: str) -> dict[str, Any]:
-    """The content of a YAML file that fits the schema of that name. Raises Fault."""
+def read(file: Path, place: str | None = None) -> Any:
+    """The content of a YAML file. Raises Fault, beginning with a place, the file's name unless given."""
+    return parse(text_of(file, place or str(file)), place or str(file))
+
+
+def text_of(file: Path, place: str) -> str:
+    """The text of a file. Raises Fault, beginning with a place, for what is no regular file of text of at most `LONGEST_FILE` bytes."""
     try:
-        text = file.read_text(encoding="utf-8")
+        found = file.stat()
+        if not stat.S_ISREG(found.st_mode):
+            raise Fault(f"{place}: cannot be read (not a regular file)")
+        if found.st_size > LONGEST_FILE:
+            raise Fault(f"{place}: {found.st_size} bytes; expected at most {LONGEST_FILE}")
+        return file.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
-        raise Fault(f"{file}: cannot be read ({type(error).__name__})") from None
-    content = parse(text, str(file))
-    check(content, schema, str(file))
-    return content
+        raise Fault(f"{place}: cannot be read ({type(error).__name__})") from None
 
 
 def parse(text: str, place: str) -> Any:
     """The content of YAML text, read strictly. Raises Fault, beginning with a place."""
     try:
+        _check_size(text, place)
         return yaml.load(text, _Loader)
     except yaml.MarkedYAMLError as error:
-        line = f"line {error.problem_mark.line + 1}: " if error.problem_mark else ""
-        raise Fault(f"{place}: {line}{error.problem}") from None
+        raise Fault(f"{_line(place, error.problem_mark)}: {error.problem}") from None
+    except yaml.YAMLError as error:  # characters that YAML does not allow
+        raise Fault(f"{place}: not YAML ({str(error).splitlines()[0]})") from None
 
 
-def check(content: Any, schema: str, place: str) -> None:
-    """Raise Fault, beginning with a place, unless content fits the schema of that name."""
-    import jsonschema
-
-    errors = list(jsonschema.Draft202012Validator(_schema(schema)).iter_errors(content))
-    if errors:
-        # A misspelt key is also a missing key: name the one that stands there.
-        error = min(errors, key=lambda e: (e.validator != "additionalProperties", len(e.absolute_path), str(e.absolute_path)))
-        raise Fault(": ".join([place, *map(str, error.absolute_path), _fault(error)]))
+def _line(place: str, mark: Any) -> str:
+    return f"{place}: line {mark.line + 1}" if mark else place
 
 
-@cache
-def _schema(name: str) -> dict:
-    return yaml.safe_load((SCHEMAS / f"{name}.schema.yaml").read_text(encoding="utf-8"))
+def _check_size(text: str, place: str) -> None:
+    """Raise Fault for nesting, aliases and tags beyond the limits, from the events alone: nothing of it is built."""
+    sizes: dict[str, int] = {}  # of nodes with an anchor
+    opened = [("", 0)]  # anchor and values so far of what is open
+    for event in yaml.parse(text, _Loader):
+        anchor, size = getattr(event, "anchor", None) or "", 0
+        if getattr(event, "tag", None):
+            raise Fault(f"{_line(place, event.start_mark)}: {event.tag}: tags are not read; write the plain value")
+        if isinstance(event, yaml.CollectionStartEvent):
+            opened.append((anchor, 1))
+            if len(opened) > DEEPEST:
+                raise Fault(f"{_line(place, event.start_mark)}: nested more than {DEEPEST} levels deep")
+        elif isinstance(event, yaml.AliasEvent):
+            if anchor not in sizes:
+                raise Fault(f"{_line(place, event.start_mark)}: *{anchor}: stands for nothing before it, or for itself")
+            size = sizes[anchor]
+        elif isinstance(event, yaml.ScalarEvent):
+            sizes[anchor] = size = 1
+        elif isinstance(event, yaml.CollectionEndEvent):
+            anchor, size = opened.pop()
+            sizes[anchor] = size
+        opened[-1] = opened[-1][0], opened[-1][1] + size
+        if opened[-1][1] > MOST_NODES:
+            raise Fault(f"{_line(place, event.start_mark)}: more than {MOST_NODES} values, aliases counted as what they stand for")
 
 
-def _fault(error: Any) -> str:
-    wanted = error.schema.get("description", "")
-    if error.validator == "additionalProperties":
-        known = list(error.schema.get("properties", {}))
-        wrong = next(key for key in error.instance if key not in known and not _matches(key, error.schema))
-        return f"{wrong}: unknown key{closest(wrong, known)}"
-    if error.validator == "propertyNames":
-        return f"{error.instance}: not a name; {error.schema.get('description', 'names are lower-case letters, digits and _')}"
-    if error.validator == "required":
-        missing = next(key for key in error.validator_value if key not in error.instance)
-        return f"{missing}: missing key; {_described(error.schema, missing)}"
-    if error.validator == "enum":
-        return f"{error.instance}: unknown{closest(error.instance, error.validator_value)}"
-    if error.validator == "type":
-        return f"{error.instance!r}: expected {wanted or error.validator_value}"
-    return f"{error.instance!r}: {wanted or error.message}"
-
-
-def _matches(key: str, schema: dict) -> bool:
-    return any(re.search(pattern, key) for pattern in schema.get("patternProperties", {}))
-
-
-def _described(schema: dict, key: str) -> str:
-    return schema.get("properties", {}).get(key, {}).get("description", "needed here")
-
-
-def closest(word: Any, known: Iterable[str]) -> str:
+def closest(word: Any, known: Iterable[Any]) -> str:
     """`; did you mean ...?` and the known words, to end a sentence about an unknown one."""
     words = sorted(map(str, known))
     near = difflib.get_close_matches(str(word), words, n=1)

@@ -1,11 +1,15 @@
-"""What every job of the workflow does first: end with its parent, write to its log, and end in one clear line when something fails."""
+"""What every job of the workflow does: end with its parent, write to its log, leave whole files only, and report a failure in one line."""
 
 import ctypes
 import logging
+import os
 import signal
 import sys
-from collections.abc import Iterator
+import tempfile
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
 
 PR_SET_PDEATHSIG = 1
 
@@ -17,12 +21,45 @@ def end_with_parent() -> None:
 
 
 @contextmanager
-def job(file: str) -> Iterator[None]:
-    """Log to a file; an exception is written there in full and ends the process with its one line."""
+def job(given: Any) -> Iterator[Any]:
+    """Do a job: given is the `snakemake` of its script, and the block gets names to write the output files under.
+
+    The files take their own names when the block has ended. An exception is written to the job's log in full and ends the process with
+    its one line.
+    """
     end_with_parent()
-    logging.basicConfig(filename=file, filemode="w", level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s")
+    logging.basicConfig(filename=given.log[0], filemode="w", level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s")
     try:
-        yield
+        with whole_files(given.output) as output:
+            yield output
     except Exception as error:
         logging.exception("failed")
-        sys.exit(f"{type(error).__name__}: {error} (full account: {file})")
+        sys.exit(damaged(given.input) or f"{type(error).__name__}: {error} (full account: {given.log[0]})")
+
+
+@contextmanager
+def whole_files(files: Any) -> Iterator[Any]:
+    """Names in another folder for a job's files, which all lie in one; they take their own names when the block has ended without a fault.
+
+    So a file that is there is whole, whenever its job was killed.
+    """
+    place = Path(files[0]).parent
+    with tempfile.TemporaryDirectory(prefix=".part-", dir=place) as folder:
+        parts = type(files)(toclone=files, custom_map=lambda file: str(Path(folder) / Path(file).name))
+        yield parts
+        for part, file in zip(parts, files, strict=True):
+            os.replace(part, file)
+
+
+def damaged(files: Iterable[str]) -> str:
+    """What to do about the first Parquet file that cannot be read, such as one that was cut off; empty if there is none."""
+    import pyarrow as pa
+    import pyarrow.parquet as parquet
+
+    for file in files:
+        if str(file).endswith(".parquet"):
+            try:
+                parquet.read_metadata(file)
+            except (OSError, pa.ArrowException):
+                return f"{file}: not a whole Parquet file; delete it and start again: the workflow reproduces it"
+    return ""

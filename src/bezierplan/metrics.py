@@ -43,6 +43,8 @@ class Metric(NamedTuple):
     feasible_only: taken over the runs whose path the certified checker accepts, otherwise over all runs.
     compute: (runs, problems) -> one number a run (n,), where runs is a table of at least one run; None for a column of the runs table.
     among_rows: it compares the methods of a table with each other, so variants and controls beside the table have none.
+    least: the least value that a run can have, or the column of the runs table that holds it. most: the largest.
+    bound, gap: the column with the bound of its kind of length, and the metric that is the gap to it.
     """
 
     unit: str
@@ -50,6 +52,10 @@ class Metric(NamedTuple):
     feasible_only: bool
     compute: Callable[[pd.DataFrame, dict[str, Problem]], np.ndarray] | None = None
     among_rows: bool = False
+    least: float | str = -np.inf
+    most: float = np.inf
+    bound: str = "bound"
+    gap: str = "gap"
 
 
 def values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Series:
@@ -386,9 +392,13 @@ def _gap_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> p
     return _cell_length(name, runs, problems) / runs["bound8"] - 1
 
 
+# Lengths that count cells have a bound and a gap of their own.
+_CELLS4 = {"bound": "bound8", "gap": "gap4"}
+_CELLS8 = {"bound": "bound8", "gap": "gap8"}
+
 METRICS: dict[str, Metric] = {
     "objective": Metric("u", "the planner's own final value, in its own rule", False),
-    "length": Metric("u", "exact arc length", True),
+    "length": Metric("u", "exact arc length", True, least="bound"),
     "claimed_feasible": Metric("-", "the planner's own test of the path", False),
     "feasible": Metric("-", "the certified checker's test of the path", False),
     "failed": Metric("-", "without a path that the certified checker accepts", False, _failed),
@@ -398,20 +408,20 @@ METRICS: dict[str, Metric] = {
     "keeps_distance": Metric("-", "whether the planner's safety distance from the occupied cells is kept", True, _keeps_distance),
     "collision_depth": Metric("u", "largest depth of the path in obstacles or beyond the border", False),
     "clearance": Metric("u", "least distance to the obstacles and the border", False),
-    "evaluations": Metric("-", "paths whose objective the planner asked for", False),
+    "evaluations": Metric("-", "paths whose objective the planner asked for", False, least=0.0),
     "generations": Metric("-", "generations really done", False),
-    "rank": Metric("-", "rank of the objective among the rows of the table, within one unit", False, _rank, among_rows=True),
-    "cpu_s": Metric("s", "CPU seconds of the run alone", False),
-    "gap": Metric("-", "length / exact shortest length of the problem - 1", True, _gap),
+    "rank": Metric("-", "rank of the objective among the rows of the table, within one unit", False, _rank, among_rows=True, least=1.0),
+    "cpu_s": Metric("s", "CPU seconds of the run alone", False, least=0.0),
+    "gap": Metric("-", "length / exact shortest length of the problem - 1", True, _gap, least=0.0),
     "gap_best": Metric("-", "length / length of the best feasible run of the same method and condition - 1", True, _gap_best),
     "generation_improved": Metric(
-        "generation", "last generation that improved the objective", False, partial(_first_generation_within, 0.0)
+        "generation", "last generation that improved the objective", False, partial(_first_generation_within, 0.0), least=0.0
     ),
     "generation_1pct": Metric(
-        "generation", "first generation within 1 % of the run's final objective", False, partial(_first_generation_within, 0.01)
+        "generation", "first generation within 1 % of the run's final objective", False, partial(_first_generation_within, 0.01), least=0.0
     ),
     "generation_5pct": Metric(
-        "generation", "first generation within 5 % of the run's final objective", False, partial(_first_generation_within, 0.05)
+        "generation", "first generation within 5 % of the run's final objective", False, partial(_first_generation_within, 0.05), least=0.0
     ),
     "improvement_30": Metric("-", "share of the improvement of the objective made by generation 30", False, partial(_improvement_by, 30)),
     "objective_best": Metric("u", "lowest objective of any generation", False, _lowest_objective),
@@ -452,13 +462,17 @@ METRICS: dict[str, Metric] = {
     "occupied_points": Metric("-", "control points in occupied cells of a grid", True, partial(_of_path_on_grid, _occupied_points)),
     "gap_reference": Metric("-", "length / length of the best known path of the same kind - 1", True, _gap_reference),
     "excess_reference": Metric("u", "length - length of the best known path of the same kind", True, _excess_reference),
-    "cells4": Metric("u", "cells that the path touches, 1.5 for a diagonal step", True, partial(_cell_length, "length4")),
-    "cells8": Metric("u", "the same without the corners of the sequence of cells", True, partial(_cell_length, "length8")),
+    "cells4": Metric(
+        "u", "cells that the path touches, 1.5 for a diagonal step", True, partial(_cell_length, "length4"), least="bound8", **_CELLS4
+    ),
+    "cells8": Metric(
+        "u", "the same without the corners of the sequence of cells", True, partial(_cell_length, "length8"), least="bound8", **_CELLS8
+    ),
     "bound8": Metric("u", "least length of a path of free cells, 1.5 for a diagonal step", False),
     "homotopy": Metric("-", "class of the path: the sum of 2^k over the circles k that it leaves to its left", True, _homotopy),
     "best_corridor": Metric("-", "whether the path is free and passes each circle where the shortest one does", False, _best_corridor),
-    "gap4": Metric("-", "cells4 / bound8 - 1", True, partial(_gap_cells, "length4")),
-    "gap8": Metric("-", "cells8 / bound8 - 1", True, partial(_gap_cells, "length8")),
+    "gap4": Metric("-", "cells4 / bound8 - 1", True, partial(_gap_cells, "length4"), least=0.0, **_CELLS4),
+    "gap8": Metric("-", "cells8 / bound8 - 1", True, partial(_gap_cells, "length8"), least=0.0, **_CELLS8),
     "straight_blocked": Metric("-", "whether the straight line from start to target touches an occupied cell", False, _straight_blocked),
     "history_mean": Metric("u", "mean over the generations of the best objective so far", False, _history_mean),
     "deviation": Metric("-", "absolute deviation of the length from the median of its condition and method, relative", True, _deviation),
@@ -468,7 +482,7 @@ METRICS: dict[str, Metric] = {
     "valid_share": Metric("-", "share of the children that the planner kept", False),
     "outlier": Metric("-", "whether the objective lies beyond the whiskers of its method's box", False, _outlier),
     "violation": Metric("-", "mean depth of the samples below the circles, as a share of the radius, summed over circles", False),
-    "collisions_a": Metric("particles", "colliding particles an iteration, of 20, the first swarm included", False),
+    "collisions_a": Metric("particles", "colliding particles an iteration, of 20, the first swarm included", False, least=0.0, most=20.0),
     "collisions_b": Metric("samples", "colliding samples a path that was evaluated, summed over circles", False),
     "collisions_c": Metric("samples", "colliding samples of the best path, added over iterations", False),
     "collisions_d": Metric("iterations", "iterations whose best path collides", False),

@@ -8,9 +8,8 @@ A kind of panel is a module of `bezierplan.figures` with two functions:
     draw(axes, frame, scene, panel) -> str          draws the rows of its panel, labels its artists for the legend, computes no
                                                     statistics; returns the note printed below the panel's title
 
-The keyword-only arguments of `data` are the options that a panel may have; those without a default value it must have. They stand in
-schemas/artefacts.schema.yaml as well, where a study's panels are checked. A kind whose panels are not flat has `PROJECTION`, matplotlib's
-name of it.
+The keyword-only arguments of `data` are the options that a panel may have; the class `Options` beside it says so to those who write a
+study, with the keys that name what is shown. A kind whose panels are not flat has `PROJECTION`, matplotlib's name of it.
 """
 
 import importlib

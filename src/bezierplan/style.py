@@ -7,8 +7,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-import matplotlib as mpl
-
 if TYPE_CHECKING:
     import pandas as pd
 
@@ -86,11 +84,15 @@ GAP = 0.1
 
 def ground(share: float) -> str:
     """The colour of ground at a share of the way from the lowest to the highest: pale, so that lines stand out from it."""
+    import matplotlib as mpl
+
     return mpl.colors.to_hex(mpl.colormaps["Purples"](0.6 * share))
 
 
 def lines(values: list[Any]) -> list[dict[str, Any]]:
     """Looks of lines for values side by side, one each: for numbers a scale of colours, for names unlike colours; with dashes and marks."""
+    import matplotlib as mpl
+
     if len(values) > 1 and not isinstance(values[0], str):
         scale = mpl.colormaps[SCALE]
         colours = [mpl.colors.to_hex(scale(_LIGHTEST * i / (len(values) - 1))) for i in range(len(values))]

@@ -29,22 +29,23 @@ from pymoo.core.problem import Problem as PymooProblem
 from pymoo.optimize import minimize
 from pyswarms.single import GlobalBestPSO
 
-from bezierplan import study_file
 from bezierplan.planners import chaotic_pso
 from bezierplan.problem import Problem
+from bezierplan.search import penalised
+from bezierplan.study import reading
 from bezierplan.workspaces import files
 
 SEEDS = 200
 GOOD = 8.0
 
-STUDY = study_file.load(study_file.read_config({"studies": ["tharwat2018"]}))["tharwat2018"]
+STUDY = reading.load(reading.read_config({"studies": ["tharwat2018"]}))["tharwat2018"]
 PROBLEM = Problem("public", files.load(STUDY.workspaces["public"], STUDY.folder), (0.0, 0.0), (4.0, 6.0))
 SETTINGS = STUDY.resolved("pso") | STUDY.levels["profile"]["tuned"] | {"stall_limit": 0}
 PARTICLES, ITERATIONS, DIMENSIONS = SETTINGS["particles"], SETTINGS["iterations"], 2 * SETTINGS["control_points"]
 EVALUATIONS = PARTICLES * (ITERATIONS + 1)
 LOW, HIGH = np.repeat(np.reshape(PROBLEM.workspace.bounds, (2, 2)).T, DIMENSIONS // 2, axis=1)
 LIMIT = SETTINGS["velocity_limit"] * (HIGH - LOW)
-OBJECTIVE = chaotic_pso._objective(PROBLEM, SETTINGS)
+OBJECTIVE = chaotic_pso._objective(PROBLEM, chaotic_pso.Settings(**SETTINGS))
 
 
 @njit(cache=True)
@@ -54,9 +55,9 @@ def _fitness(z, objective):
     x, y, scratch = np.empty(samples), np.empty(samples), np.empty(samples)
     fitness = np.empty(len(z))
     for i in range(len(z)):
-        length = chaotic_pso._length(z[i], objective, x, y, scratch)
-        violation, _ = chaotic_pso._violation(x, y, objective.circles, scratch)
-        fitness[i] = chaotic_pso._fitness(length, violation, objective)
+        length = penalised.length(z[i], objective, x, y, scratch)
+        violation, _ = penalised.violation(x, y, objective.circles, scratch)
+        fitness[i] = penalised.fitness(length, violation, objective)
     return fitness
 
 

@@ -5,8 +5,9 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
-from bezierplan import problems, running, study_file
+from bezierplan import problems, running
 from bezierplan import study as studies
+from bezierplan.study import reading
 
 RUNS = 5
 
@@ -35,7 +36,7 @@ def _methods(study: studies.Study) -> Iterator[tuple[str, str]]:
 def benchmark_runs() -> None:
     """Each method of each study on the first condition of its first experiment."""
     print(f"\n{'a run':44}{'median ms':>12}   under")
-    for key, study in study_file.load(study_file.read_config({})).items():
+    for key, study in reading.load(reading.read_config({})).items():
         for experiment, method in _methods(study):
             job = studies.job(study, experiment, method, "smoke", 0)
             made, _ = problems.build_all(studies.problems_job(study, experiment, "smoke"), study.folder)

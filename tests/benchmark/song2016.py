@@ -5,9 +5,10 @@ import numpy as np
 from numba import njit
 from timing import cpu_seconds
 
-from bezierplan import curves, study_file
+from bezierplan import curves
 from bezierplan.planners import binary_genetic
 from bezierplan.problem import Problem
+from bezierplan.study import reading
 from bezierplan.workspaces import files
 
 
@@ -36,12 +37,12 @@ def bare_minimum(cells, occupied, basis, first_point, last_point, first_sample, 
 
 def benchmark_binary_genetic() -> None:
     """Each method of song2016 on its longest route."""
-    study = study_file.load(study_file.read_config({"studies": ["song2016"]}))["song2016"]
+    study = reading.load(reading.read_config({"studies": ["song2016"]}))["song2016"]
     grid = files.load(study.workspaces["figure2"], study.folder)
     problem = Problem("0_240", grid, grid.centre(0), grid.centre(240))
     runs = 20
     print(f"{'binary_genetic':16}{'evaluations/s':>16}{'ms a run':>12}{'bare minimum/s':>16}{'times the minimum':>20}")
-    for method in study.experiments["routes"]["methods"]:
+    for method in study.experiments["routes"].methods:
         settings = study.resolved(method)
         evaluations = runs * settings["population"] * (settings["generations"] + 1)
         seconds = cpu_seconds(lambda: [binary_genetic.plan(problem, np.random.default_rng(seed), **settings) for seed in range(runs)])  # noqa: B023

@@ -3,15 +3,15 @@
 import numpy as np
 from timing import cpu_seconds
 
-from bezierplan import study_file
 from bezierplan.planners import chaotic_pso
 from bezierplan.problem import Problem
+from bezierplan.study import reading
 from bezierplan.workspaces import files
 
 
 def benchmark_chaotic_pso() -> None:
     """Methods of tharwat2018 among its three circles, without the early stop; runs of one evaluation show what lies around the search."""
-    study = study_file.load(study_file.read_config({"studies": ["tharwat2018"]}))["tharwat2018"]
+    study = reading.load(reading.read_config({"studies": ["tharwat2018"]}))["tharwat2018"]
     circles = files.load(study.workspaces["equal"], study.folder)
     problem = Problem("equal", circles, (0.0, 0.0), (4.0, 6.0))
     runs = 200

@@ -6,14 +6,15 @@ WORD: only faults whose description, file or test contains one of the words. Exi
 """
 
 import argparse
+import multiprocessing
 import os
 import queue
 import shutil
-import subprocess
 import sys
 import tempfile
 import time
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 from typing import NamedTuple
 
@@ -21,8 +22,13 @@ import yaml
 
 ROOT = Path(__file__).resolve().parents[2]
 FILE = Path(__file__).with_name("mutants.yaml")
-# Seconds after which a test is ended: a fault that makes a search endless is caught as well.
+# Seconds after which a test is ended.
 TIME_LIMIT = 300
+# Where a copy of the tree keeps what pytest says.
+WORDS = "pytest.txt"
+# Processes begin with what takes long to import.
+FORKS = multiprocessing.get_context("forkserver")
+FORKS.set_forkserver_preload(["numba", "pandas", "pyarrow.parquet", "scipy.stats", "scipy.interpolate", "matplotlib.figure", "shapely"])
 # What no test of a fault needs; compiled kernels are copied, because most of them do not change.
 LEFT_OUT = shutil.ignore_patterns(".git", ".venv", ".snakemake", "results", "__pycache__")
 
@@ -42,20 +48,45 @@ def load() -> list[Mutant]:
     return [Mutant(**each) for each in yaml.safe_load(FILE.read_text(encoding="utf-8"))]
 
 
-def planted(mutant: Mutant) -> str:
-    """The text of a mutant's file with the fault in it. Raises ValueError unless the old text stands there exactly once."""
-    text = (ROOT / mutant.file).read_text(encoding="utf-8")
+def planted(mutant: Mutant, tree: Path = ROOT) -> str:
+    """The text of a mutant's file in a tree with the fault in it. Raises ValueError unless the old text stands there exactly once."""
+    text = (tree / mutant.file).read_text(encoding="utf-8")
     if text.count(mutant.old) != 1:
         raise ValueError(f"{mutant.fault}: {mutant.file} has the old text {text.count(mutant.old)} times; expected once")
     return text.replace(mutant.old, mutant.new)
 
 
-def run_tests(tree: Path, tests: list[str]) -> subprocess.CompletedProcess:
-    """Run tests in a tree. Raises subprocess.TimeoutExpired after `TIME_LIMIT` seconds a test."""
-    command = [sys.executable, "-m", "pytest", "-q", "-x", "-p", "no:cacheprovider", *tests]
+def run_tests(tree: Path, tests: list[str], *options: str) -> int | None:
+    """Exit status of pytest on tests in a tree, in a process of its own; None after `TIME_LIMIT` seconds a test. Its words go to a file."""
+    process = FORKS.Process(target=_pytest, args=(tree, [*options, *tests]))
+    process.start()
+    process.join(TIME_LIMIT * len(tests))
+    if process.exitcode is None:
+        process.kill()
+        process.join()
+        return None
+    return process.exitcode
+
+
+def _pytest(tree: Path, arguments: list[str]) -> None:
+    import pytest
+
+    os.chdir(tree)
     # A file that changes twice within a second could be mistaken for its own byte code.
-    environment = os.environ | {"PYTHONDONTWRITEBYTECODE": "1"}
-    return subprocess.run(command, cwd=tree, env=environment, capture_output=True, text=True, check=False, timeout=TIME_LIMIT * len(tests))
+    sys.dont_write_bytecode = True
+    with (tree / WORDS).open("w") as words, redirect_stdout(words), redirect_stderr(words):
+        status = pytest.main(["-q", *arguments])
+    sys.exit(int(status))
+
+
+def failing(tree: Path, mutants: list[Mutant]) -> set[str]:
+    """Tests of mutants that fail without a fault. Raises RuntimeError if pytest cannot run them at all."""
+    status = run_tests(tree, sorted({each.test for each in mutants}), "--tb=no")
+    words = (tree / WORDS).read_text()
+    found = {line.split()[1].partition("[")[0] for line in words.splitlines() if line.startswith(("FAILED ", "ERROR tests"))}
+    if status and not found:
+        raise RuntimeError(words)
+    return found
 
 
 def outcome(mutant: Mutant, trees: queue.Queue) -> str:
@@ -64,11 +95,10 @@ def outcome(mutant: Mutant, trees: queue.Queue) -> str:
     file = tree / mutant.file
     clean = file.read_text(encoding="utf-8")
     try:
-        file.write_text(planted(mutant), encoding="utf-8")
-        status = run_tests(tree, [mutant.test]).returncode
-        return {0: "survived", 1: "caught"}.get(status, f"pytest ended with {status}")
-    except subprocess.TimeoutExpired:
-        return "caught"
+        file.write_text(planted(mutant, tree), encoding="utf-8")
+        # A search that a fault makes endless is noticed as well.
+        status = run_tests(tree, [mutant.test], "-x")
+        return {0: "survived", 1: "caught", None: "caught"}.get(status, f"pytest: {status}")
     finally:
         file.write_text(clean, encoding="utf-8")
         trees.put(tree)
@@ -80,19 +110,17 @@ def main() -> int:
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="how many run at a time (default: one a core)")
     parser.add_argument("words", nargs="*", metavar="WORD", help="only faults whose description, file or test contains a word")
     arguments = parser.parse_args()
+    os.environ.update(dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"))
     wanted = [each for each in load() if not arguments.words or any(word in " ".join(each) for word in arguments.words)]
     with tempfile.TemporaryDirectory() as folder:
         trees: queue.Queue = queue.Queue()
         for number in range(max(1, min(arguments.jobs, len(wanted)))):
             trees.put(Path(shutil.copytree(ROOT, Path(folder) / str(number), ignore=LEFT_OUT)))
-        clean = run_tests(trees.queue[0], sorted({each.test for each in wanted}))
-        if clean.returncode:
-            print(clean.stdout, "These tests fail without a planted fault.", sep="\n")
-            return 1
+        broken = failing(trees.queue[0], wanted)
 
         def timed(mutant: Mutant) -> str:
             begin = time.perf_counter()
-            found = outcome(mutant, trees)
+            found = "fails without it" if mutant.test in broken else outcome(mutant, trees)
             print(f"{found:10s}{time.perf_counter() - begin:6.0f} s  {mutant.fault}", flush=True)
             return found
 

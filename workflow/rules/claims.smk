@@ -1,12 +1,9 @@
-# Claims with their verdicts, the paper's own numbers against each other, and which verdicts hang on which choice.
+# Claims with their verdicts, the paper's own numbers against each other, and which verdicts depend on which choice.
 
 
 rule claims:
     input:
-        runs=claims_runs,
-        problems=claims_problems,
-        bounds=claims_bounds,
-        published=published_files,
+        inputs(targets.claims_inputs),
     output:
         claims=report(
             f"{RESULTS}/claims.csv",
@@ -18,16 +15,14 @@ rule claims:
     log:
         f"{RESULTS}/logs/claims.log",
     params:
-        job=claims_job,
-        code=claims_code,
+        **params(targets.claims_params, "job", "published", "code"),
     script:
         "../scripts/claims.py"
 
 
 rule audit:
     input:
-        bounds=audit_bounds,
-        published=published_files,
+        inputs(targets.audit_inputs),
     output:
         report(
             f"{RESULTS}/audit.csv",
@@ -38,8 +33,7 @@ rule audit:
     log:
         f"{RESULTS}/logs/audit.log",
     params:
-        job=audit_job,
-        code=audit_code,
+        **params(targets.audit_params, "job", "published", "code"),
     script:
         "../scripts/audit.py"
 
@@ -53,45 +47,38 @@ rule alternative_runs:
     log:
         f"{RESULTS}/logs/sensitivity/{{alternative}}/{{experiment}}/{{method}}/{{chunk}}.log",
     params:
-        job=alternative_job,
-        code=run_code,
+        **params(targets.run_params, "job", "code"),
     script:
         "../scripts/runs.py"
 
 
 rule alternative_claims:
     input:
-        runs=alternative_runs,
-        problems=claims_problems,
-        bounds=claims_bounds,
-        published=published_files,
+        inputs(targets.claims_inputs),
     output:
         claims=f"{ALTERNATIVE}/claims.csv",
         checks=f"{ALTERNATIVE}/claim_checks.csv",
     log:
         f"{RESULTS}/logs/sensitivity/{{alternative}}/claims.log",
     params:
-        job=claims_job,
-        code=claims_code,
+        **params(targets.claims_params, "job", "published", "code"),
     script:
         "../scripts/claims.py"
 
 
 rule sensitivity:
     input:
-        claims=f"{RESULTS}/claims.csv",
-        alternatives=alternatives_claims,
+        inputs(targets.sensitivity_inputs),
     output:
         report(
             f"{RESULTS}/sensitivity.csv",
             category="{study}",
-            labels={"item": "sensitivity", "shows": "which verdicts hang on which choice"},
+            labels={"item": "sensitivity", "shows": "which verdicts depend on which choice"},
             caption="../report/claims.rst",
         ),
     log:
         f"{RESULTS}/logs/sensitivity.log",
     params:
-        described=alternatives_described,
-        code=source_digest("bezierplan.analysis.sensitivity"),
+        **params(targets.sensitivity_params, "described", "code"),
     script:
         "../scripts/sensitivity.py"

@@ -3,11 +3,7 @@
 
 rule figure:
     input:
-        runs=artefact_runs,
-        problems=artefact_problems,
-        bounds=artefact_bounds,
-        maps=figure_maps,
-        published=figure_published,
+        inputs(targets.figure_inputs),
     output:
         svg=report(
             f"{RESULTS}/figures/{{figure}}.svg",
@@ -20,9 +16,7 @@ rule figure:
     log:
         f"{RESULTS}/logs/figures/{{figure}}.log",
     params:
-        job=figure_job,
-        folder=study_folder,
+        **params(targets.figure_params, "job", "folder", "sources", "code"),
         caption=caption,
-        code=figure_code,
     script:
         "../scripts/figure.py"

@@ -3,15 +3,13 @@
 
 rule problems:
     input:
-        problem_maps,
+        lambda wildcards: targets.problem_maps(STUDIES, **wildcards),
     output:
         f"{RESULTS}/problems/{{experiment}}.parquet",
     log:
         f"{RESULTS}/logs/problems/{{experiment}}.log",
     params:
-        job=problems_job,
-        folder=study_folder,
-        code=source_digest("bezierplan.problems"),
+        **params(targets.problems_params, "job", "folder", "maps", "code"),
     script:
         "../scripts/problems.py"
 
@@ -24,6 +22,6 @@ rule bounds:
     log:
         f"{RESULTS}/logs/bounds/{{experiment}}.log",
     params:
-        code=source_digest("bezierplan.problems"),
+        **targets.bounds_params(),
     script:
         "../scripts/bounds.py"

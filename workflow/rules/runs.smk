@@ -10,7 +10,6 @@ rule runs:
     log:
         f"{RESULTS}/logs/runs/{{experiment}}/{{method}}/{{chunk}}.log",
     params:
-        job=run_job,
-        code=run_code,
+        **params(targets.run_params, "job", "code"),
     script:
         "../scripts/runs.py"

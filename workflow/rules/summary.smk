@@ -3,8 +3,7 @@
 
 rule summary:
     input:
-        comparisons=all_comparisons,
-        claims=all_claims,
+        inputs(targets.summary_inputs),
     output:
         numbers="results/{scale}/numbers.csv",
         claims="results/{scale}/claims.csv",
@@ -12,7 +11,6 @@ rule summary:
     log:
         "results/{scale}/summary.log",
     params:
-        job=summary_job,
-        code=source_digest("bezierplan.analysis.summary"),
+        **params(targets.summary_params, "job", "code"),
     script:
         "../scripts/summary.py"

@@ -3,10 +3,7 @@
 
 rule table:
     input:
-        runs=artefact_runs,
-        problems=artefact_problems,
-        bounds=artefact_bounds,
-        published=table_published,
+        inputs(targets.table_inputs),
     output:
         table=report(
             f"{RESULTS}/tables/{{table}}.csv",
@@ -25,16 +22,15 @@ rule table:
     wildcard_constraints:
         study=studies_with(COMPARED),
     params:
-        job=table_job,
+        **params(targets.table_params, "job", "published", "code"),
         caption=caption,
-        code=source_digest("bezierplan.analysis.tables", "bezierplan.analysis.comparison"),
     script:
         "../scripts/table.py"
 
 
 rule listing:
     input:
-        published=listing_published,
+        published=lambda wildcards: targets.listing_published(STUDIES, **wildcards),
     output:
         report(
             f"{RESULTS}/tables/{{listing}}.csv",
@@ -47,8 +43,7 @@ rule listing:
     wildcard_constraints:
         study=studies_with(LISTED),
     params:
-        job=listing_job,
+        **params(targets.listing_params, "job", "published", "code"),
         caption=caption,
-        code=listing_code,
     script:
         "../scripts/listing.py"

@@ -1,26 +1,29 @@
 # Names for what a reader may want: everything, a scale, a study, a table or figure. `snakemake --list-target-rules` lists them.
 
+try:
+    targets.check_names(STUDIES, [*(rule.name for rule in workflow.rules), "all", "smoke", "extended", "alternatives", "default"])
+except checked.Fault as fault:
+    sys.exit(str(fault))
+
 
 rule all:
     input:
-        [files_of_study("full", study) for study in STUDIES],
-        files_of_summary("full"),
+        targets.files_of_scale(STUDIES, "full"),
 
 
 rule smoke:
     input:
-        files_of_smoke(),
+        targets.files_of_smoke(STUDIES),
 
 
 rule extended:
     input:
-        [files_of_study("extended", study) for study in STUDIES],
-        files_of_summary("extended"),
+        targets.files_of_scale(STUDIES, "extended"),
 
 
 rule alternatives:
     input:
-        files_of_sensitivity("full"),
+        targets.files_of_sensitivity(STUDIES, "full"),
 
 
 for study in STUDIES:
@@ -29,7 +32,7 @@ for study in STUDIES:
         name:
             study
         input:
-            files_of_study("full", study),
+            targets.files_of_study(STUDIES, "full", study),
 
     for item in [*STUDIES[study].tables, *STUDIES[study].figures]:
 
@@ -37,4 +40,4 @@ for study in STUDIES:
             name:
                 f"{study}_{item}"
             input:
-                files_of("full", study, item),
+                targets.files_of(STUDIES, "full", study, item),

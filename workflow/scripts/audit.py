@@ -2,7 +2,7 @@
 
 from bezierplan import log
 
-with log.job(snakemake.log[0]):
+with log.job(snakemake) as output:
     import importlib
     from pathlib import Path
 
@@ -14,7 +14,7 @@ with log.job(snakemake.log[0]):
     published = {Path(file).stem: audit.read_published(file) for file in files.published}
     bounds = {name: pd.read_parquet(file).set_index("problem") for name, file in zip(job["experiments"], files.bounds, strict=True)}
     of_tables = {table: bounds[experiment] for table, experiment in job["tables"].items()}
-    rows = audit.below_bound({table: published[table] for table in of_tables}, of_tables)
+    rows = audit.below_bound({table: published[table] for table in of_tables}, of_tables, job["decides"])
     if job["module"]:
         rows += importlib.import_module(job["module"]).audit(published)
-    audit.table(job["study"], rows).to_csv(snakemake.output[0], index=False, float_format="%.10g", lineterminator="\n")
+    audit.table(job["study"], rows).to_csv(output[0], index=False, float_format="%.10g", lineterminator="\n")

@@ -2,9 +2,9 @@
 
 from bezierplan import log
 
-with log.job(snakemake.log[0]):
+with log.job(snakemake) as output:
     import pyarrow.parquet as parquet
 
     from bezierplan import problems
 
-    parquet.write_table(problems.bounds_of(problems.read(snakemake.input[0])), snakemake.output[0])
+    parquet.write_table(problems.bounds_of(problems.read(snakemake.input[0])), output[0])

@@ -2,7 +2,7 @@
 
 from bezierplan import log
 
-with log.job(snakemake.log[0]):
+with log.job(snakemake) as output:
     import importlib
     from pathlib import Path
 
@@ -16,5 +16,5 @@ with log.job(snakemake.log[0]):
     functions = vars(importlib.import_module(job["module"])) if job["module"] else {}
     material = {"variant_of": job["variant_of"], "paired": job["paired"], "repeats": job["paper_repeats"], "labels": job["labels"]}
     judged, checks = claims.judge(job["claims"], found, published, job["artefacts"], job["study"], functions, **material)
-    judged.to_csv(snakemake.output.claims, index=False, float_format="%.10g", lineterminator="\n")
-    checks.to_csv(snakemake.output.checks, index=False, float_format="%.10g", lineterminator="\n")
+    judged.to_csv(output.claims, index=False, float_format="%.10g", lineterminator="\n")
+    checks.to_csv(output.checks, index=False, float_format="%.10g", lineterminator="\n")

@@ -2,7 +2,7 @@
 
 from bezierplan import log
 
-with log.job(snakemake.log[0]):
+with log.job(snakemake) as output:
     import importlib
     from pathlib import Path
 
@@ -12,7 +12,7 @@ with log.job(snakemake.log[0]):
     from bezierplan.analysis import results
     from bezierplan.workspaces import files
 
-    job, inputs, output = snakemake.params.job, snakemake.input, snakemake.output
+    job, inputs = snakemake.params.job, snakemake.input
     found = results.read_all(inputs.runs, job["repeats"], inputs.problems, inputs.bounds)
     published = results.read_published(inputs.published)
     found = {name: each._replace(published=published, jobs=job["jobs"].get(name)) for name, each in found.items()}

@@ -2,7 +2,7 @@
 
 from bezierplan import log
 
-with log.job(snakemake.log[0]):
+with log.job(snakemake) as output:
     import importlib
 
     from bezierplan.analysis import listing
@@ -10,4 +10,4 @@ with log.job(snakemake.log[0]):
     job = snakemake.params.job
     functions = vars(importlib.import_module(job["module"])) if job["module"] else {}
     table = listing.table(job["spec"], list(snakemake.input.published), functions, job["labels"])
-    table.to_csv(snakemake.output[0], index=False, float_format="%.10g", lineterminator="\n")
+    table.to_csv(output[0], index=False, float_format="%.10g", lineterminator="\n")

@@ -2,10 +2,10 @@
 
 from bezierplan import log
 
-with log.job(snakemake.log[0]):
+with log.job(snakemake) as output:
     from pathlib import Path
 
     from bezierplan import problems
 
     made, workspaces = problems.build_all(snakemake.params.job, Path(snakemake.params.folder))
-    problems.write(made, workspaces, snakemake.output[0])
+    problems.write(made, workspaces, output[0])

@@ -2,11 +2,11 @@
 
 from bezierplan import log
 
-with log.job(snakemake.log[0]):
+with log.job(snakemake) as output:
     import pyarrow.parquet as parquet
 
     from bezierplan import problems, running
 
     runs, times = running.run_chunk(problems.read(snakemake.input.problems), snakemake.params.job)
-    parquet.write_table(runs, snakemake.output.runs)
-    parquet.write_table(times, snakemake.output.times)
+    parquet.write_table(runs, output.runs)
+    parquet.write_table(times, output.times)

@@ -2,7 +2,7 @@
 
 from bezierplan import log
 
-with log.job(snakemake.log[0]):
+with log.job(snakemake) as output:
     import pandas as pd
 
     from bezierplan.analysis import sensitivity
@@ -10,4 +10,4 @@ with log.job(snakemake.log[0]):
     described, files = snakemake.params.described, snakemake.input
     tried = {name: pd.read_csv(file) for name, file in zip(described, files.alternatives, strict=True)}
     table = sensitivity.sensitivity(pd.read_csv(files.claims), tried, described)
-    table.to_csv(snakemake.output[0], index=False, float_format="%.10g", lineterminator="\n")
+    table.to_csv(output[0], index=False, float_format="%.10g", lineterminator="\n")

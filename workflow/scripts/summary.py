@@ -2,14 +2,14 @@
 
 from bezierplan import log
 
-with log.job(snakemake.log[0]):
+with log.job(snakemake) as output:
     from pathlib import Path
 
     import pandas as pd
 
     from bezierplan.analysis import summary
 
-    job, files, output = snakemake.params.job, snakemake.input, snakemake.output
+    job, files = snakemake.params.job, snakemake.input
     comparisons = {tuple(name): pd.read_csv(file) for name, file in zip(job["tables"], files.comparisons, strict=True)}
     numbers = summary.numbers(comparisons, job["variants"], dict(zip(comparisons, job["deciding"], strict=True)))
     claims = pd.concat([pd.read_csv(file) for file in files.claims], ignore_index=True)

@@ -9,30 +9,32 @@ import pandas as pd
 
 COLUMNS = ["study", "item", "place", "rule", "printed", "limit", "consistent"]
 
-# Metrics that are lengths of paths or never less.
+# Metrics that are lengths of paths or never less, and statistics of them that no single path need have.
 _AT_LEAST_A_LENGTH = ("length", "objective")
+_SPREADS = ("std", "iqr", "range")
 _PRINTED = ("metric", "statistic", "n", "unit", "value")
 
 
-def below_bound(tables: dict[str, pd.DataFrame], bounds: dict[str, pd.DataFrame]) -> list[dict]:
+def below_bound(tables: dict[str, pd.DataFrame], bounds: dict[str, pd.DataFrame], decides: dict[str, dict]) -> list[dict]:
     """Every published length against the exact shortest length of its problem.
 
     tables: published numbers, by table, as from `read_published`. bounds: of the same tables' experiments, a row a problem, its name as
-    index. The allowance is half a unit of the last printed digit.
+    index. decides: of a table, column -> the value that is the paper's reading. The allowance is half a unit of the last printed digit.
+
+    A number's problem is the one that its row names, as problem or as workspace; without either the one that is the paper's reading, or the
+    only one of the experiment. Numbers of several problems are left out.
     """
     rows = []
     for name, table in tables.items():
-        if "problem" not in table:
-            continue
         keys = [column for column in table if column not in (*_PRINTED, "printed")]
-        for _, row in table[table["metric"].isin(_AT_LEAST_A_LENGTH)].iterrows():
-            bound = bounds[name]["bound"].get(row["problem"], math.nan)
+        for _, row in table[table["metric"].isin(_AT_LEAST_A_LENGTH) & ~table["statistic"].isin(_SPREADS)].iterrows():
+            bound = bounds[name]["bound"].get(_problem(decides.get(name, {}) | row.to_dict(), bounds[name]), math.nan)
             if math.isnan(bound):
                 continue
             rows.append(
                 {
                     "item": name,
-                    "place": ", ".join(f"{key}={row[key]}" for key in keys),
+                    "place": ", ".join([*(f"{key}={row[key]}" for key in keys), f"metric={row['metric']}, statistic={row['statistic']}"]),
                     "rule": "a path is no shorter than the shortest path",
                     "printed": row["value"],
                     "limit": bound,
@@ -40,6 +42,12 @@ def below_bound(tables: dict[str, pd.DataFrame], bounds: dict[str, pd.DataFrame]
                 }
             )
     return rows
+
+
+def _problem(place: dict, bounds: pd.DataFrame) -> str | None:
+    """The problem of a published number, from the columns that describe it; None if it is one of several."""
+    named = place.get("problem", place.get("workspace"))
+    return named if named in bounds.index else bounds.index[0] if named is None and len(bounds) == 1 else None
 
 
 def _half_a_digit(printed: str) -> float:

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan import metrics
-from bezierplan.analysis import claim_effects, claim_tests
+from bezierplan.analysis import claim_effects, claim_tests, comparison
 from bezierplan.analysis.claim_effects import Comparison
 from bezierplan.analysis.claim_published import listed, printed, rows_of_cell
 from bezierplan.analysis.results import Results, pick, select
@@ -272,5 +272,6 @@ def _published_tables(check: dict, claim: dict, material: Material) -> list[tupl
     for name in [*own, *(name for name in material.artefacts if name not in own)]:
         artefact = material.artefacts.get(name, {})
         if "published" in artefact and artefact.get("experiment") in listed(check["experiment"]):
-            tables.append((artefact["experiment"], material.published[PurePath(artefact["published"]).stem]))
+            published = material.published[PurePath(artefact["published"]).stem]
+            tables.append((artefact["experiment"], comparison.as_read(published, artefact)))
     return tables

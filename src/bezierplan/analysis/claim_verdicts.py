@@ -23,10 +23,12 @@ from bezierplan.analysis.claim_effects import Finding
 from bezierplan.analysis.claim_tests import ALPHA
 
 VERDICTS = ("supported", "mostly", "in part", "seldom", "contradicted", "no effect", "undecided", "untestable")
-# Of the comparisons that are decided at least this share makes it `mostly`, at most the rest `seldom`.
-MOSTLY = 0.75
+# Of the comparisons that are decided at least this share makes it `mostly`, at most the rest `seldom`; of all as many have to be decided.
+MOSTLY, DECIDED = 0.75, 0.5
 # So many names are listed; of more only the number is given. So many mixed groups are described one by one.
 MOST_LISTED, MOST_MIXED = 4, 3
+# By so many factors comparisons are split.
+DEPTH = 2
 
 
 def family(p: np.ndarray) -> np.ndarray:
@@ -61,6 +63,8 @@ def verdict(alone: Sequence[str], together: Sequence[str], holds: str) -> str:
 
 def _partly(marks: Sequence[str]) -> str:
     decided = [mark for mark in marks if mark != "?"]
+    if len(decided) < DECIDED * len(marks):
+        return "undecided"
     share = decided.count("+") / len(decided)
     return "mostly" if share >= MOSTLY else "seldom" if share <= 1 - MOSTLY else "in part"
 
@@ -78,14 +82,15 @@ class Marked(NamedTuple):
 def where_it_holds(comparisons: Sequence[Marked], labels: Mapping[str, str]) -> str:
     """Which comparisons of a claim hold and which do not, in words; empty if all or none do.
 
-    The comparisons are split by the factor that separates best what holds from what does not, and what is mixed once more by another one.
+    The comparisons are split by the factor that separates best what holds from what does not, and what is mixed once more by another one;
+    numbers in brackets are how many of those left hold.
     labels: name -> how readers see it. Example: `against 5 of 7: all but Circle and Sinusoidal`.
     """
     wanted = "+" if any(each.mark == "+" for each in comparisons) else "-"
     holding = [each.mark == wanted for each in comparisons]
     if all(holding) or not any(holding):
         return ""
-    words = _described(comparisons, wanted, labels, depth=2)
+    words = _described(comparisons, wanted, labels, DEPTH)
     unknown = sum(each.mark == "?" for each in comparisons)
     words = words if wanted == "+" else f"the contrary {words}"
     return words + (f"; undecided in {unknown} of {len(comparisons)}" if unknown else "")
@@ -94,10 +99,10 @@ def where_it_holds(comparisons: Sequence[Marked], labels: Mapping[str, str]) -> 
 def _described(comparisons: Sequence[Marked], wanted: str, labels: Mapping[str, str], depth: int) -> str:
     factor = _best_factor(comparisons, wanted)
     if factor is None or not depth:
-        return f"in {sum(each.mark == wanted for each in comparisons)} of {len(comparisons)}"
+        return f"({sum(each.mark == wanted for each in comparisons)} of {len(comparisons)})"
     parts: dict[Any, list[Marked]] = {}
     for each in comparisons:
-        parts.setdefault(each.factors.get(factor), []).append(each)
+        parts.setdefault(each.factors[factor], []).append(each)
     full = [value for value, part in parts.items() if all(each.mark == wanted for each in part)]
     mixed = [value for value, part in parts.items() if value not in full and any(each.mark == wanted for each in part)]
     if len(mixed) > MOST_MIXED:
@@ -106,16 +111,16 @@ def _described(comparisons: Sequence[Marked], wanted: str, labels: Mapping[str, 
     words = [_chosen(factor, full, list(parts), labels)] if full else []
     for value in mixed:
         words.append(f"{_before(factor)}{_name(value, labels)} {_described(parts[value], wanted, labels, depth - 1)}")
-    return "; ".join(words)
+    return ("; " if depth == DEPTH else " and ").join(words)
 
 
 def _best_factor(comparisons: Sequence[Marked], wanted: str) -> str | None:
-    """The factor whose values are least mixed (by Gini's impurity), the first of equals; None if none has two values."""
+    """The factor of all comparisons whose values are least mixed (by Gini's impurity), the first of equals; None if none has two values."""
     best, least = None, np.inf
-    for factor in dict.fromkeys(factor for each in comparisons for factor in each.factors):
+    for factor in [factor for factor in comparisons[0].factors if all(factor in each.factors for each in comparisons)]:
         parts: dict[Any, list[bool]] = {}
         for each in comparisons:
-            parts.setdefault(each.factors.get(factor), []).append(each.mark == wanted)
+            parts.setdefault(each.factors[factor], []).append(each.mark == wanted)
         impurity = sum(len(part) * np.mean(part) * (1 - np.mean(part)) for part in parts.values())
         if len(parts) > 1 and impurity < least - 1e-9:
             best, least = factor, impurity
@@ -125,10 +130,11 @@ def _best_factor(comparisons: Sequence[Marked], wanted: str) -> str | None:
 def _chosen(factor: str, chosen: list, every: list, labels: Mapping[str, str]) -> str:
     """Words for some of the values of a factor."""
     others = [value for value in every if value not in chosen]
-    if len(chosen) > len(others) and len(others) <= MOST_LISTED and len(every) > MOST_LISTED:
+    few = len(chosen) > len(others) and len(others) <= MOST_LISTED and len(every) > MOST_LISTED
+    if few and _before(factor).startswith("at "):
+        return f"{_before(factor)}other than {_joined(others, labels)}"
+    if few:
         return f"{_before(factor)}{len(chosen)} of {len(every)}: all but {_joined(others, labels)}"
-    if len(chosen) > MOST_LISTED:
-        return f"{_before(factor)}{len(chosen)} of {len(every)}: {_joined(chosen, labels)}"
     return f"{_before(factor)}{_joined(chosen, labels)}"
 
 

@@ -21,7 +21,7 @@ procedure, and why). Where all have to hold, every mark by itself has to be + to
 | seldom | + in a quarter of them or less | |
 | contradicted | no +, and a - | every mark - by itself |
 | no effect | every mark 0 | no + and no ?, not all - |
-| undecided | otherwise: a ? stands in the way | likewise |
+| undecided | otherwise: a ? stands in the way, or more than half of the marks are ? | a ? stands in the way |
 | untestable | the reason is given | likewise |
 
 A sentence on seconds is judged on counted work where its check names one (`work`); the seconds stand beside it, and the reason says where
@@ -37,7 +37,7 @@ Columns of claims.csv, one row a claim and variant:
 | finding | is it our own finding, and no sentence of the paper? |
 | verdict | as above |
 | holds | how many comparisons of the deciding checks are + |
-| where_it_holds | which of them, in words; if none is +, where the contrary holds |
+| where_it_holds | which of them are + in the family, in words; if none is, where the contrary holds; empty where all or none do |
 | published | how many of them hold in the printed numbers, by value alone, of those that are printed |
 | effect ... p_family | of the comparison that decides: the worst -, else that with the largest p; the columns as below |
 | chance | share of experiments of the paper's size, drawn from our runs, in which the claim holds by values alone |
@@ -240,10 +240,14 @@ def _judge_variant(
         return described | {"verdict": "untestable", "published": _published(deciding), "reason": obstacle}, rows
     shown = _shown(deciding, holds)
     finding = shown.finding
+    verdict = claim_verdicts.verdict([each.mark for each in deciding], [each.mark_family for each in deciding], holds)
+    everywhere = verdict == "supported" and holds == "all"
     summary = {
-        "verdict": claim_verdicts.verdict([each.mark for each in deciding], [each.mark_family for each in deciding], holds),
+        "verdict": verdict,
         "holds": f"{sum(each.mark == '+' for each in deciding)} of {len(deciding)}",
-        "where_it_holds": claim_verdicts.where_it_holds([_in_words(each, deciding) for each in deciding], material.labels),
+        "where_it_holds": ""
+        if everywhere
+        else claim_verdicts.where_it_holds([_in_words(each, deciding) for each in deciding], material.labels),
         "published": _published(deciding),
         **{key: getattr(finding, key) for key in ("effect", "effect_size_name", "effect_size", "n", "p")},
         "low95": finding.low,
@@ -308,7 +312,8 @@ def _in_words(each: _Judged, deciding: list[_Judged]) -> claim_verdicts.Marked:
     factors: dict[str, Any] = {}
     if each.comparison is not None:
         if each.check["test"] in ("lower", "ordered", "equal_within"):
-            factors |= {"against": each.comparison.cells[1], "group": each.comparison.cells[0]}
+            group, other = (_group_in_words(each.check, cell) for cell in each.comparison.cells)
+            factors |= {"against": other, "group": group}
         factors |= dict(each.comparison.factors)
     elif each.condition:
         factors["in"] = each.condition
@@ -318,12 +323,22 @@ def _in_words(each: _Judged, deciding: list[_Judged]) -> claim_verdicts.Marked:
     return claim_verdicts.Marked(factors, each.mark_family)
 
 
+def _group_in_words(check: dict, group: Any) -> Any:
+    """A group's name; a number with the column that it is a value of."""
+    return group if isinstance(group, str) else f"{group:g} {check.get('across', 'method').replace('_', ' ')}"
+
+
 def _disagreement(judged: list[_Judged]) -> str:
-    """Says so where seconds do not agree with the counted work that decides."""
-    seconds = {(each.number, each.condition, each.name): each.mark for each in judged if not each.decides and _is_timed(each.check)}
-    pairs = [(each.mark, seconds.get((each.number, each.condition, each.name))) for each in judged if "printed_metric" in each.check]
-    differing = sum(work != second for work, second in pairs if second is not None)
-    return f"judged on counted work; seconds disagree in {differing} of {len(pairs)}" if differing else ""
+    """Says so where seconds and counted work do not agree, one of which decides and the other is reported."""
+    others = {(each.condition, each.name, _is_timed(each.check)): each.mark for each in judged if not each.decides}
+    deciding = [each for each in judged if each.decides]
+    pairs = [(each, others.get((each.condition, each.name, not _is_timed(each.check)))) for each in deciding]
+    pairs = [(each, other) for each, other in pairs if other is not None and (_is_timed(each.check) or "printed_metric" in each.check)]
+    differing = sum(each.mark != other for each, other in pairs)
+    if not differing:
+        return ""
+    judged_on, other = ("seconds", "evaluations") if _is_timed(pairs[0][0].check) else ("counted work", "seconds")
+    return f"judged on {judged_on}; {other} disagree in {differing} of {len(pairs)}"
 
 
 def _shown(deciding: list[_Judged], holds: str) -> _Judged:

@@ -17,25 +17,37 @@ One row for each group of runs, metric and statistic; an empty cell means that t
 | low95_chance, high95_chance | central 95 % of what experiments of n_published runs may print, as far as ours tell (`statistics.chance`) |
 | quantile_published | quantile of the published number in experiments of n_published runs (`yardstick`); in our runs if that is empty |
 | reproduced | is that within the central 95 %? Ours are rounded like the printed one, ties count; empty for times, and below six runs |
+| can_fail | could a number on the published one's side of ours have been refused (`statistics.can_fail`)? |
+| power | share of the numbers that matter (`_rivals`) that would have been refused in the place of the published one |
+| verdict | not reproduced; cannot fail; not told apart: reproduced, with a power below one half; reproduced |
+| possible | is the published number one that the metric can have at all? A length below the bound is judged, not left out |
 | share_claimed | share of all runs whose path passed the planner's own test |
 | share_feasible | share of all runs whose path the certified checker accepts |
-| bound | exact shortest length of the problem; of several problems, the median over the runs |
-| gap | median over the feasible runs of length / bound - 1 |
+| bound | least length of the problem, of the metric's kind (`metrics.Metric`); of several problems, the median over the runs |
+| gap | median over the feasible runs of that kind of length / bound - 1 |
 """
 
 import math
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from bezierplan import metrics
 from bezierplan.analysis import statistics, tables
 from bezierplan.analysis.results import Results
 
+LEAST_POWER = 0.5
+"""Share of the numbers that matter which a test has to refuse before what it accepts counts as reproduced."""
+
+MATTERS = 0.1
+"""Where the paper prints no other method's number in a place, numbers that differ from ours by this share are those that matter."""
+
 _COLUMNS = [
     *("metric", "statistic", "unit", "n_published", "value_published", "n_ours", "value_ours"),
     *("best", "mean", "median", "quartile1", "quartile3", "low95_ours", "high95_ours"),
-    *("low95_chance", "high95_chance", "quantile_published", "reproduced", "share_claimed", "share_feasible", "bound", "gap"),
+    *("low95_chance", "high95_chance", "quantile_published", "reproduced", "can_fail", "power", "verdict", "possible"),
+    *("share_claimed", "share_feasible", "bound", "gap"),
 ]
 
 
@@ -44,7 +56,12 @@ def read_published(file: str | None, spec: dict) -> pd.DataFrame:
     if file is None:
         return pd.DataFrame(columns=[*tables.keys(spec), "metric", "statistic", "n", "unit", "value"])
     # Only an empty cell means that there is nothing: `none` and `NA` may be names.
-    return pd.read_csv(file, keep_default_na=False, na_values=[""])
+    return as_read(pd.read_csv(file, keep_default_na=False, na_values=[""]), spec)
+
+
+def as_read(published: pd.DataFrame, spec: dict) -> pd.DataFrame:
+    """Published numbers with the metrics that a table takes them for: `reads` has the paper's word -> the metric, and may be missing."""
+    return published.assign(metric=published["metric"].replace(spec.get("reads", {})))
 
 
 def compare(
@@ -64,9 +81,9 @@ def compare(
     both = both.loc[order].reset_index(drop=True)
     workspace_unit = next(iter(results.problems.values())).workspace.unit
     both["unit"] = [metrics.unit(metric, workspace_unit) for metric in both["metric"]]
-    described = pd.DataFrame([_described(row, keys, name) for _, row in both.iterrows()], index=both.index)
+    described = pd.DataFrame([_described(row, keys, name, _rivals(row, given, published)) for _, row in both.iterrows()], index=both.index)
     table = both.join(described).reindex(columns=keys + _COLUMNS)
-    return table.astype({"n_published": "Int64", "n_ours": "Int64", "reproduced": "boolean"})
+    return table.astype({"n_published": "Int64", "n_ours": "Int64", "reproduced": "boolean", "can_fail": "boolean", "possible": "boolean"})
 
 
 def _side_by_side(ours: pd.DataFrame, published: pd.DataFrame, given: list[str], variant_of: dict[str, str]) -> pd.DataFrame:
@@ -82,7 +99,7 @@ def _side_by_side(ours: pd.DataFrame, published: pd.DataFrame, given: list[str],
         ours = ours.assign(own_method=ours["method"], method=ours["method"].replace(variant_of))
     both = ours.merge(theirs.drop(columns="printed"), how="outer", on=[*given, "metric", "statistic"])
     if "method" in given:
-        both["method"] = both["own_method"].fillna(both["method"])
+        both = both.assign(printed_method=both["method"], method=both["own_method"].fillna(both["method"]))
     printed = dict(zip(zip(theirs["metric"], theirs["statistic"]), theirs["printed"]))
     return both.assign(statistic=[printed.get(quantity, quantity[1]) for quantity in zip(both["metric"], both["statistic"])])
 
@@ -98,24 +115,38 @@ def _with_variants(spec: dict, variant_of: dict[str, str], controls: list[str]) 
     return spec | {"where": where | {"method": methods + beside}, "beside": beside}
 
 
-def _described(row: pd.Series, keys: list[str], name: str) -> dict[str, Any]:
+def _rivals(row: pd.Series, given: list[str], published: pd.DataFrame) -> np.ndarray:
+    """The paper's numbers (n,) of other methods in the place of a row's: of the same metric, statistic and keys."""
+    if "method" not in given or pd.isna(row["value_published"]):
+        return np.empty(0)
+    place = published[(published["metric"] == row["metric"]) & (published["statistic"] == row["statistic"])]
+    for key in given:
+        place = place[place[key] == row[key]] if key != "method" else place
+    # A variant's own name is in no published row; its number is that of the method that it is a variant of.
+    own = place[place["method"] == row.get("printed_method", row["method"])]
+    return place.drop(own.index)["value"].to_numpy(dtype=float)
+
+
+def _described(row: pd.Series, keys: list[str], name: str, rivals: np.ndarray) -> dict[str, Any]:
     """Our side of one row, and where the published number lies in it; empty for a published number that we have no runs for."""
     if pd.isna(row["runs"]):
-        return {"n_ours": 0, "reproduced": None}
+        return {"n_ours": 0, "reproduced": None, "can_fail": None, "possible": None}
     numbers = row["numbers"]
     statistic = row["statistic"]
     row_name = "/".join([name, *(f"{key}={row[key]}" for key in keys), row["metric"], statistic])
     low, high = statistics.interval(statistic, numbers, statistics.generator(f"{row_name}/interval"))
-    size = None
-    if not pd.isna(row["n_published"]):
-        # Of the paper's runs, as large a share counted as of ours.
-        size = max(1, round(row["n_published"] * len(numbers) / row["runs"]))
+    # The paper's own number of runs, whatever share of ours failed.
+    size = None if pd.isna(row["n_published"]) else int(row["n_published"])
+    published, single = row["value_published"], (row["least"], row["most"])
     quantile, reproduced = statistics.yardstick(
-        statistic, numbers, row["value_published"], size, row["decimals"], statistics.generator(f"{row_name}/yardstick")
+        statistic, numbers, published, size, row["decimals"], statistics.generator(f"{row_name}/yardstick"), single
     )
+    if row["unit"] == "s":
+        # Seconds of another machine are shown, not judged.
+        reproduced = None
     chance = (math.nan, math.nan)
-    if not pd.isna(row["value_published"]):
-        chance = statistics.chance(statistic, numbers, size, statistics.generator(f"{row_name}/yardstick"))
+    if not pd.isna(published):
+        chance = statistics.chance(statistic, numbers, size, statistics.generator(f"{row_name}/yardstick"), single)
     return {
         "n_ours": len(numbers),
         "value_ours": statistics.statistic(statistic, numbers),
@@ -126,6 +157,41 @@ def _described(row: pd.Series, keys: list[str], name: str) -> dict[str, Any]:
         "low95_chance": chance[0],
         "high95_chance": chance[1],
         "quantile_published": quantile,
-        # Seconds of another machine are shown, not judged.
-        "reproduced": None if row["unit"] == "s" else reproduced,
+        "reproduced": reproduced,
+        **_judged(row, reproduced, statistics.statistic(statistic, numbers), chance, size, rivals),
     }
+
+
+def _judged(
+    row: pd.Series, reproduced: bool | None, ours: float, chance: tuple[float, float], size: int | None, rivals: np.ndarray
+) -> dict[str, Any]:
+    """Whether the test of one row could have failed, what it tells apart, and its verdict; empty where it is not judged."""
+    published = row["value_published"]
+    if pd.isna(published):
+        return {"can_fail": None, "possible": None}
+    possible = _possible(row["statistic"], (row["least"], row["most"]), size)
+    half = 0.0 if pd.isna(row["decimals"]) else 0.5 * 10.0 ** -row["decimals"]
+    # What lies below a bound of our own map is judged; what the metric cannot be on any map is not.
+    on_any_map = isinstance(metrics.METRICS[row["metric"]].least, str) or published >= possible[0] - half
+    judged = {"possible": bool(on_any_map and published <= possible[1] + half)}
+    if reproduced is None:
+        return judged | {"can_fail": None}
+    ends = (chance[0] - half, chance[1] + half)
+    can_fail = not reproduced or statistics.can_fail(published, ours, chance, possible)
+    power = statistics.told_apart(rivals if len(rivals) else ours * np.array([1 - MATTERS, 1 + MATTERS]), ends)
+    if not reproduced:
+        verdict = "not reproduced"
+    elif not can_fail:
+        verdict = "cannot fail"
+    else:
+        verdict = "reproduced" if power >= LEAST_POWER else "not told apart"
+    return judged | {"can_fail": can_fail, "power": power, "verdict": verdict}
+
+
+def _possible(statistic: str, single: tuple[float, float], size: int | None) -> tuple[float, float]:
+    """Between which values a statistic can lie of runs whose single values lie between some."""
+    if statistic in ("std", "iqr", "range"):
+        return 0.0, math.inf
+    if statistic in ("count", "share"):
+        return 0.0, 1.0 if statistic == "share" else size or math.inf
+    return single

@@ -19,6 +19,7 @@ _SHOWN = {
     "high95_chance": "to",
     "quantile_published": "quantile of the published",
     "reproduced": "within",
+    "verdict": "verdict",
 }
 _DECIMALS = 3
 

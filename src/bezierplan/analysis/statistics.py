@@ -173,19 +173,26 @@ def predicted(name: str, values: np.ndarray, size: int, rng: np.random.Generator
 
 
 def yardstick(
-    name: str, values: np.ndarray, published: float, size: int | None, decimals: int | None, rng: np.random.Generator
+    name: str,
+    values: np.ndarray,
+    published: float,
+    size: int | None,
+    decimals: int | None,
+    rng: np.random.Generator,
+    possible: tuple[float, float] = (-math.inf, math.inf),
 ) -> tuple[float, bool | None]:
     """Where a published number lies among what experiments of the paper's size would have printed, as far as our values (n,) tell.
 
     size: how many values the published statistic is of; None if the paper does not say, then the number is placed among our single values.
     decimals: those of the printed number, to which ours are rounded before they are compared; None to compare as they are.
+    possible: the least and the largest value that a single one can have; no experiment's extreme lies beyond.
 
     Returns the number's quantile, ties counted half, and whether it is within the central 95 %, ties counted for it (None below
     `LEAST_RUNS` values). Not a number and None without values or without a published number.
     """
     if not len(values) or math.isnan(published):
         return math.nan, None
-    least, most, tail = _experiments(name, values, size, rng)
+    least, most, tail = _experiments(name, values, size, rng, possible)
     if decimals is not None:
         least, most, published = np.round(least, decimals), np.round(most, decimals), round(published, decimals)
     below, above = np.mean(most < published), np.mean(least > published)
@@ -193,26 +200,79 @@ def yardstick(
     return float((below + 1 - above) / 2), reproduced
 
 
-def chance(name: str, values: np.ndarray, size: int | None, rng: np.random.Generator) -> tuple[float, float]:
+def chance(
+    name: str,
+    values: np.ndarray,
+    size: int | None,
+    rng: np.random.Generator,
+    possible: tuple[float, float] = (-math.inf, math.inf),
+) -> tuple[float, float]:
     """Ends of the central 95 % among which `yardstick` wants a published number, with the same random draws; not numbers without values.
 
-    An end is infinite where our values (n,) do not tell how far the least or the largest of `size` others may lie.
+    Where our values (n,) do not tell how far the least or the largest of `size` others may lie, an end is the least or the largest value
+    that is possible, or infinite.
     """
     if not len(values):
         return math.nan, math.nan
-    least, most, tail = _experiments(name, values, size, rng)
+    least, most, tail = _experiments(name, values, size, rng, possible)
     low, high = np.quantile(least, tail, method="lower"), np.quantile(most, 1 - tail, method="higher")
     return float(low), float(high)
 
 
-def _experiments(name: str, values: np.ndarray, size: int | None, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray, float]:
+def _experiments(
+    name: str, values: np.ndarray, size: int | None, rng: np.random.Generator, possible: tuple[float, float]
+) -> tuple[np.ndarray, np.ndarray, float]:
     """The least and the most that experiments of a size may print of our values (n,), and what to leave out at either end of them."""
     if size is None:
         return values, values, TAIL
     if name in ("min", "max"):
-        return *_extremes(name, values, size), TAIL
+        least, most = _extremes(name, values, size)
+        return np.maximum(least, possible[0]), np.minimum(most, possible[1]), TAIL
+    if name == "std" and len(values) > 1 and np.isfinite(values).all():
+        drawn = _std_draws(values, size)
+        return drawn, drawn, TAIL
     drawn = predicted(name, values, size, rng)
     return drawn, drawn, TAIL if name in ("count", "share") else _expanded_tail(len(values))
+
+
+def _std_draws(values: np.ndarray, size: int) -> np.ndarray:
+    """Standard deviations of `size` values, as far as our values (n,), n at least 2, tell: evenly spaced quantiles (DRAWS,).
+
+    The logarithm of a variance is nearly normal, with a standard error that follows from the kurtosis of what the values come from (Bonett
+    2006, Computational Statistics & Data Analysis 50, 775). Both samples err; Student's t stands for the normal because the kurtosis is
+    ours. Resampling would draw too narrow a range: a resample has fewer different values than what it was drawn from.
+    """
+    from scipy.special import stdtrit
+
+    n = len(values)
+    spread = values.std(ddof=1)
+    if spread == 0:
+        return np.zeros(DRAWS)
+    kurtosis = n * np.sum((values - _trimmed_mean(values)) ** 4) / np.sum((values - values.mean()) ** 2) ** 2
+    variances = [max(kurtosis - (k - 3) / k, 0.0) / (k - 1) for k in (n, max(size, 2))]
+    return spread * np.exp(0.5 * math.sqrt(sum(variances)) * stdtrit(n - 1, (np.arange(DRAWS) + 0.5) / DRAWS))
+
+
+def _trimmed_mean(values: np.ndarray) -> float:
+    """The mean without a share of 1 / (2 sqrt(n - 4)) of the values at either end, by which Bonett's kurtosis is taken."""
+    n = len(values)
+    cut = int(n / (2 * math.sqrt(n - 4))) if n > 4 else 0
+    cut = min(cut, (n - 1) // 2)
+    return float(np.sort(values)[cut : n - cut].mean())
+
+
+def told_apart(others: np.ndarray, ends: tuple[float, float]) -> float:
+    """The share of other numbers (n,), n at least 1, that lie beyond the ends of an interval: the power of a test against them."""
+    return float(np.mean((others < ends[0]) | (others > ends[1])))
+
+
+def can_fail(published: float, ours: float, ends: tuple[float, float], possible: tuple[float, float]) -> bool:
+    """Whether a number on the published one's side of ours can lie beyond the interval in which it would be accepted.
+
+    It cannot where that end is infinite, or nothing possible lies beyond it. A number equal to ours lies on both sides.
+    """
+    below, above = ends[0] > possible[0], ends[1] < possible[1]
+    return (published <= ours and below) or (published >= ours and above)
 
 
 def _expanded_tail(n: int) -> float:

@@ -1,8 +1,11 @@
 """All studies together: every published number beside ours, every claim, and how many of them came out."""
 
+import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.claim_verdicts import VERDICTS
+
+NUMBERS = ("reproduced", "not told apart", "cannot fail", "not reproduced")
 
 
 def numbers(
@@ -12,7 +15,7 @@ def numbers(
 
     comparisons: (study, table) -> `comparison.compare`. variants: study -> its methods that are another reading of a published one.
     deciding: (study, table) -> column -> the value whose rows are the paper's reading. Columns: study, table, decides (the row is no other
-    reading), then those of the comparisons, key columns first.
+    reading), counted (it decides, can be judged, and says something new: `_counted`), then those of the comparisons, key columns first.
     """
     frames = []
     for (study, table), frame in comparisons.items():
@@ -26,18 +29,44 @@ def numbers(
     everything = pd.concat(frames, ignore_index=True)
     last = list(everything.columns[everything.columns.get_loc("metric") :].drop(["study", "table", "decides"], errors="ignore"))
     keys = [column for column in everything.columns if column not in last and column not in ("study", "table", "decides")]
-    return everything[["study", "table", "decides", *keys, *last]]
+    everything = everything.assign(counted=_counted(everything, keys))
+    return everything[["study", "table", "decides", "counted", *keys, *last]]
+
+
+def _counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
+    """Which rows (n,) stand in the denominator: those that decide and are judged, but for numbers that cannot be, repeats of a number in
+    another table, and the last of counts that add up to the number of runs.
+    """
+    counted = (numbers["decides"] & numbers["reproduced"].notna() & numbers["possible"].astype("boolean").fillna(True)).to_numpy(dtype=bool)
+    same = ["study", "metric", "statistic", "value_published", *({"method"} & set(keys))]
+    for _, rows in numbers[counted].groupby(same, dropna=False, sort=False):
+        for n, (index, row) in enumerate(rows.iterrows()):
+            earlier = rows.iloc[:n]
+            if any(each["table"] != row["table"] and _same_place(each, row, keys) for _, each in earlier.iterrows()):
+                counted[numbers.index.get_loc(index)] = False
+    place = ["study", "table", "n_published", *keys]
+    counts = numbers[counted & (numbers["statistic"] == "count").to_numpy()]
+    for _, rows in counts.groupby(place, dropna=False, sort=False):
+        if len(rows) > 1 and rows["value_published"].sum() == rows["n_published"].iloc[0]:
+            counted[numbers.index.get_loc(rows.index[-1])] = False
+    return counted
+
+
+def _same_place(one: pd.Series, other: pd.Series, keys: list[str]) -> bool:
+    """Whether two rows have the same key columns as far as both have them."""
+    return all(one[key] == other[key] for key in keys if not (pd.isna(one[key]) or pd.isna(other[key])))
 
 
 def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
-    """One row a study: published numbers judged, those within the range that chance gives, and claims by verdict.
+    """One row a study: published numbers that count, how many of them by the test's verdict (`comparison`), and claims by verdict.
 
     numbers: as from `numbers`. claims: as from `claims.judge`. Of readings and variants only those count that decide.
     """
-    judged = numbers[numbers["decides"] & numbers["reproduced"].notna()]
+    judged = numbers[numbers["counted"]]
     deciding = claims[claims["decides"] & ~claims["finding"].astype(bool)]
     verdicts = pd.crosstab(deciding["study"], deciding["verdict"]).reindex(columns=VERDICTS, fill_value=0)
-    counts = judged.groupby("study")["reproduced"].agg(numbers="count", reproduced=lambda each: int(each.astype(bool).sum()))
+    counts = pd.crosstab(judged["study"], judged["verdict"]).reindex(columns=NUMBERS, fill_value=0)
+    counts.insert(0, "numbers", counts.sum(axis=1))
     return counts.join(verdicts, how="outer").fillna(0).astype(int)
 
 
@@ -52,18 +81,29 @@ def report(numbers: pd.DataFrame, claims: pd.DataFrame, titles: dict[str, str], 
     """The summary of a scale as markdown: the outcome of each study, then its claims with their verdicts."""
     parts = [
         f"# Outcome at scale {scale}",
-        "`numbers`: published numbers that can be judged; `reproduced`: those within the central 95 % of what our runs give by chance in "
-        "an experiment of the paper's size. The other columns count claims by verdict. Readings that do not decide are left out here; "
-        "`numbers.csv` and `claims.csv` have them.",
+        "`numbers`: published numbers that can be judged and say something new. `reproduced`: those within the central 95 % of what our "
+        "runs give by chance in an experiment of the paper's size, where that range refuses at least half of the numbers that the paper "
+        "prints of other methods in the same place (where it prints none, a number 10 % lower or higher). `not told apart`: within the "
+        "range, which refuses fewer of them. `cannot fail`: within the range, which on the printed number's side of ours has no end, or "
+        "ends where nothing possible lies beyond. `not reproduced`: outside. The other columns count claims by verdict; our own findings "
+        "are not among them. Readings that do not decide are left out here; `numbers.csv` and `claims.csv` have them.",
         markdown(outcome(numbers, claims)),
     ]
     for study, title in titles.items():
         own = claims[(claims["study"] == study) & claims["decides"]].set_index("id")
+        found = own["finding"].astype(bool)
         if not own.empty:
-            shown = own[["statement", "verdict", "holds", "published", "effect", "n"]].fillna("")
-            shown["effect"] = [f"{value:.3g}" if isinstance(value, float) else value for value in shown["effect"]]
-            parts += [f"## {title}", markdown(shown)]
+            parts += [f"## {title}", _listed(own[~found])]
+        if found.any():
+            parts += ["Our own findings, no sentences of the paper:", _listed(own[found])]
     return "\n\n".join(parts) + "\n"
+
+
+def _listed(claims: pd.DataFrame) -> str:
+    """Claims with their verdicts, as markdown."""
+    shown = claims[["statement", "verdict", "holds", "where_it_holds", "published", "effect", "n"]].fillna("")
+    shown["effect"] = [f"{value:.3g}" if isinstance(value, float) else value for value in shown["effect"]]
+    return markdown(shown)
 
 
 def with_block(text: str, name: str, block: str) -> str:

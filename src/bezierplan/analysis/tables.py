@@ -45,31 +45,34 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
     """The numbers behind a table: one row for each group of runs with equal keys, entry of `values`, and statistic.
 
     Columns: the keys; value (the entry's number), metric, statistic, decimals; numbers, sorted (n,): the metric of the runs that count,
-    which satisfy the entry's `where` and have one; and of all runs of the group: runs (how many), share_claimed, share_feasible, bound
-    (median), gap (median of the feasible ones).
+    which satisfy the entry's `where` and have one; least, most: between which a run's value of the metric can lie; and of all runs of the
+    group: runs (how many), share_claimed, share_feasible, bound (median) and gap (median of the feasible ones) of the metric's kind of
+    length.
     """
     # Sorted by name, so that no sum depends on the order in which chunks were read.
     runs = select(results.runs, spec.get("where", {})).sort_values("id")
     entries = spec["values"]
-    wanted = {entry["metric"] for entry in entries} | {"gap"}
+    described = [metrics.METRICS[entry["metric"]] for entry in entries]
+    wanted = {entry["metric"] for entry in entries} | {metric.gap for metric in described}
     measured = {name: _measured(runs, name, results, spec) for name in sorted(wanted)}
     counted = [measured[entry["metric"]].reindex(select(runs, entry.get("where", {})).index).dropna() for entry in entries]
     rows = []
     for key, group in runs.groupby(keys, dropna=False):
-        described = {
-            **dict(zip(keys, key)),
-            "runs": len(group),
-            "share_claimed": group["claimed_feasible"].mean(),
-            "share_feasible": group["feasible"].mean(),
-            "bound": group["bound"].median(),
-            "gap": measured["gap"].loc[group.index].median(),
-        }
-        for value, entry in enumerate(entries):
+        shares = {"share_claimed": group["claimed_feasible"].mean(), "share_feasible": group["feasible"].mean()}
+        same = {**dict(zip(keys, key)), "runs": len(group), **shares}
+        for value, (entry, metric) in enumerate(zip(entries, described)):
+            of_group = {
+                "bound": group[metric.bound].median(),
+                "gap": measured[metric.gap].loc[group.index].median(),
+                "least": group[metric.least].min() if isinstance(metric.least, str) else metric.least,
+                "most": metric.most,
+            }
             numbers = np.sort(counted[value].loc[counted[value].index.intersection(group.index)].to_numpy())
             for statistic in _statistics(entry):
                 cell = {"value": value, "metric": entry["metric"], "statistic": statistic, "decimals": entry.get("decimals")}
-                rows.append(described | cell | {"numbers": numbers})
-    columns = [*keys, "runs", "share_claimed", "share_feasible", "bound", "gap", "value", "metric", "statistic", "decimals", "numbers"]
+                rows.append(same | of_group | cell | {"numbers": numbers})
+    of_runs = ["runs", "share_claimed", "share_feasible", "bound", "gap", "least", "most"]
+    columns = [*keys, *of_runs, "value", "metric", "statistic", "decimals", "numbers"]
     # Of type object, so that whole numbers stay whole beside entries without decimals.
     return pd.DataFrame(rows, columns=columns).assign(decimals=pd.Series([row["decimals"] for row in rows], dtype=object))
 

@@ -154,12 +154,12 @@ def _planner(given: Namespace) -> tuple[str, dict[str, Any]]:
 
 def _like(name: str) -> tuple[str, dict[str, Any]]:
     """Planner and settings of a method of a study."""
-    from bezierplan import study_file
+    from bezierplan.study import reading
 
     key, _, method = name.rpartition("/")
     if not key:
         raise Fault(f"--like: {name}; expected STUDY/METHOD, such as song2016/smooth")
-    (study,) = study_file.load(study_file.read_config({"studies": [key]})).values()
+    (study,) = reading.load(reading.read_config({"studies": [key]})).values()
     if method not in study.methods:
         raise Fault(f"--like: {name}: the study has no method {method}{closest(method, study.methods)}")
     return study.planner(method), study.resolved(method)
@@ -167,9 +167,9 @@ def _like(name: str) -> tuple[str, dict[str, Any]]:
 
 def _preset(planner: str) -> dict[str, Any]:
     """The settings of a planner in the first study of this project that has it as a method."""
-    from bezierplan import study_file
+    from bezierplan.study import reading
 
-    for study in study_file.load(study_file.read_config({})).values():
+    for study in reading.load(reading.read_config({})).values():
         for method in study.methods:
             if study.planner(method) == planner:
                 return study.resolved(method)

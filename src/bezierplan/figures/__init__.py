@@ -1,1 +1,77 @@
-"""One file a kind of picture: `data` makes the table that is drawn, `draw` draws it."""
+"""One file a kind of panel: `Options`, which keys a panel of this kind may have; `data`, which makes the table that is drawn; `draw`.
+
+Options are read at every start of the workflow, so these files import libraries that draw or handle tables inside the functions that
+need them.
+"""
+
+import importlib
+from functools import cache
+from pathlib import Path
+from typing import ClassVar
+
+from pydantic import Field, model_validator
+
+from bezierplan.model import Column, Experiment, Flag, Function, Line, Model, Where, Whole, Workspace, wrong
+
+
+class Panel(Model):
+    """Keys of a panel of every kind, and what a kind needs beside its panels.
+
+    published_drawn: are published numbers drawn? rerun: are runs repeated, to draw what no table keeps?
+    """
+
+    published_drawn: ClassVar[bool] = False
+    rerun: ClassVar[bool] = False
+
+    kind: Line = Field(description="the name of a file in `src/bezierplan/figures`")
+    title: Line = Field(None, description="one line above the panel")
+
+
+class RunsPanel(Panel):
+    """A panel that shows runs."""
+
+    experiment: Experiment = Field(description="the name of an experiment")
+    where: Where = Field({}, description="column of the runs table → value or list of values: the runs that are shown")
+
+
+class TablePanel(Panel):
+    """A panel that shows a table of a function of the study's module."""
+
+    data: Function = Field(
+        description="the name of a function of the study's module that returns a table; with `workspace` it is called with that, with "
+        "`published: true` with the published tables by file name"
+    )
+    published: Flag = Field(False, description="whether the function is called with the published tables, true or false")
+    workspace: Workspace = Field(None, description="the name of a workspace")
+    where: Where = Field({}, description="column of the table → value or list of values: the rows that are shown")
+
+
+class Pick(Model):
+    """One run."""
+
+    lowest: Column = Field(None, description="a column of the runs table: the feasible run with its lowest value")
+    median: Column = Field(None, description="a column of the runs table: the feasible run with its median value")
+    repeat: Whole = Field(None, description="a whole number: the run of that repeat")
+
+    @model_validator(mode="after")
+    def _check_one(self) -> "Pick":
+        if len(self.model_fields_set) != 1:
+            raise wrong(f"{len(self.model_fields_set)} keys; expected {{lowest: column}}, {{median: column}} or {{repeat: number}}")
+        return self
+
+
+PICK = "which run: {lowest: column} or {median: column} of the feasible ones, or {repeat: number}"
+
+
+def exactly_one(panel: Model, *keys: str) -> None:
+    """Raises the error of a panel that does not have exactly one of the keys."""
+    given = [key for key in keys if key in panel.model_fields_set]
+    if len(given) != 1:
+        raise wrong(f"{' and '.join(given) or 'neither'}: expected either {' or '.join(keys)}")
+
+
+@cache
+def kinds() -> dict[str, type[Panel]]:
+    """Kind of panel -> what a panel of this kind may have."""
+    names = sorted(file.stem for file in Path(__file__).parent.glob("[!_]*.py"))
+    return {name: importlib.import_module(f"{__name__}.{name}").Options for name in names}

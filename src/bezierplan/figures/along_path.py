@@ -1,21 +1,38 @@
 """A quantity along the path of one picked run, beside the limit that the paper claims for it."""
 
+from __future__ import annotations
+
 import math
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-import pandas as pd
-from matplotlib.axes import Axes
+from pydantic import Field
 
 from bezierplan import curves, style
-from bezierplan.analysis.results import Results, path_of
+from bezierplan.figures import PICK, Pick, RunsPanel
 from bezierplan.figures.paths import picked, run_note
+from bezierplan.model import Number
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
 
 _SAMPLES = 1001
 
 # A peak of more limits than this would press the curve onto the axis: then the scale ends at fewer, and an arrow stands for the peak.
 _HIGHEST_PEAK = 10
 _CUT_SCALE = 4
+
+
+class Options(RunsPanel):
+    """Keys of a panel."""
+
+    pick: Pick = Field(description=PICK)
+    quantity: Literal["curvature"] = Field(description="what is drawn along the path: curvature")
+    limit: Number = Field(None, description="the published limit, a number")
 
 
 def data(results: Results, *, pick: dict[str, Any], quantity: Literal["curvature"], limit: float | None = None) -> pd.DataFrame:
@@ -26,6 +43,10 @@ def data(results: Results, *, pick: dict[str, Any], quantity: Literal["curvature
     pick: the run, as in `analysis.results.pick`. limit: the published one, in 1/unit. Raises ValueError unless all runs are of one problem
     and one method.
     """
+    import pandas as pd
+
+    from bezierplan.analysis.results import path_of
+
     run, names = picked(results, pick)
     names |= {"quantity": quantity, "limit": math.nan if limit is None else limit}
     path = None if run is None else path_of(run)

@@ -1,20 +1,41 @@
 """Grouped bars of a metric's statistic with its interval, how many runs are feasible below each bar, and the shortest path as a line."""
 
-from typing import Any, Literal
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-import pandas as pd
-from matplotlib.axes import Axes
+from pydantic import Field
 
 from bezierplan import style
-from bezierplan.analysis.results import Results
+from bezierplan.figures import RunsPanel
 from bezierplan.figures.lines import axis_label, summary
+from bezierplan.model import Column, Metric
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
 
 # Metrics that the exact shortest length bounds from below.
 _BOUNDED = ("length", "objective")
 
 # Of the room of a group of bars, what the bars take.
 _FILLED = 0.84
+
+
+class Options(RunsPanel):
+    """Keys of a panel."""
+
+    metric: Metric = Field(description="the name of a metric")
+    x: Column = Field(description="a column of the runs table: a group of bars for each of its values")
+    hue: Column = Field(description="a column of the runs table: a bar in each group for each of its values")
+    statistic: Literal["mean", "median", "share"] = Field("mean", description="mean (left out: this), median or share")
+    below: Literal["share", "count"] = Field(
+        "share", description="of feasible runs, written below each bar: share (left out: this) or count"
+    )
 
 
 def data(
@@ -34,6 +55,8 @@ def data(
     x: a column, a group of bars for each of its values. hue: a column, a bar in each group for each of its values. below: what stands below
     a bar, the share or the number of feasible runs. Raises KeyError for an unknown metric or column.
     """
+    import pandas as pd
+
     frame = summary(results, [x, hue], metric, statistic)
     feasible = results.runs[results.runs["feasible"]].sort_values("id")
     bounds = feasible.groupby([x, hue])["bound"].mean().rename("bound") if metric in _BOUNDED else pd.Series(dtype=float)

@@ -1,14 +1,23 @@
 """Boxes of a metric, one a method or value of a factor, beside the published means."""
 
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-import pandas as pd
-from matplotlib.axes import Axes
+from pydantic import Field
 
 from bezierplan import metrics, style
-from bezierplan.analysis.results import Results
+from bezierplan.figures import RunsPanel
 from bezierplan.figures.lines import LIMITS, axis_label, constants, runs_note, shared_limits
+from bezierplan.model import Column, Flag, Metric
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
 
 # Whiskers end at the last value within so many interquartile ranges of the box.
 _REACH = 1.5
@@ -24,6 +33,16 @@ _PRINTED = ["table", "metric", "statistic", "n", "unit", "value"]
 _FAR = 0.25
 
 
+class Options(RunsPanel):
+    """Keys of a panel."""
+
+    published_drawn: ClassVar[bool] = True
+
+    metric: Metric = Field(description="the name of a metric")
+    by: Column = Field("method", description="a column of the runs table: a box for each of its values; left out: method")
+    limits: Flag = Field(False, description="whether the exact bound and the reference are drawn, true or false")
+
+
 def data(results: Results, *, metric: str, by: str = "method", limits: bool = False) -> pd.DataFrame:
     """One row a part of a box; columns: those of `lines.constants`, `by` by its own name, runs and feasible_runs (counts), part, value.
 
@@ -33,6 +52,8 @@ def data(results: Results, *, metric: str, by: str = "method", limits: bool = Fa
 
     by: a column of the runs table. Raises KeyError for an unknown metric or column.
     """
+    import pandas as pd
+
     runs = results.runs.assign(value=metrics.values(results.runs, metric, results.problems))
     rows = []
     for group, own in runs.groupby(by):

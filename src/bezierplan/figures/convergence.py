@@ -1,23 +1,47 @@
 """The best objective of each generation: one picked run with median and spread of all runs, or a line a method or value of a factor."""
 
-from typing import Any, Literal
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-import pandas as pd
-from matplotlib.axes import Axes
-from scipy.optimize import isotonic_regression
+from pydantic import Field, model_validator
 
 from bezierplan import style
 from bezierplan.analysis import statistics
-from bezierplan.analysis.results import Results
+from bezierplan.figures import PICK, Pick, RunsPanel, exactly_one
 from bezierplan.figures.lines import LIMITS, constants, runs_note, shared_limits
 from bezierplan.figures.paths import feasible_note, picked, run_note
+from bezierplan.model import Column, Flag, wrong
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
 
 # Least distance of names beside a panel, as a share of its height: a line of text where two panels stand side by side.
 _NAME_GAP = 0.08
 
 # Marks on a line of a group, at other generations than those of the other lines.
 _MARKS = 5
+
+
+class Options(RunsPanel):
+    """Keys of a panel."""
+
+    pick: Pick = Field(None, description=PICK)
+    hue: Column = Field(None, description="in place of pick, a column of the runs table: a line for each of its values")
+    statistic: Literal["mean", "median"] = Field("mean", description="with hue, of its runs: mean (left out: this) or median")
+    reference: Flag = Field(False, description="whether the reference of the problem is drawn, true or false")
+
+    @model_validator(mode="after")
+    def _check_source(self) -> Options:
+        exactly_one(self, "pick", "hue")
+        if "statistic" in self.model_fields_set and self.hue is None:
+            raise wrong("statistic: needs hue")
+        return self
 
 
 def data(
@@ -47,6 +71,8 @@ def data(
 
 
 def _of_one_run(results: Results, pick: dict[str, Any]) -> pd.DataFrame:
+    import pandas as pd
+
     run, names = picked(results, pick)
     generations = max(len(history) for history in results.runs["history"])
     histories = np.array([_lengthened(history, generations) for history in results.runs["history"]])
@@ -59,6 +85,8 @@ def _of_one_run(results: Results, pick: dict[str, Any]) -> pd.DataFrame:
 
 def _of_groups(results: Results, hue: str, statistic: str) -> pd.DataFrame:
     # Sorted, so that no sum depends on the order in which chunks were read.
+    import pandas as pd
+
     runs = results.runs.sort_values("id")
     generations = max(len(history) for history in runs["history"])
     frames = []
@@ -130,5 +158,7 @@ def _name_lines(axes: Axes, ends: list[float], names: list[str], looks: list[dic
 
 def _apart(heights: np.ndarray) -> np.ndarray:
     """Heights (n,), ascending, moved as little as possible so that they lie a gap apart and between 0 and 1."""
+    from scipy.optimize import isotonic_regression
+
     steps = min(_NAME_GAP, 1 / max(1, len(heights) - 1)) * np.arange(len(heights))
     return isotonic_regression(heights - steps).x.clip(0, 1 - steps[-1]) + steps

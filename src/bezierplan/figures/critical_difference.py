@@ -1,14 +1,23 @@
 """Mean ranks of methods on one axis, those joined that a Friedman test followed by Nemenyi's cannot tell apart (Demsar 2006)."""
 
+from __future__ import annotations
+
 import math
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
-import pandas as pd
-from matplotlib.axes import Axes
+from pydantic import Field
 
 from bezierplan import metrics, style
-from bezierplan.analysis.results import Results
+from bezierplan.figures import RunsPanel
+from bezierplan.model import Line, Metric
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
 
 _LEVEL = 0.05
 
@@ -16,6 +25,15 @@ _LEVEL = 0.05
 _BAR, _ABOVE = 0.45, 3.2
 # Room for names on either side, as a share of the axis.
 _NAMES = 1.2
+
+
+class Options(RunsPanel):
+    """Keys of a panel."""
+
+    published_drawn: ClassVar[bool] = True
+
+    metric: Metric = Field("objective", description="what is ranked, the name of a metric; left out: objective")
+    printed: Line = Field(None, description="the name of a published table whose mean ranks are shown besides")
 
 
 def data(results: Results, *, metric: str = "objective", printed: str | None = None) -> pd.DataFrame:
@@ -28,6 +46,7 @@ def data(results: Results, *, metric: str = "objective", printed: str | None = N
     metric: what is ranked. printed: the published table whose mean ranks are shown besides. Raises ValueError for fewer than three
     methods, and if a unit lacks one.
     """
+    import pandas as pd
     from scipy import stats
 
     runs = results.runs.assign(value=metrics.values(results.runs, metric, results.problems))

@@ -1,16 +1,22 @@
 """A drawing made of marks: what a procedure does, step by step, without a run; over a workspace where the panel names one."""
 
+from __future__ import annotations
+
 import itertools
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.collections import PatchCollection
-from matplotlib.patches import Circle, Rectangle
+from pydantic import Field
 
 from bezierplan import style
+from bezierplan.figures import TablePanel
 from bezierplan.figures import workspace as workspaces
+from bezierplan.model import Line
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
 
 COLUMNS = ["mark", "group", "role", "x", "y", "width", "height", "radius", "text"]
 _NEEDED = {
@@ -46,6 +52,13 @@ _DOTS = {
     "accent": {"color": style.RED, "marker": "X", "markersize": 6.5},
     "muted": {"color": "0.6", "marker": "o", "markersize": 3.5},
 }
+
+
+class Options(TablePanel):
+    """Keys of a panel."""
+
+    x_label: Line = Field(None, description="what the panel runs along, with its unit")
+    y_label: Line = Field(None, description="what the panel's height shows, with its unit")
 
 
 def data(marks: pd.DataFrame, *, x_label: str | None = None, y_label: str | None = None) -> pd.DataFrame:
@@ -94,6 +107,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 
 def _draw_marks(axes: Axes, own: pd.DataFrame, zorder: float) -> None:
     """Draw neighbouring rows of one mark, group and role."""
+    import pandas as pd
+    from matplotlib.collections import PatchCollection
+    from matplotlib.patches import Circle, Rectangle
+
     mark, role = own["mark"].iloc[0], own["role"].iloc[0]
     label = {} if pd.isna(own["label"].iloc[0]) else {"label": own["label"].iloc[0]}
     points = own[["x", "y"]].to_numpy()

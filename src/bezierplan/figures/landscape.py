@@ -1,17 +1,24 @@
 """The objective over two coordinates, as lines of equal value, with its local minima."""
 
-from typing import Any
+from __future__ import annotations
 
-import matplotlib as mpl
+from typing import TYPE_CHECKING, Any
+
 import numpy as np
-import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.cm import ScalarMappable
-from matplotlib.colors import LogNorm
+from pydantic import Field
 
 from bezierplan import style
-from bezierplan.analysis.results import Results
+from bezierplan.figures import RunsPanel
 from bezierplan.figures import workspace as workspaces
+from bezierplan.model import Function
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+    from matplotlib.cm import ScalarMappable
+
+    from bezierplan.analysis.results import Results
+
 
 # Steps from the lowest to the highest value, equal on a logarithmic scale.
 _STEPS = 16
@@ -27,6 +34,12 @@ _LOOK = {
 }
 
 
+class Options(RunsPanel):
+    """Keys of a panel."""
+
+    data: Function = Field(description="the name of a function of the study's module that returns a table, called with the runs")
+
+
 def data(source: tuple[Results, pd.DataFrame]) -> pd.DataFrame:
     """What is drawn, one row a place; columns: problem, part, x, y (in the workspace's unit), objective (of nodes, in units).
 
@@ -34,6 +47,8 @@ def data(source: tuple[Results, pd.DataFrame]) -> pd.DataFrame:
     where it is), start, target. source: runs of one problem, and the table of a function with the columns part, x, y and objective. Raises
     ValueError for runs of several problems.
     """
+    import pandas as pd
+
     results, table = source
     names = list(results.runs["problem"].unique())
     if len(names) != 1:
@@ -52,6 +67,10 @@ def nodes(frame: pd.DataFrame) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 def scale_of(values: np.ndarray) -> ScalarMappable:
     """Colours of values, the higher the lighter, on a logarithmic scale."""
+    import matplotlib as mpl
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import LogNorm
+
     return ScalarMappable(LogNorm(values.min(), values.max()), mpl.colormaps[style.SCALE])
 
 

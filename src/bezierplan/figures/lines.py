@@ -1,18 +1,45 @@
 """A metric's statistic against a numeric factor, with its interval and single repeats; or two columns of a table against each other."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-import pandas as pd
-from matplotlib.axes import Axes
+from pydantic import Field, model_validator
 
 from bezierplan import metrics, style
 from bezierplan.analysis import statistics
-from bezierplan.analysis.results import Results
+from bezierplan.figures import TablePanel, exactly_one
+from bezierplan.model import Column, Experiment, Function, Metric, Where, Whole, listed
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
 
 # Of more points than this only the points are drawn: lines between values that jump would cover the panel.
 _MOST_JOINED = 100
+
+
+class Options(TablePanel):
+    """Keys of a panel: of runs, or of a table."""
+
+    experiment: Experiment = Field(None, description="the name of an experiment")
+    data: Function = Field(None, description="in place of experiment, the name of a function of the study's module that returns a table")
+    where: Where = Field({}, description="column of the runs table or of the data → value or list of values")
+    x: Column = Field(description="a column of numbers of the runs table or of the data")
+    metric: Metric = Field(description="the name of a metric, or of a column of the data")
+    hue: Column = Field(None, description="a column of the runs table or of the data: a line for each of its values")
+    statistic: Literal["mean", "median", "share"] = Field("mean", description="of runs: mean (left out: this), median or share")
+    repeats: listed(Whole) = Field((), description="a list of whole numbers: single runs that are drawn besides")
+
+    @model_validator(mode="after")
+    def _check_source(self) -> Options:
+        exactly_one(self, "experiment", "data")
+        return self
 
 
 def data(
@@ -31,6 +58,8 @@ def data(
     x: a numeric column. hue: a column, a line for each of its values. repeats: which single runs are drawn besides. Raises ValueError if a
     single repeat has several runs at one place, and KeyError for an unknown metric or column.
     """
+    import pandas as pd
+
     keys = [x] if hue is None else [hue, x]
     if isinstance(source, pd.DataFrame):
         return source[[*keys, metric]].rename(columns={metric: "value"}).assign(part="value")
@@ -49,6 +78,8 @@ def summary(results: Results, keys: list[str], metric: str, statistic: str) -> p
     Columns: those of `constants`; the keys; runs and feasible_runs (counts), n (runs that have the metric), value, low95 and high95 (its
     95 % bootstrap interval), in the metric's unit.
     """
+    import pandas as pd
+
     runs = results.runs.assign(value=metrics.values(results.runs, metric, results.problems))
     rows = []
     for key, own in runs.groupby(keys):

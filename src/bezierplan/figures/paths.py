@@ -3,19 +3,27 @@
 Or several paths in one workspace, a picked run for each value of a column.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-import pandas as pd
-import shapely
-from matplotlib.axes import Axes
+from pydantic import Field, model_validator
 
 from bezierplan import curves, style
-from bezierplan.analysis.results import Results, path_of
-from bezierplan.analysis.results import pick as pick_run
+from bezierplan.checked import closest
+from bezierplan.figures import PICK, Pick, RunsPanel, exactly_one
 from bezierplan.figures import workspace as workspaces
+from bezierplan.model import Column, Experiment, Line, Model, Number, wrong
 from bezierplan.problem import Path
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
 
 # About as many straight steps are drawn for a curve; the ends of its pieces are always among them.
 _STEPS = 600
@@ -44,6 +52,8 @@ def picked(results: Results, pick: dict[str, Any]) -> tuple[pd.Series | None, di
     Columns: problem, method, runs and feasible_runs (counts), run (its id; empty without a run), curve, length (in units), feasible.
     Raises ValueError unless all the panel's runs are of one problem and one method.
     """
+    from bezierplan.analysis.results import pick as pick_run
+
     runs = results.runs
     for column in ("problem", "method"):
         found = list(runs[column].unique())
@@ -59,6 +69,8 @@ def picked(results: Results, pick: dict[str, Any]) -> tuple[pd.Series | None, di
 
 def run_note(frame: pd.DataFrame, *more: str) -> str:
     """Which run a panel shows, from the columns that `picked` names, and more lines about it; or only that there is none."""
+    import pandas as pd
+
     row = frame.iloc[0]
     if pd.isna(row["run"]):
         return f"no {'such' if row['feasible_runs'] else 'feasible'} run among {row['runs']:g}"
@@ -69,6 +81,39 @@ def feasible_note(frame: pd.DataFrame) -> str:
     """How many of a panel's runs are feasible, from the columns that `picked` names."""
     row = frame.iloc[0]
     return f"{row['feasible_runs']:g} of {row['runs']:g} runs are feasible"
+
+
+class Explicit(Model):
+    """A path without a run."""
+
+    curve: Line = Field(description="the kind of a curve")
+    points: list[list[Number]] = Field(description="a list of at least two [x, y]", min_length=2)
+
+
+class Options(RunsPanel):
+    """Keys of a panel: of picked runs, or of an explicit path."""
+
+    experiment: Experiment = Field(None, description="the name of an experiment")
+    pick: Pick = Field(None, description=PICK)
+    explicit: Explicit = Field(None, description="in place of experiment and pick, {curve, points}: a path without a run")
+    hue: Column = Field(None, description="a column of the runs table: a run is picked for each of its values")
+    control: Literal["all", "points", "none"] = Field(
+        "all",
+        description="whether control points are drawn with their polygon and hull (all; left out: this), alone (points), or not (none)",
+    )
+    view: list[Number] = Field(None, description="what is seen: [lowest x, highest x, lowest y, highest y]", min_length=4, max_length=4)
+
+    @model_validator(mode="after")
+    def _check_source(self) -> Options:
+        exactly_one(self, "pick", "explicit")
+        exactly_one(self, "experiment", "explicit")
+        if self.explicit and self.hue:
+            raise wrong("hue: needs experiment")
+        if self.explicit and any(len(point) != 2 for point in self.explicit.points):
+            raise wrong("explicit: points: expected a list of at least two [x, y]")
+        if self.explicit and self.explicit.curve not in curves.CURVES:
+            raise wrong(f"explicit: curve: {self.explicit.curve}: unknown{closest(self.explicit.curve, curves.CURVES)}")
+        return self
 
 
 def data(
@@ -92,6 +137,10 @@ def data(
     Raises ValueError unless either pick or explicit is given and all runs, of one value of hue, are of one problem and one method, and if a
     curve cannot have such points.
     """
+    import pandas as pd
+
+    from bezierplan.analysis.results import path_of
+
     if (pick is None) == (explicit is None):
         raise ValueError("a panel of kind paths needs either pick or explicit")
     if explicit is not None:
@@ -117,6 +166,8 @@ def data(
 
 def _drawn(path: Path, control: str) -> dict[str, np.ndarray]:
     """Points (n, 2) of a path by the part that they make."""
+    import shapely
+
     drawn = {}
     if path.curve in curves.B_SPLINES and control == "all":
         drawn["hull"] = shapely.get_coordinates(shapely.MultiPoint(path.points).convex_hull)
@@ -127,6 +178,8 @@ def _drawn(path: Path, control: str) -> dict[str, np.ndarray]:
 
 def table(drawn: dict[str, Sequence]) -> pd.DataFrame:
     """Points (n, 2) by part as rows."""
+    import pandas as pd
+
     points = [pd.DataFrame(np.asarray(xy, dtype=float), columns=["x", "y"]).assign(part=part) for part, xy in drawn.items()]
     return pd.concat(points, ignore_index=True)[["part", "x", "y"]]
 

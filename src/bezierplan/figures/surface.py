@@ -1,13 +1,19 @@
 """The objective over two coordinates as a surface, seen from the side."""
 
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
-from mpl_toolkits.mplot3d import Axes3D
 
 from bezierplan.figures import landscape
+from bezierplan.figures.landscape import Options as Options
 from bezierplan.figures.landscape import data as data  # the same table as that of the lines of equal value
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from mpl_toolkits.mplot3d import Axes3D
+
 
 # The axes that a panel needs.
 PROJECTION = "3d"

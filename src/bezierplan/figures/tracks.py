@@ -1,23 +1,44 @@
 """How runs came to their paths: the way of one control point of the best path through the iterations, or the first and the last path."""
 
-from typing import Any
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
 
 import numpy as np
-import pandas as pd
-from matplotlib.axes import Axes
+from pydantic import Field
 
 from bezierplan import metrics, running, style
-from bezierplan.analysis.results import Results, path_of, pick
-from bezierplan.figures import landscape
+from bezierplan.figures import RunsPanel, landscape
 from bezierplan.figures import workspace as workspaces
 from bezierplan.figures.paths import steps
+from bezierplan.model import Function, Metric, Whole, value
 from bezierplan.problem import Path, Problem, planner_module
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
 
 # Lines of equal value below a way, from the lowest to the highest.
 _LEVELS = 14
 
 _NAMES = ("first run", "second run", "third run", "fourth run", "fifth run")
 _FIRST = {"color": style.BLUE, "linestyle": "", "marker": "o", "markersize": 7, "markerfacecolor": "none", "markeredgewidth": 1.3}
+
+
+class Options(RunsPanel):
+    """Keys of a panel."""
+
+    rerun: ClassVar[bool] = True
+
+    data: Function = Field(None, description="the name of a function of the study's module that returns a landscape, called with the runs")
+    by: Metric = Field(description="the name of a metric: of the feasible runs the best one of each of its commonest values is drawn")
+    runs: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 5, "")] = Field(
+        description="of how many of these values, a whole number from 1 to 5"
+    )
+    point: Whole = Field(None, description="the number of the control point whose way is drawn, at least 0; left out: first and last path")
 
 
 def data(source: Results | tuple[Results, pd.DataFrame], *, by: str, runs: int, point: int | None = None) -> pd.DataFrame:
@@ -33,6 +54,10 @@ def data(source: Results | tuple[Results, pd.DataFrame], *, by: str, runs: int, 
     Raises ValueError for runs of several problems or methods, for a point that the curve does not have, and if a run made again ends in
     another path.
     """
+    import pandas as pd
+
+    from bezierplan.analysis.results import Results, pick
+
     results, table = (source, None) if isinstance(source, Results) else source
     for column in ("problem", "method"):
         found = list(results.runs[column].unique())
@@ -60,6 +85,8 @@ def _commonest(groups: pd.Series) -> list[float]:
 
 def _tracked(run: pd.Series, job: dict, problem: Problem) -> list[Path]:
     """The best path after each iteration of a run, made again from its job."""
+    from bezierplan.analysis.results import path_of
+
     condition = next(each for each in running.conditions(list(job["problems"]), job["vary"]) if each.name == run["condition"])
     rng = running.generator(job, condition, int(run["repeat"]))
     track = planner_module(job["planner"]).track(problem, rng, **running.settings_in(job, condition))
@@ -70,6 +97,8 @@ def _tracked(run: pd.Series, job: dict, problem: Problem) -> list[Path]:
 
 def _part(run: pd.Series, paths: list[Path], point: int | None) -> pd.DataFrame:
     """Rows of one run."""
+    import pandas as pd
+
     if point is None:
         drawn = [pd.DataFrame(steps(paths[i]), columns=["x", "y"]).assign(part="path", iteration=i) for i in (0, len(paths) - 1)]
     elif 0 <= point < len(paths[0].points):

@@ -1,21 +1,28 @@
 """A workspace: cells with their numbers, circles or polygons; nothing planned."""
 
+from __future__ import annotations
+
 from dataclasses import replace
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-import pandas as pd
-from matplotlib.axes import Axes
-from matplotlib.collections import PatchCollection, PolyCollection
-from matplotlib.patches import Circle, PathPatch
-from matplotlib.path import Path as Outline
+from pydantic import Field
 
 from bezierplan import style
+from bezierplan.figures import Panel
+from bezierplan.model import Flag
+from bezierplan.model import Workspace as Described
 from bezierplan.problem import Workspace
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grid import embed as embed_cells
 from bezierplan.workspaces.polygons import Polygons
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+    from matplotlib.patches import Circle, PathPatch
+
 
 _CELLS = {
     "free": {"facecolor": style.FREE},
@@ -33,6 +40,14 @@ TARGET = {"color": style.BLACK, "linestyle": "", "marker": "*", "markersize": 12
 _MOST_CELLS = 2500
 
 _COLUMNS = ["part", "x", "y", "size", "obstacle", "ring", "number"]
+
+
+class Options(Panel):
+    """Keys of a panel."""
+
+    workspace: Described = Field(description="the name of a workspace")
+    numbers: Literal["all", "free", "none"] = Field("none", description="which cells show their number: all, free or none (left out: this)")
+    embed: Flag = Field(False, description="whether a grid is put into one of a power of two of rows and columns, true or false")
 
 
 def data(workspace: Workspace, *, numbers: Literal["all", "free", "none"] = "none", embed: bool = False) -> pd.DataFrame:
@@ -67,12 +82,16 @@ def _shapes(workspace: Circles | Polygons) -> pd.DataFrame:
 
 
 def _discs(circles: Circles) -> pd.DataFrame:
+    import pandas as pd
+
     x, y = circles.centres.T
     return pd.DataFrame({"part": "circle", "x": x, "y": y, "size": circles.radii, "obstacle": range(len(x))})
 
 
 def _table(bounds: tuple[float, float, float, float], *drawn: pd.DataFrame) -> pd.DataFrame:
     """The corners of the bounds and all that is drawn within them, with all columns; heights only where there are some."""
+    import pandas as pd
+
     corners = pd.DataFrame({"part": "corner", "x": bounds[:2], "y": bounds[2:]})
     table = pd.concat([corners, *drawn], ignore_index=True)
     return table.reindex(columns=[*_COLUMNS, *table.columns.intersection(["height"])])
@@ -80,6 +99,8 @@ def _table(bounds: tuple[float, float, float, float], *drawn: pd.DataFrame) -> p
 
 def _cells(whole: Grid, own: Grid, numbers: str) -> pd.DataFrame:
     """Cells of a grid, those beyond its own part surplus."""
+    import pandas as pd
+
     own_rows, own_columns = own.occupied.shape
     row, column = (index.ravel() for index in np.indices(whole.occupied.shape))
     surplus = (row >= own_rows) | (column >= own_columns)
@@ -94,6 +115,8 @@ def _cells(whole: Grid, own: Grid, numbers: str) -> pd.DataFrame:
 
 
 def _rings(workspace: Polygons) -> pd.DataFrame:
+    import pandas as pd
+
     rings = [
         pd.DataFrame({"part": "ring", "x": points[:, 0], "y": points[:, 1], "obstacle": obstacle, "ring": ring})
         for obstacle, outline in enumerate(workspace.obstacles)
@@ -145,6 +168,8 @@ def shade(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
 
 
 def _draw_cells(axes: Axes, cells: pd.DataFrame, look: dict) -> None:
+    from matplotlib.collections import PolyCollection
+
     if cells.empty:
         return
     square = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
@@ -161,10 +186,15 @@ def _draw_heights(axes: Axes, cells: pd.DataFrame) -> None:
 
 
 def _circles(circles: pd.DataFrame) -> list[Circle]:
+    from matplotlib.patches import Circle
+
     return [Circle((x, y), radius) for x, y, radius in zip(circles["x"], circles["y"], circles["size"])]
 
 
 def _polygons(rings: pd.DataFrame) -> list[PathPatch]:
+    from matplotlib.patches import PathPatch
+    from matplotlib.path import Path as Outline
+
     outlines = [
         Outline.make_compound_path(*(Outline(np.vstack([ring, ring[:1]]), closed=True) for ring in _oriented(obstacle)))
         for _, obstacle in rings.groupby("obstacle")
@@ -184,5 +214,7 @@ def _oriented(obstacle: pd.DataFrame) -> list[np.ndarray]:
 
 
 def _draw_obstacles(axes: Axes, shapes: list, look: dict) -> None:
+    from matplotlib.collections import PatchCollection
+
     if shapes:
         axes.add_collection(PatchCollection(shapes, label="obstacle", **look), autolim=False)

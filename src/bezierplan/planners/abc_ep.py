@@ -16,6 +16,7 @@ from numba import njit
 from bezierplan.cell_length import is_free_leg
 from bezierplan.problem import Path, Plan, Problem, Range
 from bezierplan.search.genetic import roulette
+from bezierplan.search.sorting import ascending
 
 workspaces = ("grid",)
 exact = True
@@ -339,12 +340,5 @@ def _wins(rng, cost, opponents):
 @njit(cache=True)
 def _rank(slots, wins, cost):
     """Sort slots in place, stably: most wins first, of equal ones the cheapest. The cheapest of all loses to nobody, so it comes first."""
-    for k in range(1, len(slots)):
-        slot, place = slots[k], k
-        while place > 0:
-            above = slots[place - 1]
-            if wins[above] > wins[slot] or (wins[above] == wins[slot] and cost[above] <= cost[slot]):
-                break
-            slots[place] = above
-            place -= 1
-        slots[place] = slot
+    cheapest_first = slots[ascending(cost[slots])]
+    slots[:] = cheapest_first[ascending(-wins[cheapest_first])]

@@ -5,7 +5,7 @@ ants of an iteration lay trails (Dorigo, Maniezzo and Colorni 1996). By `ant_col
 also wear trails off and take the most attractive step outright (Dorigo and Gambardella 1997).
 """
 
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -61,9 +61,21 @@ def plan(
 
     Raises ValueError for a start or target that is in no free cell.
     """
-    settings = locals()
     grid = problem.workspace
-    colony = search(lattice(grid, problem.start, problem.target, corners), rng, settings)
+    rules = Rules(
+        ants=ants,
+        iterations=iterations,
+        trail_weight=float(trail_weight),
+        heuristic_weight=float(heuristic_weight),
+        target_heuristic=float(target_heuristic),
+        initial_trail=float(initial_trail),
+        evaporation=float(evaporation),
+        deposit=float(deposit),
+        best_only=trail_update == "ant_colony_system",
+        exploitation=float(exploitation),
+        local_evaporation=float(local_evaporation),
+    )
+    colony = search(lattice(grid, problem.start, problem.target, corners), rng, rules)
     found = len(colony.best) > 0
     return Plan(
         path=Path("polyline", points(grid, problem.start, problem.target, colony.best)) if found else None,
@@ -76,33 +88,31 @@ def plan(
     )
 
 
-def search(places: Lattice, rng: np.random.Generator, settings: dict[str, Any]) -> Colony:
-    """The search behind `plan`, with its settings; others are left alone. One iteration if start and target lie in one cell."""
-    distance = np.hypot(places.row - places.row[places.target], places.column - places.column[places.target])
-    distance[places.target] = 1.0
-    heuristic = 1.0 / distance
-    heuristic[places.target] = settings["target_heuristic"]
-    rules = _Rules(
-        settings["ants"],
-        1 if places.start == places.target else settings["iterations"],
-        *(float(settings[name]) for name in _Rules._fields[2:-1]),  # a whole number would compile kernels anew
-        settings["trail_update"] == "ant_colony_system",
-    )
-    return Colony(*_colony(rng, places, heuristic ** settings["heuristic_weight"], rules))
-
-
-class _Rules(NamedTuple):
+class Rules(NamedTuple):
     """Settings of `plan`; best_only is the trail update ant_colony_system."""
 
     ants: int
     iterations: int
     trail_weight: float
+    heuristic_weight: float
+    target_heuristic: float
     initial_trail: float
     evaporation: float
     deposit: float
+    best_only: bool
     exploitation: float
     local_evaporation: float
-    best_only: bool
+
+
+def search(places: Lattice, rng: np.random.Generator, rules: Rules) -> Colony:
+    """The search behind `plan`. One iteration if start and target lie in one cell."""
+    distance = np.hypot(places.row - places.row[places.target], places.column - places.column[places.target])
+    distance[places.target] = 1.0
+    heuristic = 1.0 / distance
+    heuristic[places.target] = rules.target_heuristic
+    if places.start == places.target:
+        rules = rules._replace(iterations=1)
+    return Colony(*_colony(rng, places, heuristic**rules.heuristic_weight, rules))
 
 
 @njit(cache=True)

@@ -56,11 +56,23 @@ def plan(
 
     The history has the iterations of the ants, then the generations. Raises ValueError for a start or target that is in no free cell.
     """
-    settings = locals()
     grid = problem.workspace
     places = lattice(grid, problem.start, problem.target, corners)
     first, moves = rng.spawn(2)
-    colony = ant_colony.search(places, first, settings)
+    colony_rules = ant_colony.Rules(
+        ants=ants,
+        iterations=iterations,
+        trail_weight=float(trail_weight),
+        heuristic_weight=float(heuristic_weight),
+        target_heuristic=float(target_heuristic),
+        initial_trail=float(initial_trail),
+        evaporation=float(evaporation),
+        deposit=float(deposit),
+        best_only=trail_update == "ant_colony_system",
+        exploitation=float(exploitation),
+        local_evaporation=float(local_evaporation),
+    )
+    colony = ant_colony.search(places, first, colony_rules)
     best, history = colony.best, colony.history
     found = len(best) > 0
     if found and places.start != places.target:

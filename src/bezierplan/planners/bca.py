@@ -21,6 +21,7 @@ from bezierplan.workspaces.grid import ON_LINE, Grid
 
 workspaces = ("grid",)
 
+CurveKind = Literal["bezier", "piecewise_quadratic"]
 Fitness = Literal["length", "repaired", "literal_weights", "hard_safety", "reciprocal_literal", "as_printed"]
 FitnessFeasible = Literal["collision_free", "clearance"]
 Mutation = Literal["bit_flip", "cell", "per_gene"]
@@ -37,6 +38,12 @@ _AT_CORNER = 1e-12
 def check(settings: dict) -> None:
     """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
     check_pairs(settings["population"])
+    least = curves.least_points(settings["curve"]) - 2
+    if settings["control_points"] < least:
+        raise ValueError(f"control_points: {settings['control_points']}; a curve of kind {settings['curve']} needs at least {least}")
+    pieces = len(curves.piece_matrix(settings["curve"], settings["control_points"] + 2))
+    if settings["samples"] < pieces + 1:
+        raise ValueError(f"samples: {settings['samples']}; the {pieces} pieces of this curve need at least {pieces + 1}")
     if settings["length_weight"] == 0:
         raise ValueError("length_weight: 0; a path without any cost has no fitness, so a number above 0 is needed")
 
@@ -45,6 +52,7 @@ def plan(
     problem: Problem,
     rng: np.random.Generator,
     *,
+    curve: CurveKind,
     control_points: Annotated[int, Range(0, 60)],
     samples: Annotated[int, Range(2)],
     initial: Literal["uniform", "sorted", "feasible"],
@@ -62,13 +70,13 @@ def plan(
     collision_factor: Annotated[float, Range(0)],
     collision_surcharge: Annotated[float, Range(0)],
 ) -> Plan:
-    """Bezier curve with `control_points` free control points in centres of free cells (ma2020, Sections 3.2 to 3.4).
+    """Curve with `control_points` free control points in centres of free cells (ma2020, Sections 3.2 to 3.4).
 
-    samples: points of the curve that are tested and measured, uniform in the parameter, both ends included. initial: genes are free cells
-    drawn uniformly; the same `sorted` by x + y; or drawn again until the curve is free of collisions, at most 200 times (`feasible`).
-    crossover_probability: of a pair of parents, cut between two genes. mutation_probability: of a chromosome, one random bit of one gene is
-    flipped, so that the gene stays a free cell (`bit_flip`), or the gene becomes a random free `cell`; or of each gene, a bit is flipped
-    (`per_gene`). elitism: how many of the best so far replace a chromosome.
+    curve: one Bezier curve, or a chain of quadratic pieces. samples: points of it that are tested and measured, uniform in the parameter,
+    both ends included. initial: genes are free cells drawn uniformly; the same `sorted` by x + y; or drawn again until the curve is free of
+    collisions, at most 200 times (`feasible`). crossover_probability: of a pair of parents, cut between two genes. mutation_probability: of
+    a chromosome, one random bit of one gene is flipped, so that the gene stays a free cell (`bit_flip`), or the gene becomes a random free
+    `cell`; or of each gene, a bit is flipped (`per_gene`). elitism: how many of the best so far replace a chromosome.
 
     fitness: 1 / cost. With the length L, c of n samples colliding, G = L (1 + collision_factor c / n) + collision_surcharge [c > 0], the
     weights w1 = length_weight and w2 = safety_weight, the straight distance D and the safety term F of eq. 14 (1 for c > 0), the cost is
@@ -96,35 +104,35 @@ def plan(
         # Nothing to search: one chromosome, the straight line.
         population, generations = 1, 0
     rules = _Rules(
-        crossover_probability,
-        mutation_probability,
-        get_args(Mutation).index(mutation),
-        elitism,
-        get_args(Fitness).index(fitness),
-        get_args(FitnessFeasible).index(fitness_feasible),
-        float(length_weight),
-        float(safety_weight),
-        safety_distance / grid.cell,
-        float(collision_factor),
-        collision_surcharge / grid.cell,
-        math.dist(problem.start, problem.target) / grid.cell,
-        grid.cell,
+        crossover_probability=float(crossover_probability),
+        mutation_probability=float(mutation_probability),
+        mutation=get_args(Mutation).index(mutation),
+        elitism=elitism,
+        fitness=get_args(Fitness).index(fitness),
+        clear_is_feasible=get_args(FitnessFeasible).index(fitness_feasible),
+        length_weight=float(length_weight),
+        safety_weight=float(safety_weight),
+        safety_distance=safety_distance / grid.cell,
+        collision_factor=float(collision_factor),
+        collision_surcharge=collision_surcharge / grid.cell,
+        straight=math.dist(problem.start, problem.target) / grid.cell,
+        cell=grid.cell,
     )
     cells = _cells(grid, math.ceil(rules.safety_distance))
-    curve = _curve(problem, control_points, samples)
+    sampled = _sampled(problem, curve, control_points, samples)
     starts, moves = rng.spawn(2)
     codes = cells.free[starts.integers(0, len(cells.free), size=(population, control_points))]
     if initial == "sorted":
         along = cells.centres[codes].sum(axis=2)
         codes = np.take_along_axis(codes, along.argsort(axis=1, kind="stable"), axis=1)
     elif initial == "feasible":
-        _redraw(starts, codes, cells, curve)
+        _redraw(starts, codes, cells, sampled)
 
-    best, history = _search(moves, codes, cells, curve, rules, generations)
-    _, bad, clearance = _measure(best, cells, curve, np.empty((3, samples)), True)
+    best, history = _search(moves, codes, cells, sampled, rules, generations)
+    _, bad, clearance = _measure(best, cells, sampled, np.empty((3, samples)), True)
     points = np.vstack([problem.start, grid.in_units(cells.centres[best]), problem.target])
     return Plan(
-        path=Path("bezier", points),
+        path=Path(curve, points),
         objective=history[-1],
         claimed_feasible=bad == 0,
         evaluations=population * (generations + 1),
@@ -199,15 +207,15 @@ def _cells(grid: Grid, reach: int) -> _Cells:
     return _Cells(grid.occupied, code_centres(rows, columns), legal, free, near, np.searchsorted(at, np.arange(rows * columns + 1)))
 
 
-def _curve(problem: Problem, control_points: int, samples: int) -> _Curve:
-    ends, free = _basis(control_points, samples)
+def _sampled(problem: Problem, curve: str, control_points: int, samples: int) -> _Curve:
+    ends, free = _basis(curve, control_points, samples)
     return _Curve(problem.workspace.in_cells(np.array([problem.start, problem.target])).T @ ends, free)
 
 
 @cache
-def _basis(control_points: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
+def _basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
     """Weights of start and target (2, samples) and of the free control points (n, samples) in the samples of a curve."""
-    basis = curves.sample_matrix("bezier", control_points + 2, samples).T
+    basis = curves.sample_matrix(curve, control_points + 2, samples).T
     return basis[[0, -1]], np.ascontiguousarray(basis[1:-1])
 
 

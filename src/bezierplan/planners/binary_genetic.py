@@ -8,7 +8,7 @@ The objective is a sum over stretches of the curve: runs of samples that depend 
 quadratic pieces). A stretch that a child inherits whole from a parent keeps its parent's length, which leaves every result as it is.
 """
 
-from typing import Annotated, Literal
+from typing import Annotated, Literal, NamedTuple, get_args
 
 import numpy as np
 from numba import njit
@@ -20,7 +20,7 @@ from bezierplan.workspaces.grid import ON_LINE, embed
 
 workspaces = ("grid",)
 
-_MUTATIONS = ("one_bit", "each_gene", "each_bit")
+Mutation = Literal["one_bit", "each_gene", "each_bit"]
 _ONE_BIT, _EACH_GENE, _EACH_BIT = range(3)
 
 
@@ -52,7 +52,7 @@ def plan(
     crossover_probability: Annotated[float, Range(0, 1)],
     cut: Literal["bit", "gene"],
     mutation_probability: Annotated[float, Range(0, 1)],
-    mutation: Literal["one_bit", "each_gene", "each_bit"],
+    mutation: Mutation,
     elitism: Annotated[int, Range(0, 1)],
     penalty: Annotated[float, Range(0)],
     penalty_for: Literal["each_sample", "path"],
@@ -86,24 +86,24 @@ def plan(
     cells[:, 0], cells[:, -1] = ends
 
     basis = curves.sample_matrix(curve, genes + 2, samples)
-    best, best_bad, history = _search(
-        moves,
-        cells,
-        occupied,
-        places,
-        np.ascontiguousarray(basis.T),
-        np.array([[0, genes + 1, 0, samples - 1]]) if spacing == "arc_length" else stretches(basis),
-        spacing == "arc_length",
-        generations,
-        crossover_probability,
-        cut == "gene",
-        mutation_probability,
-        _MUTATIONS.index(mutation),
-        elitism,
-        penalty / grid.cell,
-        penalty_for == "each_sample",
-        occupied_point_penalty / grid.cell,
+    by_arc_length = spacing == "arc_length"
+    measured = _Curve(
+        basis=np.ascontiguousarray(basis.T),
+        stretches=np.array([[0, genes + 1, 0, samples - 1]]) if by_arc_length else stretches(basis),
+        by_arc_length=by_arc_length,
     )
+    rules = _Rules(
+        generations=generations,
+        crossover_probability=float(crossover_probability),
+        cut_between_genes=cut == "gene",
+        mutation_probability=float(mutation_probability),
+        mutation=get_args(Mutation).index(mutation),
+        elitism=elitism,
+        penalty=penalty / grid.cell,
+        penalty_for_each=penalty_for == "each_sample",
+        occupied_point_penalty=occupied_point_penalty / grid.cell,
+    )
+    best, best_bad, history = _search(moves, cells, occupied, places, measured, rules)
     points = grid.in_units(places[best])
     points[[0, -1]] = problem.start, problem.target
     return Plan(
@@ -130,41 +130,47 @@ def stretches(basis: np.ndarray) -> np.ndarray:
     return np.column_stack([support[begins[:-1]], begins[:-1], begins[1:]])
 
 
+class _Curve(NamedTuple):
+    """How chromosomes are measured. basis: (control points, samples), the curve's linear map; stretches: those of `stretches`."""
+
+    basis: np.ndarray
+    stretches: np.ndarray
+    by_arc_length: bool
+
+
+class _Rules(NamedTuple):
+    """Settings of `plan` for the search; penalties in cells."""
+
+    generations: int
+    crossover_probability: float
+    cut_between_genes: bool
+    mutation_probability: float
+    mutation: int
+    elitism: int
+    penalty: float
+    penalty_for_each: bool
+    occupied_point_penalty: float
+
+
 @njit(cache=True)
-def _search(
-    rng,
-    cells,
-    occupied,
-    places,
-    basis,
-    stretches,
-    by_arc_length,
-    generations,
-    crossover_probability,
-    cut_between_genes,
-    mutation_probability,
-    mutation,
-    elitism,
-    penalty,
-    penalty_for_each,
-    occupied_point_penalty,
-):
+def _search(rng, cells, occupied, places, curve, rules):
     """Cells (control points,) of the best chromosome, its samples in occupied cells, and the best objective so far (generations + 1,).
 
     cells: (population, control points) numbers of cells. places: (cells + 2, 2) their centres, and start and target, in cells.
     """
     population, points = cells.shape
     genes = points - 2
+    basis, stretches = curve.basis, curve.stretches
     bits = int(np.log2(occupied.size) + 0.5)
     lengths, bad = np.empty((population, len(stretches))), np.empty((population, len(stretches)), dtype=np.int64)
     parent_lengths, parent_bad = np.empty_like(lengths), np.empty_like(bad)
     parents, drawn = np.full_like(cells, -1), np.zeros(population, dtype=np.int64)  # the first generation inherits nothing
     objective = np.empty(population)
     best, best_objective, best_bad = cells[0].copy(), np.inf, 0
-    history = np.empty(generations + 1)
+    history = np.empty(rules.generations + 1)
     x, y = np.empty(basis.shape[1]), np.empty(basis.shape[1])
 
-    for generation in range(generations + 1):
+    for generation in range(rules.generations + 1):
         for i in range(population):
             mother, father = drawn[i - i % 2], drawn[min(i | 1, population - 1)]
             for k in range(len(stretches)):
@@ -173,20 +179,20 @@ def _search(
                     lengths[i, k], bad[i, k] = parent_lengths[mother, k], parent_bad[mother, k]
                 elif _same(cells[i], parents[father], first, last):
                     lengths[i, k], bad[i, k] = parent_lengths[father, k], parent_bad[father, k]
-                elif by_arc_length:
+                elif curve.by_arc_length:
                     lengths[i, k], bad[i, k] = _measure_by_arc_length(cells[i], occupied, places, len(x))
                 else:
                     lengths[i, k], bad[i, k] = _measure(cells[i], occupied, places, basis, stretches[k], x, y)
             count = bad[i].sum()
-            objective[i] = lengths[i].sum() + penalty * (count if penalty_for_each else min(count, 1))
-            if occupied_point_penalty > 0:
+            objective[i] = lengths[i].sum() + rules.penalty * (count if rules.penalty_for_each else min(count, 1))
+            if rules.occupied_point_penalty > 0:
                 for cell in cells[i, 1:-1]:
-                    objective[i] += occupied_point_penalty * occupied.flat[cell]
+                    objective[i] += rules.occupied_point_penalty * occupied.flat[cell]
             if objective[i] < best_objective:
                 _copy(cells[i], best)
                 best_objective, best_bad = objective[i], count
         history[generation] = best_objective
-        if generation == generations:
+        if generation == rules.generations:
             break
 
         parents, cells = cells, parents
@@ -196,12 +202,12 @@ def _search(
         for i in range(population):
             _copy(parents[drawn[i]], cells[i])
         for i in range(0, population, 2):
-            if rng.random() < crossover_probability:
-                cut = bits * rng.integers(1, genes) if cut_between_genes else rng.integers(1, bits * genes)
+            if rng.random() < rules.crossover_probability:
+                cut = bits * rng.integers(1, genes) if rules.cut_between_genes else rng.integers(1, bits * genes)
                 swap_tails(cells[i, 1:-1], cells[i + 1, 1:-1], cut, bits)
         for i in range(population):
-            _mutate(rng, cells[i, 1:-1], bits, mutation_probability, mutation)
-        if elitism:
+            _mutate(rng, cells[i, 1:-1], bits, rules.mutation_probability, rules.mutation)
+        if rules.elitism:
             _copy(best, cells[0])
     return best, best_bad, history
 

@@ -18,7 +18,8 @@ from numba import njit
 
 from bezierplan import curves
 from bezierplan.problem import Path, Plan, Problem, Range
-from bezierplan.search import chaotic_maps
+from bezierplan.search import chaotic_maps, penalised
+from bezierplan.search.penalised import FEASIBLE, Objective, Penalty
 
 logger = logging.getLogger(__name__)
 
@@ -27,14 +28,9 @@ workspaces = ("circles",)
 ChaoticTerm = Literal["none", "cognitive", "social"]
 RandomNumbers = Literal["dimension", "particle", "iteration"]
 BoundRule = Literal["mirror", "clamp", "stop", "none"]
-Penalty = Literal["multiply", "add", "death"]
 _NO_TERM, _COGNITIVE, _SOCIAL = range(3)
 _EACH_DIMENSION, _EACH_PARTICLE, _EACH_ITERATION = range(3)
 _MIRROR, _CLAMP, _STOP, _NO_BOUND = range(4)
-_MULTIPLY, _ADD, _DEATH = range(3)
-
-# A path whose violation is not above this is feasible: a swarm that converges ends tangent to a circle, a rounding error deep.
-FEASIBLE = 1e-9
 
 
 class Swarm(NamedTuple):
@@ -56,6 +52,40 @@ class Swarm(NamedTuple):
     best_infeasible: int
     zeta_clipped: int
     zeta_collapsed_at: int
+
+
+class Settings(NamedTuple):
+    """The settings of `plan`, by the same names."""
+
+    curve: str
+    control_points: int
+    samples: int
+    penalty: str
+    beta: float
+    d_min: float
+    particles: int
+    iterations: int
+    stall_limit: int
+    straight_line_particle: bool
+    c1: float
+    c2: float
+    inertia: float
+    inertia_damping: float
+    velocity_limit: float
+    bound_rule: str
+    random_numbers: str
+    update: str
+    chaotic_term: str
+    chaotic_map: str
+    chaotic_start_rule: str
+    chaotic_start: float
+    zeta_for: str
+    singer_mu: float
+    singer_x4: float
+    sine_a: float
+    piecewise_p: float
+    sinusoidal_a: float
+    count_collisions: bool
 
 
 def check(settings: dict) -> None:
@@ -128,7 +158,38 @@ def plan(
     of samples of the best path, added over the iterations (c), of iterations whose best path collides (d), of final paths, 0 or 1 (e), of
     evaluated paths in the run (f).
     """
-    swarm = search(**locals())
+    settings = Settings(
+        curve=curve,
+        control_points=control_points,
+        samples=samples,
+        penalty=penalty,
+        beta=beta,
+        d_min=d_min,
+        particles=particles,
+        iterations=iterations,
+        stall_limit=stall_limit,
+        straight_line_particle=straight_line_particle,
+        c1=c1,
+        c2=c2,
+        inertia=inertia,
+        inertia_damping=inertia_damping,
+        velocity_limit=velocity_limit,
+        bound_rule=bound_rule,
+        random_numbers=random_numbers,
+        update=update,
+        chaotic_term=chaotic_term,
+        chaotic_map=chaotic_map,
+        chaotic_start_rule=chaotic_start_rule,
+        chaotic_start=chaotic_start,
+        zeta_for=zeta_for,
+        singer_mu=singer_mu,
+        singer_x4=singer_x4,
+        sine_a=sine_a,
+        piecewise_p=piecewise_p,
+        sinusoidal_a=sinusoidal_a,
+        count_collisions=count_collisions,
+    )
+    swarm = search(problem, rng, settings)
     done = len(swarm.fitness) - 1
     evaluations = (1 if control_points == 0 else particles) * (done + 1)
     feasible = swarm.violation <= FEASIBLE
@@ -157,46 +218,35 @@ def plan(
 def track(problem: Problem, rng: np.random.Generator, **settings: Any) -> np.ndarray:
     """Control points (iterations done + 1, control points, 2) of the best path after every iteration of the run that `plan` makes of the
     same generator and settings, in units (tharwat2018, Figure 12)."""
-    positions = search(problem, rng, **settings).positions
+    positions = search(problem, rng, Settings(**settings)).positions
     return np.array([_points(position, settings["curve"], problem) for position in positions])
 
 
-def search(problem: Problem, rng: np.random.Generator, **settings: Any) -> Swarm:
-    """The search behind `plan` and `track`, with the settings of `plan`."""
+def search(problem: Problem, rng: np.random.Generator, settings: Settings) -> Swarm:
+    """The search behind `plan` and `track`."""
     initial, moves, chaos = rng.spawn(3)
-    particles, iterations, dimensions = settings["particles"], settings["iterations"], 2 * settings["control_points"]
+    particles, iterations, dimensions = settings.particles, settings.iterations, 2 * settings.control_points
     if dimensions == 0:
         particles, iterations = 1, 0
     objective = _objective(problem, settings)
     low, high = np.repeat(np.reshape(problem.workspace.bounds, (2, 2)).T, dimensions // 2, axis=1)
     x = low + (high - low) * initial.random((particles, dimensions))
-    if settings["straight_line_particle"]:
-        x[0] = _straight_line(problem, settings["curve"], dimensions // 2)
+    if settings.straight_line_particle:
+        x[0] = _straight_line(problem, settings.curve, dimensions // 2)
     zeta, clipped, collapsed_at = _zeta(chaos, (iterations, particles, dimensions), settings)
     rules = _Rules(
-        settings["stall_limit"],
-        *(float(settings[name]) for name in ("c1", "c2", "inertia", "inertia_damping")),  # a whole number would compile kernels anew
-        get_args(BoundRule).index(settings["bound_rule"]),
-        get_args(RandomNumbers).index(settings["random_numbers"]),
-        settings["update"] == "synchronous",
-        get_args(ChaoticTerm).index(settings["chaotic_term"]),
-        settings["count_collisions"],
+        stall_limit=settings.stall_limit,
+        c1=float(settings.c1),  # a whole number would compile kernels anew
+        c2=float(settings.c2),
+        inertia=float(settings.inertia),
+        inertia_damping=float(settings.inertia_damping),
+        bound_rule=get_args(BoundRule).index(settings.bound_rule),
+        random_numbers=get_args(RandomNumbers).index(settings.random_numbers),
+        synchronous=settings.update == "synchronous",
+        chaotic_term=get_args(ChaoticTerm).index(settings.chaotic_term),
+        count_collisions=settings.count_collisions,
     )
-    return Swarm(*_swarm(moves, x, zeta, low, high, settings["velocity_limit"] * (high - low), objective, rules), clipped, collapsed_at)
-
-
-class _Objective(NamedTuple):
-    """The fitness of a path, for the kernels.
-
-    ends: (2, samples), x and y of what start and target give to the samples. free: (n, samples), the weights of the free control points.
-    circles: (obstacles, 3), x, y and radius, in units. penalty: its number. beta: its factor.
-    """
-
-    ends: np.ndarray
-    free: np.ndarray
-    circles: np.ndarray
-    penalty: int
-    beta: float
+    return Swarm(*_swarm(moves, x, zeta, low, high, settings.velocity_limit * (high - low), objective, rules), clipped, collapsed_at)
 
 
 class _Rules(NamedTuple):
@@ -214,17 +264,17 @@ class _Rules(NamedTuple):
     count_collisions: bool
 
 
-def _objective(problem: Problem, settings: dict) -> _Objective:
-    ends, free = _basis(settings["curve"], settings["control_points"], settings["samples"])
+def _objective(problem: Problem, settings: Settings) -> Objective:
+    ends, free = _basis(settings.curve, settings.control_points, settings.samples)
     field = problem.workspace
     circles = np.empty((len(field.radii), 3))
-    circles[:, :2], circles[:, 2] = field.centres, field.radii + settings["d_min"]
-    return _Objective(
-        np.array([problem.start, problem.target]).T @ ends,
-        free,
-        circles,
-        get_args(Penalty).index(settings["penalty"]),
-        float(settings["beta"]),
+    circles[:, :2], circles[:, 2] = field.centres, field.radii + settings.d_min
+    return Objective(
+        ends=np.array([problem.start, problem.target]).T @ ends,
+        free=free,
+        circles=circles,
+        penalty=get_args(Penalty).index(settings.penalty),
+        beta=float(settings.beta),
     )
 
 
@@ -262,17 +312,23 @@ def _straight_line(problem: Problem, curve: str, control_points: int) -> np.ndar
     return points[_free(curve, control_points)].T.ravel()
 
 
-def _zeta(chaos: np.random.Generator, size: tuple[int, int, int], settings: dict) -> chaotic_maps.Sequence:
+def _zeta(chaos: np.random.Generator, size: tuple[int, int, int], settings: Settings) -> chaotic_maps.Sequence:
     """The chaotic sequence; its values (iterations, particles or 1, dimensions or 1), the iteration at which it collapsed."""
-    shape = size[: {"iteration": 1, "particle": 2, "dimension": 3}[settings["zeta_for"]]]
+    shape = size[: {"iteration": 1, "particle": 2, "dimension": 3}[settings.zeta_for]]
     shape += (1,) * (3 - len(shape))
-    if settings["chaotic_term"] == "none":
+    if settings.chaotic_term == "none":
         return chaotic_maps.Sequence(np.zeros(shape), 0, 0)
-    parameters = chaotic_maps.Parameters(*(float(settings[name]) for name in chaotic_maps.Parameters._fields))
-    start = settings["chaotic_start"]
-    if settings["chaotic_start_rule"] == "random":
-        start = chaotic_maps.random_start(chaos, settings["chaotic_map"], parameters)
-    found = chaotic_maps.sequence(settings["chaotic_map"], float(start), math.prod(shape), parameters)
+    parameters = chaotic_maps.Parameters(
+        singer_mu=float(settings.singer_mu),
+        singer_x4=float(settings.singer_x4),
+        sine_a=float(settings.sine_a),
+        piecewise_p=float(settings.piecewise_p),
+        sinusoidal_a=float(settings.sinusoidal_a),
+    )
+    start = settings.chaotic_start
+    if settings.chaotic_start_rule == "random":
+        start = chaotic_maps.random_start(chaos, settings.chaotic_map, parameters)
+    found = chaotic_maps.sequence(settings.chaotic_map, float(start), math.prod(shape), parameters)
     collapsed_in = math.ceil(found.collapsed_at / math.prod(shape[1:])) if found.collapsed_at else 0
     return chaotic_maps.Sequence(found.values.reshape(shape), found.clipped, collapsed_in)
 
@@ -308,13 +364,13 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
                     _draw(rng, r)
                 _move(rng, r, x[i], v[i], p[i], attractor, zeta[before, min(i, zeta.shape[1] - 1)], w, limit, rules)
                 _hold(x[i], v[i], low, high, rules.bound_rule)
-            length = _length(x[i], objective, curve_x, curve_y, scratch)
-            if not rules.count_collisions and _least_fitness(length, objective) >= p_fitness[i]:
+            length = penalised.length(x[i], objective, curve_x, curve_y, scratch)
+            if not rules.count_collisions and penalised.least_fitness(length, objective) >= p_fitness[i]:
                 continue
-            violation, colliding = _violation(curve_x, curve_y, objective.circles, scratch)
+            violation, colliding = penalised.violation(curve_x, curve_y, objective.circles, scratch)
             infeasible += violation > FEASIBLE
             colliding_samples += colliding
-            fitness = _fitness(length, violation, objective)
+            fitness = penalised.fitness(length, violation, objective)
             if fitness < p_fitness[i]:
                 _copy(x[i], p[i])
                 p_fitness[i] = fitness
@@ -375,88 +431,3 @@ def _hold(x, v, low, high, bound_rule):
                 v[d] = -v[d]
             elif bound_rule == _STOP:
                 v[d] = 0.0
-
-
-@njit(cache=True)
-def _fitness(length, violation, objective):
-    """Length of a path and the penalty for its violation (tharwat2018, eq. 22, which leaves the penalty open)."""
-    if objective.penalty == _MULTIPLY:
-        return length * (1.0 + objective.beta * violation)
-    if objective.penalty == _ADD:
-        return length + objective.beta * violation
-    return objective.beta if violation > FEASIBLE else length
-
-
-@njit(cache=True)
-def _least_fitness(length, objective):
-    """The least fitness that a path of this length can have, whatever it meets."""
-    return min(length, objective.beta) if objective.penalty == _DEATH else length
-
-
-@njit(cache=True)
-def _length(z, objective, x, y, chords):
-    """Length of the polyline through the samples of a particle's curve (tharwat2018, eq. 19).
-
-    z: (2 n,), the particle. x, y: (samples,), the samples, which are set. chords: (samples,) scratch.
-    """
-    ends, free = objective.ends, objective.free
-    n, samples = free.shape
-    for s in range(samples):
-        x[s], y[s] = ends[0, s], ends[1, s]
-    # Three control points at a time, so that each sample is read and written less often.
-    threes = n // 3 * 3
-    for k in range(0, threes, 3):
-        ax, bx, cx = z[k], z[k + 1], z[k + 2]
-        ay, by, cy = z[n + k], z[n + k + 1], z[n + k + 2]
-        for s in range(samples):
-            x[s] = x[s] + ax * free[k, s] + bx * free[k + 1, s] + cx * free[k + 2, s]
-            y[s] = y[s] + ay * free[k, s] + by * free[k + 1, s] + cy * free[k + 2, s]
-    for k in range(threes, n):
-        zx, zy = z[k], z[n + k]
-        for s in range(samples):
-            x[s] += zx * free[k, s]
-            y[s] += zy * free[k, s]
-    # Several roots are taken at a time if their sum is apart; its four parts need not wait for each other.
-    for s in range(samples - 1):
-        dx, dy = x[s + 1] - x[s], y[s + 1] - y[s]
-        chords[s] = np.sqrt(dx * dx + dy * dy)
-    a, b, c, d = 0.0, 0.0, 0.0, 0.0
-    fours = (samples - 1) // 4 * 4
-    for s in range(0, fours, 4):
-        a += chords[s]
-        b += chords[s + 1]
-        c += chords[s + 2]
-        d += chords[s + 3]
-    for s in range(fours, samples - 1):
-        a += chords[s]
-    return (a + b) + (c + d)
-
-
-@njit(cache=True)
-def _violation(x, y, circles, squares):
-    """Violation of a path, and its number of samples in circles, both summed over the circles.
-
-    The violation of a circle is the mean over the samples of their depth below its edge, as a share of its radius (tharwat2018, eqs. 20 and
-    21; the paper prints control points where only points of the path make sense).
-
-    x, y: (samples,). circles: (obstacles, 3). squares: (samples,) scratch.
-    """
-    samples = len(x)
-    violation, colliding = 0.0, 0
-    for o in range(len(circles)):
-        x_centre, y_centre, radius = circles[o, 0], circles[o, 1], circles[o, 2]
-        square = radius * radius
-        inside = 0
-        for s in range(samples):
-            dx, dy = x[s] - x_centre, y[s] - y_centre
-            squares[s] = dx * dx + dy * dy
-            inside += squares[s] < square
-        if inside:
-            depth = 0.0
-            for s in range(samples):
-                # Few samples are inside: their roots are taken one by one.
-                if squares[s] < square:
-                    depth += max(1.0 - np.sqrt(squares[s]) / radius, 0.0)
-            violation += depth / samples
-            colliding += inside
-    return violation, colliding

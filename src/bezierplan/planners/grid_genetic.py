@@ -8,13 +8,14 @@ A cell has eight neighbours; a diagonal step may pass between two occupied cells
 frame of occupied cells around it, so that no step leaves the grid. Costs in the kernels are in cells.
 """
 
-from typing import Annotated
+from typing import Annotated, NamedTuple
 
 import numpy as np
 from numba import njit
 
 from bezierplan.problem import Path, Plan, Problem, Range
 from bezierplan.search.genetic import roulette
+from bezierplan.search.sorting import ascending
 
 workspaces = ("grid",)
 exact = True
@@ -55,22 +56,24 @@ def plan(
     ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
     (start_column, target_column), (start_row, target_row) = np.minimum(ends.astype(int), np.array(grid.occupied.shape[::-1]) - 1).T + 1
     rows, columns = grid.occupied.shape
-    cells, found, history = _search(
-        *rng.spawn(2),
-        walled,
-        start_row * walled.shape[1] + start_column,
-        target_row * walled.shape[1] + target_column,
-        population,
-        generations if problem.start != problem.target else 0,
-        crossover_probability,
-        mutation_probability,
-        diagonal_cost,
-        attempts * population,
-        int(longest_walk * (rows + columns)),
-        least_detour,
-        max(least_detour, least_detour - 1 + int(detour_share * columns)),
-        straight_on,
+    walker = _Walker(
+        walled=walled.ravel(),
+        columns=walled.shape[1],
+        longest_walk=int(longest_walk * (rows + columns)),
+        least_detour=least_detour,
+        most_detour=max(least_detour, least_detour - 1 + int(detour_share * columns)),
+        straight_on=float(straight_on),
     )
+    rules = _Rules(
+        population=population,
+        generations=generations if problem.start != problem.target else 0,
+        crossover_probability=float(crossover_probability),
+        mutation_probability=float(mutation_probability),
+        diagonal_cost=float(diagonal_cost),
+        attempts=attempts * population,
+    )
+    start, target = start_row * walled.shape[1] + start_column, target_row * walled.shape[1] + target_column
+    cells, found, history = _search(*rng.spawn(2), walker, start, target, rules)
     history *= grid.cell
     extra = {"first_walks": int(found)}
     if found == 0:
@@ -106,32 +109,39 @@ def _through(problem: Problem, centres: np.ndarray) -> np.ndarray:
     return np.array(points)
 
 
+class _Walker(NamedTuple):
+    """What a walk depends on, settings of `plan` among it. walled: bool (cells,), the framed grid row by row, with so many columns.
+    longest_walk: in steps; least_detour, most_detour: steps of a detour, both included.
+    """
+
+    walled: np.ndarray
+    columns: int
+    longest_walk: int
+    least_detour: int
+    most_detour: int
+    straight_on: float
+
+
+class _Rules(NamedTuple):
+    """Settings of `plan` for the search; attempts: first walks in all."""
+
+    population: int
+    generations: int
+    crossover_probability: float
+    mutation_probability: float
+    diagonal_cost: float
+    attempts: int
+
+
 @njit(cache=True)
-def _search(
-    walks_rng,
-    moves_rng,
-    walled,
-    start,
-    target,
-    population,
-    generations,
-    crossover_probability,
-    mutation_probability,
-    diagonal_cost,
-    attempts,
-    longest_walk,
-    least_detour,
-    most_detour,
-    straight_on,
-):
+def _search(walks_rng, moves_rng, walker, start, target, rules):
     """Cells (n,) of the cheapest path, the number of first walks found, and the lowest cost so far (generations + 1,)."""
-    size, columns = walled.size, walled.shape[1]
-    walker = (walled.reshape(size), columns, longest_walk, least_detour, most_detour, straight_on)
+    size, columns, population = len(walker.walled), walker.columns, rules.population
     # A path visits a cell once; a child joins at most two paths and a walk before its loops are cut.
-    walk, last_visit = np.empty(2 * size + 2 * longest_walk + 2, dtype=np.int64), np.empty(size, dtype=np.int64)
+    walk, last_visit = np.empty(2 * size + 2 * walker.longest_walk + 2, dtype=np.int64), np.empty(size, dtype=np.int64)
     place, common = np.full(size, -1), np.empty(size, dtype=np.int64)
 
-    paths, costs = _first_walks(walks_rng, walker, start, target, population, attempts, diagonal_cost, walk, last_visit)
+    paths, costs = _first_walks(walks_rng, walker, start, target, rules, walk, last_visit)
     found = len(paths)
     if found == 0:
         return np.empty(0, dtype=np.int64), found, np.full(1, np.inf)
@@ -139,23 +149,23 @@ def _search(
         paths.append(paths[i % found])
         costs[i] = costs[i % found]
     paths, costs = _best(paths, costs, population)
-    history = np.empty(generations + 1)
+    history = np.empty(rules.generations + 1)
     history[0] = costs[0]
 
-    for generation in range(generations):
+    for generation in range(rules.generations):
         drawn = roulette(moves_rng, 1.0 / costs[:population], 2 * population)
         for i in range(population):
             head, tail = paths[drawn[2 * i]], paths[drawn[2 * i + 1]]
             count = 0
-            if moves_rng.random() < crossover_probability:
+            if moves_rng.random() < rules.crossover_probability:
                 count = _join(moves_rng, head, tail, place, common, walk)
             if count == 0:
                 count = _copy(head, 0, len(head), walk, 0)
             count = _cut_loops(walk, count, last_visit)
-            if moves_rng.random() < mutation_probability and count > 1:
+            if moves_rng.random() < rules.mutation_probability and count > 1:
                 count = _walk_anew(moves_rng, walker, walk, count, last_visit)
             paths.append(walk[:count].copy())
-            costs[population + i] = _cost(walk, count, columns, diagonal_cost)
+            costs[population + i] = _cost(walk, count, columns, rules.diagonal_cost)
         paths, costs = _best(paths, costs, population)
         history[generation + 1] = costs[0]
     return paths[0], found, history
@@ -164,13 +174,7 @@ def _search(
 @njit(cache=True)
 def _best(paths, costs, population):
     """The cheapest paths, the cheapest first, of equal ones the first; and their costs (2 population,), with room for children."""
-    order = np.arange(len(paths))
-    for k in range(1, len(paths)):
-        path, place = order[k], k
-        while place > 0 and costs[order[place - 1]] > costs[path]:
-            order[place] = order[place - 1]
-            place -= 1
-        order[place] = path
+    order = ascending(costs[: len(paths)])
     best = np.empty(2 * population)
     for k in range(population):
         best[k] = costs[order[k]]
@@ -178,27 +182,26 @@ def _best(paths, costs, population):
 
 
 @njit(cache=True)
-def _first_walks(rng, walker, start, target, population, attempts, diagonal_cost, walk, last_visit):
+def _first_walks(rng, walker, start, target, rules, walk, last_visit):
     """Up to `population` paths, and their costs (2 population,): the first one straight to the target, the others by way of a free cell."""
-    walled, columns = walker[0], walker[1]
     paths = [walk[:0]]
     paths.clear()
-    costs = np.empty(2 * population)
-    for attempt in range(attempts):
-        if len(paths) == population:
+    costs = np.empty(2 * rules.population)
+    for attempt in range(rules.attempts):
+        if len(paths) == rules.population:
             break
         walk[0] = start
         count = 1
         if attempt > 0:
-            way = rng.integers(0, len(walled))
-            while walled[way]:
-                way = rng.integers(0, len(walled))
+            way = rng.integers(0, len(walker.walled))
+            while walker.walled[way]:
+                way = rng.integers(0, len(walker.walled))
             count = _extend(rng, walker, walk, count, way)
         if count > 0:
             count = _extend(rng, walker, walk, count, target)
         if count > 0:
             count = _cut_loops(walk, count, last_visit)
-            costs[len(paths)] = _cost(walk, count, columns, diagonal_cost)
+            costs[len(paths)] = _cost(walk, count, walker.columns, rules.diagonal_cost)
             paths.append(walk[:count].copy())
     return paths, costs
 
@@ -206,8 +209,8 @@ def _first_walks(rng, walker, start, target, population, attempts, diagonal_cost
 @njit(cache=True)
 def _extend(rng, walker, walk, count, goal):
     """Continue a walk of `count` cells to a goal, in place. Returns the new number of cells, 0 if it becomes too long or cannot move."""
-    walled, columns, longest_walk, least_detour, most_detour, straight_on = walker
-    end = count + longest_walk
+    walled, columns = walker.walled, walker.columns
+    end = count + walker.longest_walk
     goal_row, goal_column = goal // columns, goal % columns
     cell = walk[count - 1]
     row, column = cell // columns, cell % columns
@@ -225,13 +228,13 @@ def _extend(rng, walker, walk, count, goal):
                     nearest = distance
                     nearer = k
             if nearer < 0:
-                detour = rng.integers(least_detour, most_detour + 1)
+                detour = rng.integers(walker.least_detour, walker.most_detour + 1)
             else:
                 step = nearer
         if detour > 0:
             detour -= 1
             blocked = step < 0 or walled[cell + _ROW_STEPS[step] * columns + _COLUMN_STEPS[step]]
-            if blocked or rng.random() >= straight_on:
+            if blocked or rng.random() >= walker.straight_on:
                 step = _random_step(rng, walled, columns, cell)
                 if step < 0:
                     return 0

@@ -9,9 +9,8 @@ In a maze the algorithm as printed finds no path. So that it can, a first popula
 joined in the order in which a walk from the start reaches them, and a mutation can shift a control point; none of this is in the paper.
 """
 
-import heapq
 import math
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, Literal, NamedTuple, get_args
 
 import numpy as np
 from numba import njit
@@ -19,10 +18,9 @@ from numba import njit
 from bezierplan.cell_length import cells4, cells8, occupied_cells, parts, polyline_length, sample, touched_cells
 from bezierplan.planners.prm import road_map
 from bezierplan.problem import Path, Plan, Problem, Range
-from bezierplan.search.diversity import q_statistic, shared
+from bezierplan.search import gene_lists
 from bezierplan.search.genetic import check_pairs
-from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.lattice import STEPS
+from bezierplan.workspaces.gene_lattice import Field, field_of, polygon
 
 workspaces = ("grid",)
 
@@ -42,38 +40,19 @@ _UNFIT = 1e-9
 _FIRST_SAMPLES = 30
 _ON_LINE = 1e-9
 
-_LENGTHS = ("length", "cells4", "cells8")
+FitnessLength = Literal["length", "cells4", "cells8"]
+Mutation = Literal["gene", "chromosome", "one_flip", "shift"]
+Diversity = Literal["none", "more_offspring", "relaxing", "unique"]
 _LENGTH, _CELLS4, _CELLS8 = range(3)
-_MUTATIONS = ("gene", "chromosome", "one_flip", "shift")
 _EACH_GENE, _CHROMOSOME, _ONE_FLIP, _SHIFT = range(4)
+_NO_DIVERSITY, _MORE_OFFSPRING, _RELAXING, _UNIQUE = range(4)
 
 # A shift moves a control point by at most this share of the places of a side.
 _SHIFT_REACH = 0.1
 
-_DIVERSITIES = ("none", "more_offspring", "relaxing", "unique")
-_NO_DIVERSITY, _MORE_OFFSPRING, _RELAXING, _UNIQUE = range(4)
-
-
-class Field(NamedTuple):
-    """Where the curves lie; lengths in cells from the grid's corner.
-
-    occupied: bool (rows, columns). points: (genes, 2) centre of each gene's cell. rank: (genes,) its place in the order in which control
-    points are joined. settable: (genes,) whether it may be 1; choices: the genes that may. places: how many the longer side has, columns
-    and rows of the lattice that lie on the map. start, target: (2,).
-    """
-
-    occupied: np.ndarray
-    points: np.ndarray
-    rank: np.ndarray
-    settable: np.ndarray
-    choices: np.ndarray
-    places: tuple[int, int, int]
-    start: np.ndarray
-    target: np.ndarray
-
 
 class Rules(NamedTuple):
-    """Settings of `plan` that the search needs, by the same names; words by their number."""
+    """Settings of `plan` that the search needs, by the same names; words by their number. pairs: of parents crossed in a batch."""
 
     population: int
     iterations: int
@@ -94,17 +73,7 @@ class Rules(NamedTuple):
     penalty: float
     generational: bool
     unmutated: bool
-
-
-class Pool(NamedTuple):
-    """Chromosomes: ones (places, `_ROOM`) the genes that are 1, ascending; count (places,) how many; cost (places,) what the fitness is
-    the inverse of; free (places,) whether the curve is free of collisions.
-    """
-
-    ones: np.ndarray
-    count: np.ndarray
-    cost: np.ndarray
-    free: np.ndarray
+    pairs: int
 
 
 class Found(NamedTuple):
@@ -141,13 +110,14 @@ def plan(
     population: Annotated[int, Range(2)],
     iterations: Annotated[int, Range(1)],
     crossover_probability: Annotated[float, Range(0, 1)],
-    mutation: Literal["gene", "chromosome", "one_flip", "shift"],
+    mutation: Mutation,
     mutation_rate: Annotated[float, Range(0, 1)],
-    diversity: Literal["none", "more_offspring", "relaxing", "unique"],
+    diversity: Diversity,
     eta: Annotated[float, Range(-1, 1)],
     eta_decay: Annotated[float, Range(0, 1)],
     most_batches: Annotated[int, Range(0)],
     gene_lattice: Literal["coarse", "cell"],
+    gene_order: Literal["columns", "rows"],
     point_order: Literal["projection", "index", "geodesic"],
     first_population: Literal["random", "roadmaps"],
     most_roadmaps: Annotated[int, Range(0)],
@@ -158,29 +128,31 @@ def plan(
     replacements: Annotated[int, Range(0)],
     least_distance: Annotated[float, Range(0)],
     curve: CurveKind,
-    fitness_length: Literal["length", "cells4", "cells8"],
+    fitness_length: FitnessLength,
     invalid: Literal["delete", "penalty"],
     penalty: Annotated[float, Range(0)],
     survival: Literal["best_of_all", "generational"],
     offspring: Literal["both", "mutated"],
+    children_per_parent: Annotated[int, Range(1, 2)],
 ) -> Plan:
     """Shortest curve through control points on a lattice of cells (elhoseny2017, Algorithms 1 and 2).
 
-    mutation: every gene changes with the probability mutation_rate, one gene of a chromosome does, or one gene always does (one_flip);
-    or a chromosome, with that probability, loses a control point, gets another one, or has one shifted (shift). diversity: no rule at
-    all (the plain algorithm); more offspring as long as the mean Q of the pool is above eta, at most most_batches times an iteration
-    (Algorithm 2); only children whose mean Q to the pool is at most 1 - eta (relaxing); no child equal to another chromosome of the
-    pool (unique). eta changes by the factor eta_decay from one iteration to the next. gene_lattice: 21 x 21 points, or every cell.
-    point_order: control points are joined in the order of their projection on the line from start to target, ties from its left to its
-    right, in the order of the genes, or in that of their distance from the start over free cells (geodesic). first_population: random
-    chromosomes, or the inner nodes of ways along random road maps (`prm`) of roadmap_nodes and roadmap_neighbours, of which there are
-    at most most_roadmaps; random chromosomes stand in for those that are missing. first_points: the most control points of a random
-    chromosome. first_draws: for each of the first population. replacements: draws for an invalid child. least_distance: between two
-    control points, in cells. curve: a single Bezier curve, or quadratic pieces that meet half-way between the points (composite).
-    fitness_length: what the fitness is the inverse of, the length of the sampled curve or a length that counts cells (`cell_length`).
-    invalid: what becomes of a curve that touches occupied cells; with penalty cells each are added to its length. survival: the best of
-    parents and offspring, or of the offspring alone (generational). offspring: what joins the pool, the children of a crossover and
-    beside them their mutants (both), or the mutants alone.
+    mutation: every gene changes with the probability mutation_rate, one gene of a chromosome does, or one gene always does (one_flip); or a
+    chromosome, with that probability, loses a control point, gets another one, or has one shifted (shift). diversity: no rule at all (the
+    plain algorithm); more offspring as long as the mean Q of the pool is above eta, at most most_batches times an iteration (Algorithm 2);
+    only children whose mean Q to the pool is at most 1 - eta (relaxing); no child equal to another chromosome of the pool (unique). eta
+    changes by the factor eta_decay from one iteration to the next. gene_lattice: 21 x 21 points, or every cell; gene_order: genes are
+    numbered column by column from the left, or row by row from below. point_order: control points are joined in the order of their
+    projection on the line from start to target, ties from its left to its right, in the order of the genes, or in that of their distance
+    from the start over free cells (geodesic). first_population: random chromosomes, or the inner nodes of ways along random road maps
+    (`prm`) of roadmap_nodes and roadmap_neighbours, of which there are at most most_roadmaps; random chromosomes stand in for those that
+    are missing. first_points: the most control points of a random chromosome. first_draws: for each of the first population. replacements:
+    draws for an invalid child. least_distance: between two control points, in cells. curve: a single Bezier curve, or quadratic pieces that
+    meet half-way between the points (composite). fitness_length: what the fitness is the inverse of, the length of the sampled curve or a
+    length that counts cells (`cell_length`). invalid: what becomes of a curve that touches occupied cells; with penalty cells each are
+    added to its length. survival: the best of parents and offspring, or of the offspring alone (generational). offspring: what joins the
+    pool, the children of a crossover and beside them their mutants (both), or the mutants alone; children_per_parent: how many children a
+    batch has for each chromosome of the population.
 
     The planner's own test: no cell that the sampled curve touches is occupied. Extra columns: distinct_chromosomes in the population and
     mean_q of the pool, means over the iterations; extra_batches of offspring; valid_share of the children.
@@ -190,27 +162,28 @@ def plan(
     if problem.start == problem.target:
         nothing = {"distinct_chromosomes": 0.0, "mean_q": math.nan, "extra_batches": 0, "valid_share": math.nan}
         return Plan(Path("polyline", grid.in_units(ends)), 0.0, True, 1, np.zeros(1), "start is target", nothing)
-    field = field_of(grid, ends, gene_lattice, point_order)
+    field = field_of(grid, ends, gene_lattice, gene_order, point_order)
     rules = Rules(
-        population,
-        iterations,
-        crossover_probability,
-        _MUTATIONS.index(mutation),
-        mutation_rate,
-        _DIVERSITIES.index(diversity),
-        eta,
-        eta_decay,
-        most_batches,
-        first_points,
-        first_draws,
-        replacements,
-        least_distance,
-        curve == "composite",
-        _LENGTHS.index(fitness_length),
-        invalid == "penalty",
-        penalty,
-        survival == "generational",
-        offspring == "both",
+        population=population,
+        iterations=iterations,
+        crossover_probability=float(crossover_probability),
+        mutation=get_args(Mutation).index(mutation),
+        mutation_rate=float(mutation_rate),
+        diversity=get_args(Diversity).index(diversity),
+        eta=float(eta),
+        eta_decay=float(eta_decay),
+        most_batches=most_batches,
+        first_points=first_points,
+        first_draws=first_draws,
+        replacements=replacements,
+        least_distance=float(least_distance),
+        composite=curve == "composite",
+        fitness_length=get_args(FitnessLength).index(fitness_length),
+        punished=invalid == "penalty",
+        penalty=float(penalty),
+        generational=survival == "generational",
+        unmutated=offspring == "both",
+        pairs=population * children_per_parent // 2,
     )
     most_first = most_roadmaps if first_population == "roadmaps" else 0
     found = search(rng, field, rules, *_from_roadmaps(problem, rng, field, population, most_first, roadmap_nodes, roadmap_neighbours))
@@ -233,59 +206,6 @@ def plan(
     )
 
 
-def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, point_order: str) -> Field:
-    """The genes of a grid and the order in which they are joined; ends: (2, 2) start and target in cells.
-
-    Raises ValueError if no cell of the lattice is free.
-    """
-    rows, columns = grid.occupied.shape
-    longer = max(rows, columns)
-    # Whole places of 21 points along the longer side, the outer ones at its ends; or all places.
-    steps = np.floor(np.arange(21) * (longer - 1) / 20 + 0.5).astype(int) if gene_lattice == "coarse" else np.arange(longer)
-    column, row = (index.ravel() for index in np.meshgrid(steps, steps, indexing="ij"))
-    points = np.column_stack([column, row]) + 0.5
-    settable = (column < columns) & (row < rows)
-    settable[settable] = ~grid.occupied[row[settable], column[settable]]
-    for end in np.floor(ends):
-        settable &= (column != end[0]) | (row != end[1])
-    choices = np.flatnonzero(settable)
-    if not len(choices):
-        raise ValueError("gene_lattice: no free gene; every cell of the lattice is occupied, or start or target")
-    rank = np.arange(len(points))
-    if point_order == "projection":
-        along = ends[1] - ends[0]
-        left = along[0] * (points[:, 1] - ends[0, 1]) - along[1] * (points[:, 0] - ends[0, 0])
-        rank[np.lexsort((-left, (points - ends[0]) @ along))] = np.arange(len(points))
-    elif point_order == "geodesic":
-        far = np.full(2 * (longer,), np.inf)
-        far[:columns, :rows] = _distances(np.pad(grid.occupied, 1, constant_values=True), *np.floor(ends[0, ::-1]).astype(int), STEPS).T
-        rank[np.argsort(far[column, row], kind="stable")] = np.arange(len(points))
-    places = len(steps), int((steps < columns).sum()), int((steps < rows).sum())
-    return Field(grid.occupied, points, rank, settable, choices, places, ends[0], ends[1])
-
-
-@njit(cache=True)
-def _distances(walled, row, column, steps):
-    """Distance (rows, columns) from a cell to each cell over free cells and their eight neighbours, infinite where there is no way.
-
-    walled: the cells with a frame of occupied ones around.
-    """
-    far = np.full(walled.shape, np.inf)
-    far[row + 1, column + 1] = 0.0
-    heap = [(0.0, row + 1, column + 1)]
-    while len(heap) > 0:
-        length, row, column = heapq.heappop(heap)
-        if length > far[row, column]:
-            continue
-        for k in range(len(steps)):
-            up, right = row + steps[k, 0], column + steps[k, 1]
-            ahead = length + math.sqrt(steps[k, 0] ** 2 + steps[k, 1] ** 2)
-            if not walled[up, right] and ahead < far[up, right]:
-                far[up, right] = ahead
-                heapq.heappush(heap, (ahead, up, right))
-    return far[1:-1, 1:-1]
-
-
 def _from_roadmaps(
     problem: Problem, rng: np.random.Generator, field: Field, wanted: int, most: int, nodes: int, neighbours: int
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -298,7 +218,8 @@ def _from_roadmaps(
             break
         _, way, _ = road_map(problem, rng, nodes, neighbours)
         column, row = np.floor(problem.workspace.in_cells(way[1:-1])).astype(int).T
-        genes = np.unique(column * field.places[0] + row)
+        line, place = (row, column) if field.by_rows else (column, row)
+        genes = np.unique(line * field.places[0] + place)
         genes = genes[field.settable[genes]]
         if 0 < len(genes) <= MOST_POINTS:
             ones[len(counts), : len(genes)] = genes
@@ -314,9 +235,8 @@ def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarr
     """
     batches = 1 + (rules.most_batches if rules.diversity == _MORE_OFFSPRING else 0)
     size = rules.population
-    pairs_crossed = size if rules.generational else size // 2
-    children = 2 * pairs_crossed * (2 if rules.unmutated else 1)
-    pool, spare = _empty_pool(size + batches * children), _empty_pool(size)
+    children = 2 * rules.pairs * (2 if rules.unmutated else 1)
+    pool, spare = gene_lists.empty_pool(size + batches * children, _ROOM), gene_lists.empty_pool(size, _ROOM)
     child = np.empty(_ROOM, dtype=np.int64)
     history, distinct = np.empty(rules.iterations + 1), np.empty(rules.iterations + 1)
     q = np.full(rules.iterations, np.nan)
@@ -329,7 +249,7 @@ def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarr
             child[:count] = first[place, :count]
             cost, free = validate(child[:count], field, rules)
             evaluations += 1
-            _put(child, count, min(cost, 1.0 / _UNFIT), free, pool, place)
+            gene_lists.put(child, count, min(cost, 1.0 / _UNFIT), free, pool, place)
             continue
         for _ in range(rules.first_draws):
             count = _random_chromosome(rng, child, field, rules)
@@ -337,55 +257,55 @@ def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarr
             evaluations += 1
             if cost < np.inf:
                 break
-        _put(child, count, min(cost, 1.0 / _UNFIT), free, pool, place)
+        gene_lists.put(child, count, min(cost, 1.0 / _UNFIT), free, pool, place)
     eta = rules.eta
     for iteration in range(rules.iterations + 1):
         for place in range(size):
             if pool.free[place] and pool.cost[place] < best_cost:
                 best, best_cost = pool.ones[place, : pool.count[place]].copy(), pool.cost[place]
         history[iteration] = best_cost
-        distinct[iteration] = _distinct(pool, size)
+        distinct[iteration] = gene_lists.distinct(pool, size)
         if iteration == rules.iterations:
             break
 
         wheel = np.cumsum(1.0 / pool.cost[:size])
-        filled, tried, invalid = _add_offspring(rng, pool, size, wheel, pairs_crossed, eta, child, field, rules)
+        filled, tried, invalid = _add_offspring(rng, pool, size, wheel, eta, child, field, rules)
         evaluations += tried
         bred += children
         lost += invalid
         if rules.diversity == _MORE_OFFSPRING:
-            pairs = _sum_of_q(pool, 0, filled, len(field.points))
+            pairs = gene_lists.sum_of_q(pool, 0, filled, len(field.points))
             for _ in range(rules.most_batches):
                 if pairs / (filled * (filled - 1) / 2) <= eta:
                     break
                 before = filled
-                filled, tried, invalid = _add_offspring(rng, pool, before, wheel, pairs_crossed, eta, child, field, rules)
-                pairs += _sum_of_q(pool, before, filled, len(field.points))
+                filled, tried, invalid = _add_offspring(rng, pool, before, wheel, eta, child, field, rules)
+                pairs += gene_lists.sum_of_q(pool, before, filled, len(field.points))
                 evaluations += tried
                 bred += children
                 lost += invalid
                 further += 1
             q[iteration] = pairs / (filled * (filled - 1) / 2)
-        _select(pool, size if rules.generational else 0, filled, spare)
+        # Where a rule for diversity refuses so many children that places are left, the last parents keep them.
+        gene_lists.select(pool, min(size, filled - size) if rules.generational else 0, filled, spare)
         eta *= rules.eta_decay
     return Found(best, best_cost, history, distinct, q, further, evaluations, 1.0 - lost / bred)
 
 
 @njit(cache=True)
-def _add_offspring(rng, pool, filled, wheel, pairs, eta, child, field, rules):
+def _add_offspring(rng, pool, filled, wheel, eta, child, field, rules):
     """Add a batch of offspring of the pool's first chromosomes (Algorithm 2, lines 6 and 7) behind those that fill it.
 
-    wheel: (population,) running sum of the parents' fitness. pairs: of parents that are crossed. Returns how many fill the pool now,
-    chromosomes validated, invalid children.
+    wheel: (population,) running sum of the parents' fitness. Returns how many fill the pool now, chromosomes validated, invalid children.
     """
     tried = invalid = 0
-    for _ in range(pairs):
+    for _ in range(rules.pairs):
         one, other = _parents(rng, wheel)
         crossed = rng.random() < rules.crossover_probability
         cut = rng.integers(1, len(field.points)) if crossed else 0
         for head, tail in ((one, other), (other, one)):
             for mutated in range(0 if rules.unmutated else 1, 2):
-                count = _cross(pool, head, tail, cut, child) if crossed else _cross(pool, head, head, 0, child)
+                count = gene_lists.cross(pool, head, tail, cut, child) if crossed else gene_lists.cross(pool, head, head, 0, child)
                 if mutated:
                     count = _mutate(rng, child, count, field, rules)
                 cost, free = validate(child[:count], field, rules)
@@ -404,7 +324,7 @@ def _add_offspring(rng, pool, filled, wheel, pairs, eta, child, field, rules):
                     cost = 1.0 / _UNFIT
                 if _is_too_alike(child[:count], cost, pool, filled, eta, field, rules):
                     continue
-                _put(child, count, cost, free, pool, filled)
+                gene_lists.put(child, count, cost, free, pool, filled)
                 filled += 1
     return filled, tried, invalid
 
@@ -426,38 +346,23 @@ def _parents(rng, wheel):
 
 
 @njit(cache=True)
-def _cross(pool, head, tail, cut, child):
-    """Write the genes of one chromosome before a cut and of another from it on (Section 3.2.2); returns how many are 1."""
-    count = 0
-    for i in range(pool.count[head]):
-        if pool.ones[head, i] < cut:
-            child[count] = pool.ones[head, i]
-            count += 1
-    for i in range(pool.count[tail]):
-        if pool.ones[tail, i] >= cut:
-            child[count] = pool.ones[tail, i]
-            count += 1
-    return count
-
-
-@njit(cache=True)
 def _mutate(rng, child, count, field, rules):
     """Change random genes, but for those that may not be set; returns how many are 1."""
     genes = len(field.points)
     if rules.mutation == _EACH_GENE:
         # From one gene that changes to the next: the gaps of independent trials of equal probability.
-        gene = _gap(rng, rules.mutation_rate)
+        gene = gene_lists.gap(rng, rules.mutation_rate)
         while gene < genes:
             if field.settable[gene]:
-                count = _flip(child, count, gene)
-            gene += 1 + _gap(rng, rules.mutation_rate)
+                count = gene_lists.flip(child, count, gene)
+            gene += 1 + gene_lists.gap(rng, rules.mutation_rate)
     elif rules.mutation == _SHIFT:
         if rng.random() < rules.mutation_rate:
             count = _change_point(rng, child, count, field)
     elif rules.mutation == _ONE_FLIP or rng.random() < rules.mutation_rate:
         gene = rng.integers(0, genes)
         if field.settable[gene]:
-            count = _flip(child, count, gene)
+            count = gene_lists.flip(child, count, gene)
     return count
 
 
@@ -467,56 +372,21 @@ def _change_point(rng, child, count, field):
     change = rng.integers(0, 3)
     if change == 1:
         gene = field.choices[rng.integers(0, len(field.choices))]
-        return _flip(child, count, gene) if _position(child, count, gene) == count else count
+        return gene_lists.flip(child, count, gene) if gene_lists.position(child, count, gene) == count else count
     if count == 0:
         return count
     gene = child[rng.integers(0, count)]
     if change == 0:
-        return _flip(child, count, gene) if count > 1 else count
-    side, columns, rows = field.places
+        return gene_lists.flip(child, count, gene) if count > 1 else count
+    side, lines, places = field.places
     reach = int(_SHIFT_REACH * side)
-    column = min(max(gene // side + rng.integers(-reach, reach + 1), 0), columns - 1)
-    row = min(max(gene % side + rng.integers(-reach, reach + 1), 0), rows - 1)
-    shifted = column * side + row
-    if field.settable[shifted] and _position(child, count, shifted) == count:
-        count = _flip(child, count, gene)
-        count = _flip(child, count, shifted)
+    line = min(max(gene // side + rng.integers(-reach, reach + 1), 0), lines - 1)
+    place = min(max(gene % side + rng.integers(-reach, reach + 1), 0), places - 1)
+    shifted = line * side + place
+    if field.settable[shifted] and gene_lists.position(child, count, shifted) == count:
+        count = gene_lists.flip(child, count, gene)
+        count = gene_lists.flip(child, count, shifted)
     return count
-
-
-@njit(cache=True)
-def _gap(rng, rate):
-    """How many trials fail before one succeeds, each with a probability; 2**31 stands for more than there are genes."""
-    if rate == 0.0:
-        return 2**31
-    return int(min(math.log(1.0 - rng.random()) / math.log1p(-rate), 2.0**31)) if rate < 1.0 else 0
-
-
-@njit(cache=True)
-def _position(genes, count, gene):
-    """Place of a gene among the first so many of a list, `count` if it is not there."""
-    for i in range(count):
-        if genes[i] == gene:
-            return i
-    return count
-
-
-@njit(cache=True)
-def _flip(child, count, gene):
-    """Change a gene; returns how many are 1. What does not fit is lost: a chromosome of so many points is invalid anyway."""
-    place = _position(child, count, gene)
-    if place < count:
-        for i in range(place, count - 1):
-            child[i] = child[i + 1]
-        return count - 1
-    if count == len(child):
-        return count
-    place = count
-    while place > 0 and child[place - 1] > gene:
-        child[place] = child[place - 1]
-        place -= 1
-    child[place] = gene
-    return count + 1
 
 
 @njit(cache=True)
@@ -526,8 +396,8 @@ def _random_chromosome(rng, child, field, rules):
     count = 0
     while count < wanted:
         gene = field.choices[rng.integers(0, len(field.choices))]
-        if _position(child, count, gene) == count:
-            count = _flip(child, count, gene)
+        if gene_lists.position(child, count, gene) == count:
+            count = gene_lists.flip(child, count, gene)
     return count
 
 
@@ -559,25 +429,6 @@ def validate(ones: np.ndarray, field: Field, rules: Rules) -> tuple[float, bool]
     else:
         length = cells8(columns, rows)
     return length + rules.penalty * bad, bad == 0
-
-
-@njit(cache=True)
-def polygon(ones: np.ndarray, field: Field) -> np.ndarray:
-    """Start, the control points of a chromosome in their order, and target: (points, 2)."""
-    points = np.empty((len(ones) + 2, 2))
-    order = ones.copy()
-    for i in range(len(order)):
-        gene = order[i]
-        place = i
-        while place > 0 and field.rank[order[place - 1]] > field.rank[gene]:
-            order[place] = order[place - 1]
-            place -= 1
-        order[place] = gene
-    for axis in range(2):
-        points[0, axis], points[-1, axis] = field.start[axis], field.target[axis]
-        for i in range(len(order)):
-            points[i + 1, axis] = field.points[order[i], axis]
-    return points
 
 
 @njit(cache=True)
@@ -640,90 +491,11 @@ def _is_too_alike(ones, cost, pool, filled, eta, field, rules):
     """Whether a rule for diversity refuses a child (Section 3.3)."""
     if rules.diversity == _UNIQUE:
         for i in range(filled):
-            if cost == pool.cost[i] and _same(ones, pool.ones[i, : pool.count[i]]):
+            if cost == pool.cost[i] and gene_lists.same(ones, pool.ones[i, : pool.count[i]]):
                 return True
     if rules.diversity == _RELAXING:
         total = 0.0
         for i in range(filled):
-            total += _q(ones, pool.ones[i, : pool.count[i]], len(field.points))
+            total += gene_lists.q(ones, pool.ones[i, : pool.count[i]], len(field.points))
         return total > (1.0 - eta) * filled
     return False
-
-
-@njit(cache=True)
-def _q(one, other, genes):
-    """Equation 10 for two lists of genes."""
-    both = shared(one, other)
-    return q_statistic(both, genes - len(one) - len(other) + both, len(one) - both, len(other) - both)
-
-
-@njit(cache=True)
-def _sum_of_q(pool, first, filled, genes):
-    """Sum of equation 10 over the pairs of the pool whose second chromosome is at a place from `first` on.
-
-    Most pairs share no gene. A word of 64 bits for each chromosome, with the bit of each gene's number modulo 64 set, shows most of these.
-    """
-    marks = np.zeros(filled, dtype=np.uint64)
-    for i in range(filled):
-        for k in range(pool.count[i]):
-            marks[i] |= np.uint64(1) << np.uint64(pool.ones[i, k] & 63)
-    total = 0.0
-    for j in range(max(first, 1), filled):
-        for i in range(j):
-            if marks[i] & marks[j]:
-                total += _q(pool.ones[i, : pool.count[i]], pool.ones[j, : pool.count[j]], genes)
-            else:
-                total += q_statistic(0, genes - pool.count[i] - pool.count[j], pool.count[i], pool.count[j])
-    return total
-
-
-@njit(cache=True)
-def _same(one, other):
-    if len(one) != len(other):
-        return False
-    for i in range(len(one)):
-        if one[i] != other[i]:
-            return False
-    return True
-
-
-@njit(cache=True)
-def _distinct(pool, size):
-    """How many different chromosomes the first of the pool are; equal ones have equal costs."""
-    found = size
-    for i in range(size):
-        for j in range(i):
-            if pool.cost[i] == pool.cost[j] and _same(pool.ones[i, : pool.count[i]], pool.ones[j, : pool.count[j]]):
-                found -= 1
-                break
-    return found
-
-
-@njit(cache=True)
-def _empty_pool(places):
-    return Pool(np.empty((places, _ROOM), np.int64), np.zeros(places, np.int64), np.empty(places), np.zeros(places, np.bool_))
-
-
-@njit(cache=True)
-def _put(ones, count, cost, free, pool, place):
-    """Write a chromosome to a place of the pool."""
-    for k in range(count):
-        pool.ones[place, k] = ones[k]
-    pool.count[place], pool.cost[place], pool.free[place] = count, cost, free
-
-
-@njit(cache=True)
-def _select(pool, first, filled, spare):
-    """Put the best of the chromosomes at the places from `first` on to the front (Algorithm 2, line 15); of equal ones the first."""
-    order = np.arange(first, filled)
-    for k in range(1, len(order)):
-        i = order[k]
-        while k > 0 and pool.cost[order[k - 1]] > pool.cost[i]:
-            order[k] = order[k - 1]
-            k -= 1
-        order[k] = i
-    for place in range(len(spare.cost)):
-        i = order[place]
-        _put(pool.ones[i], pool.count[i], pool.cost[i], pool.free[i], spare, place)
-    for place in range(len(spare.cost)):
-        _put(spare.ones[place], spare.count[place], spare.cost[place], spare.free[place], pool, place)

@@ -1,14 +1,12 @@
 """Genetic algorithm over sequences of cells of any length, with five mutation operators (meledje).
 
-A chromosome is a path: the numbers of the cells from start to target, joined by straight edges between the centres of the cells. An edge
-meets a cell if it passes through its interior; touching a side or a corner does not count. This is decided in whole numbers.
+A chromosome is a path: the numbers of the cells from start to target, joined by straight edges between the centres of the cells
+(`workspaces.ground`).
 
-Lengths, heights and energies in the kernels are in cells. Of a map with few cells all edges are measured once, of a larger one when they
-are asked for; the numbers are the same to the last bit.
+Lengths, heights and energies in the kernels are in cells.
 """
 
 import math
-from functools import lru_cache
 from typing import Annotated, Literal, NamedTuple, get_args
 
 import numpy as np
@@ -17,6 +15,7 @@ from numba import njit
 from bezierplan.problem import Path, Plan, Problem, Range
 from bezierplan.search.genetic import check_pairs, roulette
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.ground import Ground, centres, edge_energy, free_neighbours, ground_of, least_energy, obstacles_met
 
 workspaces = ("grid",)
 exact = True
@@ -24,13 +23,11 @@ keeps_best = False
 
 Mutation = Literal["random", "random_repair", "ref12", "ref21", "proposed"]
 Initial = Literal["feasible", "rejection", "unrestricted"]
-Selection = Literal["linear_rank", "best_half", "tournament"]
+Selection = Literal["linear_rank", "best_half", "tournament", "roulette"]
 _RANDOM, _RANDOM_REPAIR, _REF12, _REF21, _PROPOSED = range(5)
 _FEASIBLE, _REJECTION, _UNRESTRICTED = range(3)
-_LINEAR_RANK, _BEST_HALF, _TOURNAMENT = range(3)
+_LINEAR_RANK, _BEST_HALF, _TOURNAMENT, _ROULETTE = range(4)
 
-# Of a map with more cells than this no table of all edges is made: it would grow with the square of their number.
-TABLE_CELLS = 1024
 # So many walks, or random paths, are begun for one path of the first population before it counts as out of reach.
 _MOST_TRIES = 1_000_000
 # So often random mutation is repeated for a feasible path.
@@ -40,24 +37,11 @@ _TIE = 1e-12
 _IMPROVEMENT = 1e-9
 
 
-class Ground(NamedTuple):
-    """What edges are measured on, all of it in cells. Cells are numbered row by row from the bottom left.
-
-    occupied: bool (rows, columns). heights: (rows, columns), or (0, 0) on flat ground. friction: of the ground, at most 1 on most.
-    met, energy: (cells, cells) of the edge from a cell to another, the occupied cells that it meets and what it costs; or (0, 0).
-    """
-
-    occupied: np.ndarray
-    heights: np.ndarray
-    friction: float
-    met: np.ndarray
-    energy: np.ndarray
-
-
 class Rules(NamedTuple):
     """The settings of `plan` as the kernels read them, words as their places in `Mutation`, `Initial` and `Selection`."""
 
     mutation: int
+    population: int
     generations: int
     stall: int
     initial: int
@@ -66,9 +50,12 @@ class Rules(NamedTuple):
     crossover_probability: float
     one_cut: bool
     mutation_probability: float
+    each_node: bool
     any_node: bool
+    beside_obstacle: bool
     keep_better: bool
     same_signs: bool
+    whole_path: bool
     penalty: float
     elitism: int
     best_so_far: bool
@@ -112,27 +99,35 @@ def plan(
     crossover_probability: Annotated[float, Range(0, 1)],
     cut: Literal["same", "independent"],
     mutation_probability: Annotated[float, Range(0, 1)],
+    mutation_for: Literal["path", "node"],
     without_obstacle: Literal["any_node", "none"],
+    obstacle_node: Literal["edge", "neighbour"],
     keep_better: bool,
     direction: Literal["forward", "same_signs"],
+    ref21_test: Literal["edges", "path"],
     random_node: Literal["free", "any"],
     penalty: Annotated[float, Range(0)],
     elitism: Annotated[int, Range(0, 1)],
     result: Literal["last_generation", "best_so_far"],
     optimal_within: Annotated[float, Range(0)],
     friction: Annotated[float, Range(0)],
+    corners: Literal["open", "closed"],
 ) -> Plan:
     """Path of least energy from cell to cell: its length, plus its climbs divided by the friction (meledje, Sections 2 and 3).
 
-    mutation: the operator, once a path with mutation_probability. stall: generations without improvement after which the search stops,
-    before `generations` are done. initial: the first population, of feasible walks from cell to visible cell; of random paths, of which
-    only feasible ones are kept (rejection); or of all of them; at most most_nodes inner nodes each. selection: how parents are drawn from
-    the population. crossover_probability: of a pair of parents; cut: behind the same number of nodes in both, or not. without_obstacle:
-    what `proposed` does to a path that meets no obstacle: any node is changed as by ref12, or none. keep_better: whether ref12 and proposed
-    keep a node that is better than all its neighbours. direction: which steps towards the target `ref21` accepts, within a right angle of
-    the straight line to it, or with the same signs. random_node: which cells `random` draws from. penalty: in units of length, for each
-    occupied cell that an edge meets. elitism: how many of the best so far replace a path. result: the best path of the last generation, or
-    the best so far. optimal_within: share of the optimum by which an optimal path may exceed it.
+    mutation: the operator, applied with mutation_probability once a path, or as often as the path has inner nodes (mutation_for). stall:
+    generations without improvement after which the search stops, before `generations` are done. initial: the first population, of feasible
+    walks from cell to visible cell; of random paths, of which only feasible ones are kept (rejection); or of all of them; at most
+    most_nodes inner nodes each. selection: how parents are drawn from the population; by roulette in proportion to the reciprocal of the
+    objective. crossover_probability: of a pair of parents; cut: behind the same number of nodes in both, or not. without_obstacle: what
+    `proposed` does to a path that meets no obstacle: any node is changed as by ref12, or none. obstacle_node: which nodes it takes for
+    encountering an obstacle, those whose edge to the next node meets one, or those in a cell beside an occupied one. keep_better: whether
+    ref12 and proposed keep a node that is better than all its neighbours. direction: which steps towards the target `ref21` accepts, within
+    a right angle of the straight line to it, or with the same signs; ref21_test: whether it tests the two edges of the new node or the
+    whole path. random_node: which cells `random` draws from. penalty: in units of length, for each occupied cell that an edge meets.
+    elitism: how many of the best so far replace a path. result: the best path of the last generation, or the best so far. optimal_within:
+    share of the optimum by which an optimal path may exceed it. corners: whether an edge through a corner of occupied cells meets them
+    (closed).
 
     The planner's own test: no edge meets an occupied cell. Extra columns: optimum, the least energy of all feasible paths from cell to
     cell; optimal, near_optimal, infeasible, one of which is true; feasible_last, the share of feasible paths in the last population;
@@ -140,9 +135,9 @@ def plan(
     that an inner node of one path is no node of another. Raises ValueError if start or target is not the centre of a cell.
     """
     grid = problem.workspace
-    ground = ground_of(grid, friction)
+    ground = ground_of(grid, friction, corners == "closed")
     start, target = (_cell_at(grid, end, getattr(problem, end)) for end in ("start", "target"))
-    optimum = _optimum(_key(grid, friction), start, target)
+    optimum = least_energy(grid, friction, corners == "closed", start, target)
     starts, moves = rng.spawn(2)
     if obstacles_met(ground, start, target) == 0:
         # Nothing to search: a walk sees its target at once, and paths without inner nodes cannot change.
@@ -152,33 +147,29 @@ def plan(
     elif math.isinf(optimum):
         found, stop = _NOTHING, "no path"
     else:
-        found = _search(
-            starts,
-            moves,
-            ground,
-            start,
-            target,
-            _inner(~grid.occupied, start, target),
-            _inner(~grid.occupied | (random_node == "any"), start, target),
-            population,
-            Rules(
-                mutation=get_args(Mutation).index(mutation),
-                generations=generations,
-                stall=stall,
-                initial=get_args(Initial).index(initial),
-                most_nodes=most_nodes,
-                selection=get_args(Selection).index(selection),
-                crossover_probability=float(crossover_probability),
-                one_cut=cut == "same",
-                mutation_probability=float(mutation_probability),
-                any_node=without_obstacle == "any_node",
-                keep_better=keep_better,
-                same_signs=direction == "same_signs",
-                penalty=penalty / grid.cell,
-                elitism=elitism,
-                best_so_far=result == "best_so_far",
-            ),
+        rules = Rules(
+            mutation=get_args(Mutation).index(mutation),
+            population=population,
+            generations=generations,
+            stall=stall,
+            initial=get_args(Initial).index(initial),
+            most_nodes=most_nodes,
+            selection=get_args(Selection).index(selection),
+            crossover_probability=float(crossover_probability),
+            one_cut=cut == "same",
+            mutation_probability=float(mutation_probability),
+            each_node=mutation_for == "node",
+            any_node=without_obstacle == "any_node",
+            beside_obstacle=obstacle_node == "neighbour",
+            keep_better=keep_better,
+            same_signs=direction == "same_signs",
+            whole_path=ref21_test == "path",
+            penalty=penalty / grid.cell,
+            elitism=elitism,
+            best_so_far=result == "best_so_far",
         )
+        drawn = _inner(~grid.occupied | (random_node == "any"), start, target)
+        found = _search(starts, moves, ground, start, target, _inner(~grid.occupied, start, target), drawn, rules)
         stop = "no first population" if not len(found.path) else "stall" if found.stalled else "generations"
     feasible = len(found.path) > 0 and found.met == 0
     optimal = feasible and found.objective <= optimum * (1 + optimal_within)
@@ -224,146 +215,14 @@ def _cell_at(grid: Grid, end: str, point: tuple[float, float]) -> int:
     return number
 
 
-def centres(grid: Grid, cells: np.ndarray) -> np.ndarray:
-    """Centres (n, 2) of cells (n,), in units."""
-    return np.array([grid.centre(cell) for cell in cells.tolist()]).reshape(-1, 2)
-
-
-# ---------------------------------------------------------------------------------------------------------------------
-# The ground: edges and what they cost
-
-
-def ground_of(grid: Grid, friction: float) -> Ground:
-    """The ground of a grid, with all its edges measured if it has no more than `TABLE_CELLS` cells. Not to be changed."""
-    return _ground(*_key(grid, friction))
-
-
-def _key(grid: Grid, friction: float) -> tuple:
-    """What the ground of a grid follows from, so that it is made once a map."""
-    heights = b"" if grid.heights is None else (grid.heights / grid.cell).tobytes()
-    return grid.occupied.shape, grid.occupied.tobytes(), heights, float(friction), TABLE_CELLS
-
-
-@lru_cache(maxsize=8)
-def _ground(shape: tuple[int, int], occupied: bytes, heights: bytes, friction: float, table_cells: int) -> Ground:
-    cells = np.frombuffer(occupied, dtype=bool).reshape(shape).copy()
-    above = np.frombuffer(heights).reshape(shape if heights else (0, 0)).copy()
-    bare = Ground(cells, above, friction, np.empty((0, 0), dtype=np.uint16), np.empty((0, 0)))
-    return bare._replace(**dict(zip(("met", "energy"), _tables(bare)))) if cells.size <= table_cells else bare
-
-
-@njit(cache=True)
-def _tables(ground):
-    cells = ground.occupied.size
-    met, energy = np.empty((cells, cells), dtype=np.uint16), np.empty((cells, cells))
-    for one in range(cells):
-        for other in range(cells):
-            met[one, other] = obstacles_met(ground, one, other)
-            energy[one, other] = edge_energy(ground, one, other)
-    return met, energy
-
-
-@njit(cache=True, inline="always")
-def obstacles_met(ground: Ground, one: int, other: int) -> int:
-    """How many occupied cells the edge between two cells meets, these included (meledje, eq. 3: beta)."""
-    if ground.met.size:
-        return int(ground.met[one, other])
-    return _passed(ground, one, other)[0]
-
-
-@njit(cache=True, inline="always")
-def edge_energy(ground: Ground, one: int, other: int) -> float:
-    """What the edge from a cell to another costs: its length, and what it climbs divided by the friction (meledje, eq. 2: epsilon)."""
-    if ground.energy.size:
-        return ground.energy[one, other]
-    length = _distance(ground, one, other)
-    return length + _passed(ground, one, other)[1] / ground.friction if ground.heights.size else length
-
-
-@njit(cache=True)
-def _distance(ground, one, other):
-    columns = ground.occupied.shape[1]
-    across, up = other % columns - one % columns, other // columns - one // columns
-    return np.sqrt(float(across * across + up * up))
-
-
-@njit(cache=True)
-def _passed(ground, one, other):
-    """Occupied cells that an edge meets, and the sum of its climbs from cell to cell.
-
-    The edge crosses its next upright grid line after (2 i + 1) / (2 across) of its way, its next level one after (2 j + 1) / (2 up);
-    through a corner it leads from cell to cell without a third.
-    """
-    columns = ground.occupied.shape[1]
-    row, column = one // columns, one % columns
-    across, up = other % columns - column, other // columns - row
-    right, upward = (1 if across > 0 else -1), (1 if up > 0 else -1)
-    across, up = abs(across), abs(up)
-    met, climb = int(ground.occupied[row, column]), 0.0
-    i = j = 0
-    while i < across or j < up:
-        height = ground.heights[row, column] if ground.heights.size else 0.0
-        ahead = (2 * i + 1) * up - (2 * j + 1) * across
-        if ahead <= 0:
-            i += 1
-            column += right
-        if ahead >= 0:
-            j += 1
-            row += upward
-        met += int(ground.occupied[row, column])
-        if ground.heights.size:
-            climb += max(ground.heights[row, column] - height, 0.0)
-    return met, climb
-
-
-@lru_cache(maxsize=64)
-def _optimum(key: tuple, start: int, target: int) -> float:
-    """The least energy of a problem on the ground of a key (`_key`)."""
-    return cheapest(_ground(*key), start, target)[0]
-
-
-def cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.ndarray]:
-    """Least energy, in cells, of a path from cell to cell that meets no obstacle, and its cells; infinite and none without such a path."""
-    energy, before = _cheapest(ground, start, target)
-    if math.isinf(energy):
-        return energy, np.empty(0, dtype=np.int64)
-    path = [target]
-    while path[-1] != start:
-        path.append(int(before[path[-1]]))
-    return energy, np.array(path[::-1])
-
-
-@njit(cache=True)
-def _cheapest(ground, start, target):
-    """Least energy from start to target, and the cell before each cell on its way, by A* with the straight distance.
-
-    An edge is looked at only if it would be a gain: of a large map few are.
-    """
-    cells = ground.occupied.size
-    energy, before, done = np.full(cells, np.inf), np.full(cells, -1), ground.occupied.ravel().copy()
-    energy[start] = 0.0
-    while True:
-        here, least = -1, np.inf
-        for cell in range(cells):
-            if not done[cell] and energy[cell] + _distance(ground, cell, target) < least:
-                here, least = cell, energy[cell] + _distance(ground, cell, target)
-        if here < 0 or here == target:
-            return energy[target], before
-        done[here] = True
-        for cell in range(cells):
-            if not done[cell] and energy[here] + _distance(ground, here, cell) < energy[cell] and obstacles_met(ground, here, cell) == 0:
-                through = energy[here] + edge_energy(ground, here, cell)
-                if through < energy[cell]:
-                    energy[cell], before[cell] = through, here
-
-
 # ---------------------------------------------------------------------------------------------------------------------
 # The search
 
 
 @njit(cache=True)
-def _search(starts, moves, ground, start, target, free, drawn, population, rules):
+def _search(starts, moves, ground, start, target, free, drawn, rules):
     """The genetic algorithm. free: the free cells without start and target; drawn: those that random mutation draws from."""
+    population = rules.population
     paths, lengths = np.empty((population, rules.most_nodes + 2), dtype=np.int64), np.empty(population, dtype=np.int64)
     for i in range(population):
         paths[i, 0] = start
@@ -396,7 +255,10 @@ def _search(starts, moves, ground, start, target, free, drawn, population, rules
         if stalled or generation == rules.generations:
             break
 
-        parents = _select(moves, order, ranks, rules.selection)
+        if rules.selection == _ROULETTE:
+            parents = roulette(moves, 1.0 / objective, population)
+        else:
+            parents = _select(moves, order, ranks, rules.selection)
         if not rules.one_cut and 2 * lengths.max() > children.shape[1]:
             children = np.empty((population, 2 * lengths.max()), dtype=np.int64)
         for i in range(0, population, 2):
@@ -414,12 +276,13 @@ def _search(starts, moves, ground, start, target, free, drawn, population, rules
         paths, children = children, paths
         lengths, child_lengths = child_lengths, lengths
         for i in range(population):
-            if moves.random() < rules.mutation_probability and lengths[i] > 2:
-                path = paths[i, : lengths[i]]
-                was_feasible = _path_met(path, ground) == 0
-                evaluations += mutate(moves, path, drawn, ground, rules)
-                feasible += was_feasible
-                spoiled += was_feasible and _path_met(path, ground) > 0
+            for _ in range(lengths[i] - 2 if rules.each_node else 1):
+                if moves.random() < rules.mutation_probability and lengths[i] > 2:
+                    path = paths[i, : lengths[i]]
+                    was_feasible = _path_met(path, ground) == 0
+                    evaluations += mutate(moves, path, drawn, ground, rules)
+                    feasible += was_feasible
+                    spoiled += was_feasible and _path_met(path, ground) > 0
         if rules.elitism:
             _copy(best, paths[0], best_length)
             lengths[0] = best_length
@@ -594,8 +457,8 @@ def mutate(rng: np.random.Generator, path: np.ndarray, drawn: np.ndarray, ground
     if rules.mutation == _RANDOM_REPAIR:
         return _random_repair(rng, path, drawn, ground)
     if rules.mutation == _REF21:
-        return _ref21(rng, path, ground, rules.same_signs)
-    k = _blocked_node(rng, path, ground) if rules.mutation == _PROPOSED else 0
+        return _ref21(rng, path, ground, rules)
+    k = _blocked_node(rng, path, ground, rules.beside_obstacle) if rules.mutation == _PROPOSED else 0
     if k == 0:
         if rules.mutation == _PROPOSED and not rules.any_node:
             return 0
@@ -617,20 +480,29 @@ def _random_repair(rng, path, drawn, ground):
 
 
 @njit(cache=True)
-def _blocked_node(rng, path, ground):
-    """A random inner node whose edge to the next node meets an obstacle, 0 if there is none (Table 1, step 1)."""
+def _blocked_node(rng, path, ground, beside_obstacle):
+    """A random inner node that encounters an obstacle, 0 if there is none (Table 1, step 1)."""
     count = 0
     for k in range(1, len(path) - 1):
-        count += obstacles_met(ground, path[k], path[k + 1]) > 0
+        count += _encounters(path, k, ground, beside_obstacle)
     if count == 0:
         return 0
     chosen = _below(rng, count)
     for k in range(1, len(path) - 1):
-        if obstacles_met(ground, path[k], path[k + 1]) > 0:
+        if _encounters(path, k, ground, beside_obstacle):
             if chosen == 0:
                 return k
             chosen -= 1
     return 0
+
+
+@njit(cache=True)
+def _encounters(path, k, ground, beside_obstacle):
+    """Whether the edge from node k to the next one meets an obstacle, or whether one of the eight cells around the node is occupied."""
+    if not beside_obstacle:
+        return obstacles_met(ground, path[k], path[k + 1]) > 0
+    row, column = divmod(path[k], ground.occupied.shape[1])
+    return ground.occupied[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2].any()
 
 
 @njit(cache=True)
@@ -639,7 +511,7 @@ def _best_neighbour(path, k, ground, rules):
 
     Of two that are equally good, the first from the lower left, row by row. Only the two edges of the node change.
     """
-    neighbours, count = _free_neighbours(path[k], ground)
+    neighbours, count = free_neighbours(path[k], ground)
     best, least = path[k], np.inf
     if rules.keep_better:
         least = _cost_through(path, k, path[k], ground, rules.penalty)
@@ -659,30 +531,20 @@ def _cost_through(path, k, cell, ground, penalty):
 
 
 @njit(cache=True)
-def _free_neighbours(cell, ground):
-    """The free ones of the eight cells around a cell, row by row from the lower left, and how many they are."""
-    rows, columns = ground.occupied.shape
-    neighbours, count = np.empty(8, dtype=np.int64), 0
-    for row in range(max(cell // columns - 1, 0), min(cell // columns + 2, rows)):
-        for column in range(max(cell % columns - 1, 0), min(cell % columns + 2, columns)):
-            if row * columns + column != cell and not ground.occupied[row, column]:
-                neighbours[count] = row * columns + column
-                count += 1
-    return neighbours, count
-
-
-@njit(cache=True)
-def _ref21(rng, path, ground, same_signs):
+def _ref21(rng, path, ground, rules):
     """Replace a random inner node by the first of its free neighbours, in random order, that lies in the direction of the target and whose
-    two edges are free (reference 21).
+    two edges are free, or with which the whole path is (reference 21).
     """
     k = 1 + _below(rng, len(path) - 2)
-    neighbours, count = _free_neighbours(path[k], ground)
+    neighbours, count = free_neighbours(path[k], ground)
+    elsewhere = 0
+    if rules.whole_path:
+        elsewhere = _path_met(path[:k], ground) + _path_met(path[k + 1 :], ground)
     for tried in range(count):
         chosen = tried + _below(rng, count - tried)
         neighbours[tried], neighbours[chosen] = neighbours[chosen], neighbours[tried]
         cell = neighbours[tried]
-        accepted = _towards(path[0], cell, path[-1], ground.occupied.shape[1], same_signs)
+        accepted = elsewhere == 0 and _towards(path[0], cell, path[-1], ground.occupied.shape[1], rules.same_signs)
         if accepted and obstacles_met(ground, path[k - 1], cell) == 0 and obstacles_met(ground, cell, path[k + 1]) == 0:
             path[k] = cell
             return tried + 1

@@ -14,6 +14,7 @@ import shapely
 from bezierplan.analysis.statistics import holm
 from bezierplan.planners import node_genetic
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.ground import centres, ground_of, obstacles_met
 
 # Figure 2: cells of a grid of 10 x 10, numbered from 1.
 CHROMOSOME = (1, 41, 65, 35, 38, 60, 100)
@@ -30,6 +31,7 @@ BLOCKED_PATH = ((0, 0), (1, 2), (6, 5), (8, 5), (9, 6))
 # The settings in force, as far as operators read them.
 RULES = node_genetic.Rules(
     mutation=0,
+    population=2,
     generations=0,
     stall=1,
     initial=0,
@@ -38,9 +40,12 @@ RULES = node_genetic.Rules(
     crossover_probability=1.0,
     one_cut=True,
     mutation_probability=1.0,
+    each_node=False,
     any_node=True,
+    beside_obstacle=False,
     keep_better=False,
     same_signs=False,
+    whole_path=False,
     penalty=15.0,
     elitism=0,
     best_so_far=False,
@@ -114,21 +119,21 @@ def mutations(grid: Grid) -> pd.DataFrame:
 
 def _shown(grid: Grid, operator: str, before: np.ndarray) -> Iterator[tuple[np.ndarray, int]]:
     """Paths after a mutation that shows what is said of the operator, each with the place of the changed node."""
-    ground = node_genetic.ground_of(grid, 1.0)
+    ground = ground_of(grid, 1.0)
     drawn = np.setdiff1d(np.flatnonzero(~grid.occupied), before[[0, -1]])
     rules = RULES._replace(mutation=get_args(node_genetic.Mutation).index(operator))
     for seed in range(SEEDS):
         after = before.copy()
         node_genetic.mutate(np.random.default_rng(seed), after, drawn, ground, rules)
         for k in np.flatnonzero(after != before).tolist():
-            blocked = any(node_genetic.obstacles_met(ground, *edge) for edge in itertools.pairwise(after.tolist()))
+            blocked = any(obstacles_met(ground, *edge) for edge in itertools.pairwise(after.tolist()))
             if blocked != (operator == "proposed"):
                 yield after, k
 
 
 def _mutation(grid: Grid, operator: str, before: np.ndarray, after: np.ndarray, k: int) -> Iterator[dict]:
     """Marks of a path before and after the change of node k."""
-    first, second = (node_genetic.centres(grid, path).tolist() for path in (before, after))
+    first, second = (centres(grid, path).tolist() for path in (before, after))
     yield from _path(first, "third", "before")
     yield from _path(second, "accent", "after")
     if operator != "random":

@@ -3,12 +3,16 @@
 Numbers of equations, sections, tables and figures are the paper's.
 """
 
+import itertools
 import math
 
 import numpy as np
 import pandas as pd
 
 from bezierplan import curves, metrics
+from bezierplan.analysis import statistics
+from bezierplan.analysis.claim_effects import LEAST_WITHOUT_EXAMPLE
+from bezierplan.analysis.claim_tests import SURE
 from bezierplan.analysis.results import Results, select
 from bezierplan.exact import bounds
 from bezierplan.problem import Problem, Workspace
@@ -45,6 +49,9 @@ FIRST_VALUES = 10  # left out of each of them
 # Section 5.1: of so many rows each table's ranks are taken; Table 6 ranks the numbers of obstacles.
 RANKED = {"table3": 8, "table4": 8, "table5": 5, "table6": 10}
 PARTICLES = 20  # Table 2
+REPEATS = 10  # Section 5.1
+WHISKER = 1.5  # interquartile ranges from a box to the ends of its whiskers
+CONVERGED = 0.01  # runs that end so much above the shortest path of their class, as a share, have come to its optimum
 
 # The maps of Section 3.3, in its order.
 CHAOTIC = chaotic_maps.MAPS[:8]
@@ -318,11 +325,58 @@ def local_minima(values: np.ndarray) -> np.ndarray:
 def several_homotopy_classes(
     check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]
 ) -> tuple[str, float, tuple[float, float] | None, int]:
-    """Claim C17: among how many classes the final paths are; two paths of one class pass every circle on the same side."""
+    """Claim C17: in how many classes runs converge; two paths of one class pass every circle on the same side.
+
+    A class counts if two runs or more end in it within 1 % of the shortest path that any run has there: they have come to the same optimum.
+    """
     found = results[check["experiment"]]
     runs = select(found.runs, check.get("where", {}))
-    classes = metrics.values(runs, "homotopy", found.problems).nunique()
-    return "+" if classes > 1 else "-", float(classes), None, len(runs)
+    classes = metrics.values(runs, "homotopy", found.problems)
+    least = runs.groupby(classes)["length"].transform("min")
+    converged = classes[runs["length"] <= least * (1 + CONVERGED)].value_counts()
+    number = int((converged > 1).sum())
+    few = len(runs) < LEAST_WITHOUT_EXAMPLE
+    return "+" if number > 1 else "?" if few else "-", float(number), None, len(runs)
+
+
+def least_above(check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]) -> tuple[str, float, None, int]:
+    """Claim C3: is the least mean value that of more particles than `PARTICLES`?
+
+    The effect is in which share of bootstrap draws from our repeats it is; those of equal number start alike and are drawn together.
+    """
+    runs = select(results[check["experiment"]].runs, check.get("where", {}))
+    values = runs.pivot_table(index="repeat", columns="particles", values=check["metric"]).dropna()
+    rng = statistics.generator("tharwat2018/C3")
+    means = values.to_numpy()[rng.integers(len(values), size=(statistics.DRAWS, len(values)))].mean(axis=1)
+    share = float((values.columns.to_numpy()[means.argmin(axis=1)] > PARTICLES).mean())
+    return _surely(share), share, None, len(values)
+
+
+def outliers_of_others_alone(check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]) -> tuple[str, float, None, int]:
+    """Claim C20: do boxes of the paper's ten runs show outliers of other maps, and none of Singer?
+
+    The effect is the share of draws of ten runs of each map, in both variants, that do. Of many runs some are outliers always.
+    """
+    runs = select(results[check["experiment"]].runs, check.get("where", {}))
+    rng = statistics.generator("tharwat2018/C20")
+    singer, others = np.zeros(statistics.DRAWS, dtype=bool), np.zeros(statistics.DRAWS, dtype=bool)
+    for variant, name in itertools.product(("cpso1", "cpso2"), CHAOTIC):
+        values = runs.loc[runs["method"] == f"{variant}_{name}", check["metric"]].to_numpy()
+        drawn = values[rng.integers(len(values), size=(statistics.DRAWS, REPEATS))]
+        low, high = np.quantile(drawn, [0.25, 0.75], axis=1)
+        reach = WHISKER * (high - low)
+        outside = ((drawn < (low - reach)[:, None]) | (drawn > (high + reach)[:, None])).any(axis=1)
+        if name == "singer":
+            singer |= outside
+        else:
+            others |= outside
+    share = float((others & ~singer).mean())
+    return _surely(share), share, None, len(runs) // (2 * len(CHAOTIC))
+
+
+def _surely(share: float) -> str:
+    """The mark of a sentence that holds in a share of draws."""
+    return "+" if share >= SURE else "-" if share <= 1 - SURE else "?"
 
 
 def audit(published: dict[str, pd.DataFrame]) -> list[dict]:

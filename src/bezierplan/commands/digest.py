@@ -2,10 +2,19 @@
 
 import hashlib
 import json
+from argparse import ArgumentParser
 from pathlib import Path
 from typing import Any
 
+import pyarrow as pa
 import pyarrow.parquet as parquet
+
+
+def main(parser: ArgumentParser, words: list[str]) -> None:
+    """Print a hash of each run table below a folder. Raises FileNotFoundError, and ValueError for a file that cannot be read."""
+    parser.add_argument("folder", type=Path, help="a folder of results, such as results/full")
+    for name, files in run_tables(parser.parse_args(words).folder).items():
+        print(f"{table_digest(files)}  {name}", flush=True)
 
 
 def run_tables(folder: Path) -> dict[str, list[Path]]:
@@ -20,6 +29,14 @@ def run_tables(folder: Path) -> dict[str, list[Path]]:
     return tables
 
 
+def read_rows(file: Path, identity: str | None = None) -> list[dict[str, Any]]:
+    """The rows of a chunk file, or those of one id. Raises ValueError for a file that holds no runs."""
+    try:
+        return parquet.read_table(file, filters=[("id", "=", identity)] if identity else None).to_pylist()
+    except pa.ArrowException:
+        raise ValueError(f"{file}: not a whole Parquet file of runs; delete it: the workflow reproduces it") from None
+
+
 def row_text(row: dict[str, Any]) -> str:
     """A row of a run table as text: columns by name, numbers with all their digits."""
     return json.dumps(row, sort_keys=True, default=lambda value: value.tolist())
@@ -30,5 +47,5 @@ def table_digest(files: list[Path]) -> str:
 
     Neither the order of the files nor how the repeats are cut into chunks matters.
     """
-    rows = {row_text(row) for file in files for row in parquet.read_table(file).to_pylist()}
+    rows = {row_text(row) for file in files for row in read_rows(file)}
     return hashlib.sha256("\n".join(sorted(rows)).encode()).hexdigest()[:16]

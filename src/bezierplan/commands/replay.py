@@ -1,21 +1,41 @@
 """One run again, from its name alone: bit-equal, and with its picture."""
 
+from argparse import ArgumentParser
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
-import pyarrow.parquet as parquet
 
 from bezierplan import problems, running, sheet
 from bezierplan.analysis import results
 from bezierplan.checked import Fault, closest
+from bezierplan.commands import add_studies
+from bezierplan.commands.digest import read_rows, row_text
 from bezierplan.exact.region import region
-from bezierplan.run_digest import row_text
-from bezierplan.study import Study, job, problems_job
+from bezierplan.study import Study, job, problems_job, reading
+
+SHOWN = ("objective", "length", "bound", "claimed_feasible", "feasible", "collision_at", "collision_depth", "clearance", "evaluations")
+
+
+def main(parser: ArgumentParser, words: list[str]) -> None:
+    """Run it again, print what it came to and whether it equals the stored one, and save its picture below results/replay. Raises Fault."""
+    parser.add_argument("run", help="its name: study/experiment/condition/method/repeat")
+    add_studies(parser)
+    given = parser.parse_args(words)
+    studies = reading.load(reading.read_config({"studies": given.studies} if given.studies else {}))
+    found = replay(given.run, studies)
+    run = found.runs.iloc[0]
+    for column in SHOWN:
+        print(f"{column:18}{run[column]}")
+    for file, stored in stored_runs(given.run, Path("results")).items():
+        print(f"{'stored in':18}{file}: {'equal' if equal(run, stored) else 'NOT EQUAL'}")
+    picture = Path("results/replay") / f"{given.run}.svg"
+    draw(found, studies[run["study"]], picture)
+    print(f"{'picture':18}{picture}")
 
 
 def replay(name: str, studies: dict[str, Study]) -> results.Results:
-    """The run of a name `study/experiment/condition/method/repeat`, made again: one row, with its problem and bound.
+    """The run of a name `study/experiment/condition/method/repeat`, reproduced: one row, with its problem and bound.
 
     Raises Fault, saying which part of the name is unknown.
     """
@@ -55,18 +75,18 @@ def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:
     found = {}
     for file in sorted(folder.glob(f"*/{study}/runs/{experiment}/{method}/*.parquet")):
         if not file.name.endswith(".times.parquet"):
-            for row in parquet.read_table(file, filters=[("id", "=", name)]).to_pylist():
+            for row in read_rows(file, name):
                 found[file] = row
     return found
 
 
 def equal(run: pd.Series, stored: dict[str, Any]) -> bool:
-    """Whether a run made again has the content of a stored row, to the last bit."""
+    """Whether a reproduced run has the content of a stored row, to the last bit."""
     return row_text(run[list(stored)].to_dict()) == row_text(stored)
 
 
 def draw(made: results.Results, study: Study, file: Path) -> None:
-    """Save the picture of a run made again: its path, control points, first collision if any, and the shortest path; svg, png and csv."""
+    """Save the picture of a run reproduced: its path, control points, first collision if any, and the shortest path; svg, png and csv."""
     run = made.runs.iloc[0]
     panel = {"kind": "paths", "experiment": run["experiment"], "pick": {"repeat": int(run["repeat"])}}
     unit = made.problems[run["problem"]].workspace.unit

@@ -1,6 +1,7 @@
 """The outcome that the repository keeps: docs/outcome and the README's table, both taken from results at scale full."""
 
 import shutil
+from argparse import ArgumentParser
 from pathlib import Path
 
 import pandas as pd
@@ -11,6 +12,12 @@ RESULTS, KEPT, README = Path("results/full"), Path("docs/outcome"), Path("README
 FILES = ("summary.md", "numbers.csv", "claims.csv")
 PICTURE = "song2016/figures/figure3.png"
 BLOCK = "outcome"
+
+
+def main(parser: ArgumentParser, words: list[str]) -> None:
+    """Write docs/outcome and the README's table from results/full. Raises FileNotFoundError."""
+    parser.parse_args(words)
+    write()
 
 
 def write() -> None:

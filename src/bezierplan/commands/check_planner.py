@@ -1,0 +1,42 @@
+"""The contract tests of a planner (`contract`) on the command line."""
+
+import sys
+from argparse import ArgumentParser
+from typing import Any
+
+from bezierplan import checked, contract
+from bezierplan.study import reading
+
+
+def main(parser: ArgumentParser, words: list[str]) -> None:
+    """Print what the contract tests find on a planner; end with 1 if a fact failed. Raises Fault."""
+    parser.add_argument("planner", help="its name, or the path of its file; with --study the name of a method")
+    given = parser.add_mutually_exclusive_group()
+    given.add_argument("--settings", default="{}", metavar="'{NAME: VALUE, ...}'", help="a value for each of its settings, as in a study")
+    given.add_argument("--study", metavar="STUDY", help="a name in config/studies, or a path: planner and settings are those of its method")
+    words = parser.parse_args(words)
+    planner, settings = of_study(words.study, words.planner) if words.study else (words.planner, of_text(words.settings))
+    failed = total = 0
+    for finding in contract.check_planner(planner, settings):
+        print(finding, flush=True)
+        total += 1
+        failed += not finding.passed
+    print(f"{total - failed} of {total} facts hold")
+    if failed:
+        sys.exit(1)
+
+
+def of_text(text: str) -> dict[str, Any]:
+    """Settings from YAML text. Raises Fault."""
+    settings = checked.parse(text, "--settings")
+    if not isinstance(settings, dict):
+        raise checked.Fault(f"--settings: {text}: expected '{{name: value, ...}}'")
+    return settings
+
+
+def of_study(name: str, method: str) -> tuple[str, dict[str, Any]]:
+    """Planner and settings of a method of a study. Raises Fault."""
+    (study,) = reading.load(reading.read_config({"studies": [name]})).values()
+    if method not in study.methods:
+        raise checked.Fault(f"{name}: methods: {method}: unknown{checked.closest(method, study.methods)}")
+    return study.planner(method), study.resolved(method)

@@ -1,0 +1,152 @@
+"""Chromosomes of many genes of which few are 1, as ascending lists of these, and pools of them.
+
+Functions that change a list or a pool say so; no function keeps state.
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from bezierplan.search.diversity import q_statistic, shared
+from bezierplan.search.sorting import ascending
+
+
+class Pool(NamedTuple):
+    """Chromosomes: ones (places, room) the genes that are 1, ascending; count (places,) how many; cost (places,) what the fitness is
+    the inverse of; free (places,) whether the curve is free of collisions.
+    """
+
+    ones: np.ndarray
+    count: np.ndarray
+    cost: np.ndarray
+    free: np.ndarray
+
+
+@njit(cache=True)
+def empty_pool(places: int, room: int) -> Pool:
+    """A pool with room for so many chromosomes of so many genes each."""
+    return Pool(np.empty((places, room), np.int64), np.zeros(places, np.int64), np.empty(places), np.zeros(places, np.bool_))
+
+
+@njit(cache=True)
+def put(ones: np.ndarray, count: int, cost: float, free: bool, pool: Pool, place: int) -> None:
+    """Write a chromosome to a place of the pool, in place."""
+    for k in range(count):
+        pool.ones[place, k] = ones[k]
+    pool.count[place], pool.cost[place], pool.free[place] = count, cost, free
+
+
+@njit(cache=True)
+def select(pool: Pool, first: int, filled: int, spare: Pool) -> None:
+    """Put the best of the chromosomes at the places from `first` on to the front, in place; of equal ones the first.
+
+    spare: a pool with as many places as survive, overwritten.
+    """
+    order = ascending(pool.cost[first:filled])
+    for place in range(len(spare.cost)):
+        i = first + order[place]
+        put(pool.ones[i], pool.count[i], pool.cost[i], pool.free[i], spare, place)
+    for place in range(len(spare.cost)):
+        put(spare.ones[place], spare.count[place], spare.cost[place], spare.free[place], pool, place)
+
+
+@njit(cache=True)
+def position(genes: np.ndarray, count: int, gene: int) -> int:
+    """Place of a gene among the first so many of a list, `count` if it is not there."""
+    for i in range(count):
+        if genes[i] == gene:
+            return i
+    return count
+
+
+@njit(cache=True)
+def flip(genes: np.ndarray, count: int, gene: int) -> int:
+    """Change a gene of a list, in place; returns how many are 1. What does not fit is lost."""
+    place = position(genes, count, gene)
+    if place < count:
+        for i in range(place, count - 1):
+            genes[i] = genes[i + 1]
+        return count - 1
+    if count == len(genes):
+        return count
+    place = count
+    while place > 0 and genes[place - 1] > gene:
+        genes[place] = genes[place - 1]
+        place -= 1
+    genes[place] = gene
+    return count + 1
+
+
+@njit(cache=True)
+def gap(rng: np.random.Generator, rate: float) -> int:
+    """How many genes stay as they are before one changes, each with a probability; 2**31 stands for more than there are genes."""
+    if rate == 0.0:
+        return 2**31
+    return int(min(math.log(1.0 - rng.random()) / math.log1p(-rate), 2.0**31)) if rate < 1.0 else 0
+
+
+@njit(cache=True)
+def cross(pool: Pool, head: int, tail: int, cut: int, child: np.ndarray) -> int:
+    """Write, to a child, the genes of one chromosome before a cut and of another from it on; returns how many are 1."""
+    count = 0
+    for i in range(pool.count[head]):
+        if pool.ones[head, i] < cut:
+            child[count] = pool.ones[head, i]
+            count += 1
+    for i in range(pool.count[tail]):
+        if pool.ones[tail, i] >= cut:
+            child[count] = pool.ones[tail, i]
+            count += 1
+    return count
+
+
+@njit(cache=True)
+def same(one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether two lists are equal."""
+    if len(one) != len(other):
+        return False
+    for i in range(len(one)):
+        if one[i] != other[i]:
+            return False
+    return True
+
+
+@njit(cache=True)
+def distinct(pool: Pool, size: int) -> int:
+    """How many different chromosomes the first of the pool are; equal ones have equal costs."""
+    found = size
+    for i in range(size):
+        for j in range(i):
+            if pool.cost[i] == pool.cost[j] and same(pool.ones[i, : pool.count[i]], pool.ones[j, : pool.count[j]]):
+                found -= 1
+                break
+    return found
+
+
+@njit(cache=True)
+def q(one: np.ndarray, other: np.ndarray, genes: int) -> float:
+    """The Q statistic of two lists, each of a chromosome of so many genes (`diversity.q_statistic`)."""
+    both = shared(one, other)
+    return q_statistic(both, genes - len(one) - len(other) + both, len(one) - both, len(other) - both)
+
+
+@njit(cache=True)
+def sum_of_q(pool: Pool, first: int, filled: int, genes: int) -> float:
+    """Sum of Q over the pairs of the pool whose second chromosome is at a place from `first` on.
+
+    Most pairs share no gene. A word of 64 bits for each chromosome, with the bit of each gene's number modulo 64 set, shows most of these.
+    """
+    marks = np.zeros(filled, dtype=np.uint64)
+    for i in range(filled):
+        for k in range(pool.count[i]):
+            marks[i] |= np.uint64(1) << np.uint64(pool.ones[i, k] & 63)
+    total = 0.0
+    for j in range(max(first, 1), filled):
+        for i in range(j):
+            if marks[i] & marks[j]:
+                total += q(pool.ones[i, : pool.count[i]], pool.ones[j, : pool.count[j]], genes)
+            else:
+                total += q_statistic(0, genes - pool.count[i] - pool.count[j], pool.count[i], pool.count[j])
+    return total

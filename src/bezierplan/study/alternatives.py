@@ -1,0 +1,99 @@
+"""Choices that a paper leaves open: which alternatives are tried, on which methods and claims."""
+
+import dataclasses
+import itertools
+from typing import Any
+
+from bezierplan.model import one_or_list
+from bezierplan.study.claims import Assumption, Check, Claim
+from bezierplan.study.definition import Study
+
+
+def alternatives(study: Study) -> dict[str, tuple[str, Any]]:
+    """Every alternative of an assumption that governs a setting: its name, such as `O2_8`, -> the assumption's id and the value."""
+    return {
+        f"{assumption.id}_{value}": (assumption.id, value)
+        for assumption in study.assumptions
+        if assumption.setting
+        for value in assumption.alternatives
+    }
+
+
+def tried(study: Study) -> list[str]:
+    """Names of the alternatives that are tried on claims."""
+    return [name for name, (identity, _) in alternatives(study).items() if assumption_of(study, identity).claims]
+
+
+def assumption_of(study: Study, identity: str) -> Assumption:
+    """The assumption of that id."""
+    return next(assumption for assumption in study.assumptions if assumption.id == identity)
+
+
+def concerned(study: Study, assumption: Assumption) -> list[str]:
+    """Methods whose setting an assumption governs, controls and variants apart; those that its default names, if it names any."""
+    methods = [name for name, method in study.methods.items() if name not in study.controls and not method.variant_of]
+    if isinstance(assumption.default, dict):
+        methods = [method for method in methods if method in assumption.default]
+    return [method for method in methods if assumption.setting in study.resolved(method)]
+
+
+def methods_changed(study: Study, name: str) -> list[str]:
+    """Methods of the headline claims whose settings an alternative changes."""
+    return concerned(study, assumption_of(study, alternatives(study)[name][0]))
+
+
+def with_alternative(study: Study, name: str) -> Study:
+    """The study with one alternative of `alternatives` in force."""
+    identity, value = alternatives(study)[name]
+    assumption = assumption_of(study, identity)
+    methods = dict(study.methods)
+    for method in methods_changed(study, name):
+        changed = methods[method].settings | {assumption.setting: value} | assumption.along.get(method, {})
+        methods[method] = methods[method].but(settings=changed)
+    return dataclasses.replace(study, methods=methods)
+
+
+def headline_claims(study: Study, name: str) -> list[Claim]:
+    """The claims on which an alternative is tried, in their deciding variant alone."""
+    wanted = assumption_of(study, alternatives(study)[name][0]).claims
+    return [claim.but(variants={}) for claim in study.claims if claim.id in wanted]
+
+
+def alternatives_described(study: Study) -> dict[str, dict]:
+    """What `analysis.sensitivity` prints of each alternative, by its name."""
+    described = {}
+    for name in tried(study):
+        identity, value = alternatives(study)[name]
+        assumption = assumption_of(study, identity)
+        parts = {"detail": assumption.detail, "setting": assumption.setting, "default": assumption.default}
+        described[name] = {"study": study.key, "assumption": identity, **parts, "alternative": value}
+    return described
+
+
+def methods_of_claims(study: Study, claims: list[Claim], experiment: str) -> list[str]:
+    """Methods of an experiment without variants that claims compare; all of them where a check names none."""
+    methods = [name for name in study.experiments[experiment].methods if not study.methods[name].variant_of]
+    named = set()
+    for claim in claims:
+        for check in claim.checks:
+            if experiment in check.experiments:
+                named |= _compared(study, claim, check) or set(methods)
+    return [name for name in methods if name in named]
+
+
+def _compared(study: Study, claim: Claim, check: Check) -> set[str]:
+    """Methods that a check names; of `rest` those of the claim's table."""
+    found = set(one_or_list(check.where.get("method", [])))
+    if check.cells == "method":
+        found.update(check.groups_named)
+    if "rest" in found:
+        tables = [study.compared()[name] for name in claim.artefacts if name in study.compared()]
+        found.update(*(one_or_list(table.where.get("method", list(study.methods))) for table in tables))
+    return found
+
+
+def experiments_of_claims(claims: list[Claim]) -> list[str]:
+    """Names of the experiments on whose runs claims are judged, each once, in order; variants may name further ones."""
+    named = [name for claim in claims for check in claim.checks for name in check.experiments]
+    named += itertools.chain.from_iterable(one_or_list(value) for claim in claims for value in claim.variants.get("experiment", []))
+    return list(dict.fromkeys(named))

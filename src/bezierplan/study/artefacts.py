@@ -1,0 +1,107 @@
+"""What `artefacts.yaml` says: tables and figures, and how names are printed."""
+
+from typing import Annotated, ClassVar, Literal
+
+from pydantic import Field
+
+from bezierplan import figures
+from bezierplan.model import Experiment, Function, Line, Metric, Model, Name, Names, Statistic, Where, Whole, listed, one_of, one_or_list
+from bezierplan.study.experiments import File
+
+PublishedFile = Annotated[File, Names("published")]
+# A column of the runs table, `value` or `statistic`.
+Columns = listed(Annotated[Name, Names("level")], least=0)
+
+
+class Table(Model):
+    """Keys of a table of every kind. smoke: the kind as which the small subset counts it."""
+
+    smoke: ClassVar[str] = ""
+
+    title: Line = Field(description="one line")
+
+
+class TableValue(Model):
+    """An entry of a table's `values`."""
+
+    metric: Metric = Field(description="the name of a metric (`src/bezierplan/metrics.py`)")
+    statistic: listed(Statistic, single=True) = Field(
+        description="the name of a statistic (`src/bezierplan/analysis/statistics.py`) or a list of names; `unstated` where the "
+        "paper does not say, "
+        "and ours is then the median"
+    )
+    where: Where = Field({}, description="column of the runs table → value or list of values: the runs that count")
+    label: Line = Field(description="how the value is printed")
+    decimals: Whole = Field(description="how many decimals are printed, a whole number of at least 0")
+
+    @property
+    def statistics(self) -> list[str]:
+        return one_or_list(self.statistic)
+
+
+class Pivot(Table):
+    """A table of runs, compared with published numbers."""
+
+    kind: Literal["pivot"] = Field(description="pivot")
+    experiment: Experiment = Field(description="the name of an experiment")
+    where: Where = Field({}, description="column of the runs table → value or list of values, which also gives the order")
+    index: Columns = Field(description="a list of columns of the runs table, `value` or `statistic`: what the rows are")
+    columns: Columns = Field([], description="likewise: what the columns are")
+    values: list[TableValue] = Field(description="a list of {metric, statistic, label, decimals}, and perhaps `where`", min_length=1)
+    published: PublishedFile = Field(None, description="a file in the study's folder `published` to compare with")
+    reads: dict[Name, Metric] = Field(
+        {},
+        description="metric in the published file → the metric that the number is compared with, where the paper leaves open which it is",
+    )
+    decides: Where = Field({}, description="column → the value whose rows count as the paper's reading in the summary; left out: all rows")
+
+
+class Transcribed(Table):
+    """A published file as it stands."""
+
+    kind: Literal["transcribed"] = Field(description="transcribed")
+    published: PublishedFile = Field(description="a file in the study's folder `published`")
+
+
+class FunctionTable(Table):
+    """What a function of the study's module returns."""
+
+    kind: Literal["function"] = Field(description="function")
+    function: Function = Field(
+        description="the name of a function of `src/bezierplan/studies/<study>.py`, called with all published tables by file name"
+    )
+
+
+class Comparison(Table):
+    """The published numbers of other tables beside ours, with the range that experiments of the paper's size give."""
+
+    kind: Literal["comparison"] = Field(description="comparison")
+    of: listed(Annotated[Name, Names("compared")]) = Field(description="a list of tables with published numbers")
+    metrics: listed(Metric) = Field(description="a list of metrics")
+    where: Where = Field({}, description="column of the comparison → value or list of values")
+
+
+TABLES = {model.model_fields["kind"].annotation.__args__[0]: model for model in Table.__subclasses__()}
+"""Kind -> its model."""
+
+
+class Figure(Model):
+    """Panels on one sheet."""
+
+    title: Line = Field(description="one line")
+    columns: Literal[1, 2, 3, 4, 5] = Field(description="panels side by side, 1 to 5")
+    panels: list[Annotated[figures.Panel, one_of("kind", figures.kinds())]] = Field(description="a list of panels", min_length=1)
+
+
+class ArtefactsFile(Model):
+    """The file."""
+
+    labels: dict[Line, Line] = Field({}, description="name → how it is printed")
+    tables: dict[Name, Annotated[Table, one_of("kind", TABLES)]] = Field({}, description="name → a table")
+    figures: dict[Name, Figure] = Field({}, description="name → title, columns and panels")
+
+
+class ConfigFile(Model):
+    """The file `config/config.yaml`, or what `--config` gives."""
+
+    studies: listed(Line) = Field(description="a list of studies, each the name of a folder in `config/studies` or a path")

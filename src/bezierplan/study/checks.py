@@ -1,0 +1,299 @@
+"""What no file of a study can say by itself: names that stand in other files, planners and their settings, places that are free, published
+numbers that fit. Every fault is reported in one line.
+"""
+
+import importlib
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import cache, partial
+from typing import Any
+
+from bezierplan import metrics, problems
+from bezierplan.analysis import statistics
+from bezierplan.checked import Fault, closest
+from bezierplan.model import Model, named, one_or_list
+from bezierplan.problem import Problem, planner_module
+from bezierplan.running import conditions, settings_in
+from bezierplan.study import published
+from bezierplan.study.alternatives import alternatives, concerned, methods_changed, with_alternative
+from bezierplan.study.artefacts import Comparison, Pivot, Table
+from bezierplan.study.claims import Assumption, Check, Claim
+from bezierplan.study.definition import Study, files_of, relative
+from bezierplan.study.design import Design, in_first_variant
+from bezierplan.study.experiments import WORKSPACES
+from bezierplan.study.files import inside
+from bezierplan.study.jobs import job
+from bezierplan.study.planner_checks import asked, check_complete, check_settings, loaded
+from bezierplan.workspaces import files
+
+
+def check(study: Study) -> None:
+    """Raise Fault for what is wrong in a study whose files are right by themselves."""
+    _check_experiments(study, relative(study.folder / "experiments.yaml"))
+    design, functions = Design(study), _functions(study)
+    place = relative(study.folder / "artefacts.yaml")
+    for name, table in study.tables.items():
+        _check_table(design, functions, table, f"{place}: tables: {name}")
+    for name, figure in study.figures.items():
+        if name in study.tables:
+            raise Fault(f"{place}: figures: {name}: a table has this name already")
+        for number, panel in enumerate(figure.panels):
+            _check_names(design, functions, panel, f"{place}: figures: {name}: panels: {number}")
+    place = relative(study.folder / "claims.yaml")
+    _check_ids(study.claims, f"{place}: claims")
+    for claim in study.claims:
+        _check_claim(design, functions, claim, f"{place}: claims: {claim.id}")
+    place = relative(study.folder / "assumptions.yaml")
+    _check_ids(study.assumptions, f"{place}: assumptions")
+    for assumption in study.assumptions:
+        check_assumption(study, assumption, f"{place}: assumptions: {assumption.id}")
+
+
+def _check_ids(entries: Sequence[Claim] | Sequence[Assumption], place: str) -> None:
+    """Every id stands once, for alternatives and results are found by it."""
+    ids = [entry.id for entry in entries]
+    for number, identity in enumerate(ids):
+        if identity in ids[:number]:
+            raise Fault(f"{place}: {identity}: another one has this id already")
+
+
+def _known(name: Any, known: Iterable[Any], place: str) -> None:
+    known = list(known)
+    if name not in known:
+        raise Fault(f"{place}: {name}: unknown{closest(name, known)}")
+
+
+def _functions(study: Study) -> list[str]:
+    """Names of the public functions of a study's module."""
+    names = vars(importlib.import_module(study.module())) if study.module() else {}
+    return [name for name, value in names.items() if callable(value) and not name.startswith("_")]
+
+
+# experiments.yaml
+
+
+def _check_experiments(study: Study, place: str) -> None:
+    for name, method in study.methods.items():
+        where = f"{place}: {'controls' if name in study.controls else 'methods'}: {name}"
+        loaded(study, name, where)
+        if method.variant_of:
+            _known(method.variant_of, study.methods, f"{where}: variant_of")
+        for setting in method.settings:
+            _known(setting, study.accepted(name), f"{where}: settings")
+    used = {setting for name in study.methods for setting in study.accepted(name)}
+    _check_shared_settings(study, used, place)
+    check_complete(study, place)
+    for name in study.methods:
+        check_settings(planner_module(study.planner(name)), study.resolved(name), f"{place}: methods: {name}")
+    built = cache(partial(_built, study))
+    for name in study.workspaces:
+        _check_workspace(study, name, f"{place}: workspaces: {name}")
+    for name, problem in study.problems.items():
+        _known(problem.workspace, study.workspaces, f"{place}: problems: {name}: workspace")
+        for setting in problem.settings:
+            _known(setting, used, f"{place}: problems: {name}: settings")
+        _check_problem(study, built, name, f"{place}: problems: {name}")
+    for name in study.experiments:
+        _check_experiment(study, built, name, f"{place}: experiments: {name}")
+
+
+def _check_shared_settings(study: Study, used: set[str], place: str) -> None:
+    """Settings of all methods, of a planner's methods, and of levels are settings that a planner has."""
+    for setting in study.settings:
+        if setting not in used:
+            raise Fault(f"{place}: settings: {setting}: no planner of this study has this setting{closest(setting, used)}")
+    planners = {method.planner: name for name, method in study.methods.items()}
+    for planner, settings in study.planner_settings.items():
+        if planner not in planners:
+            raise Fault(f"{place}: settings: {planner}: no method of this study has this planner{closest(planner, planners)}")
+        for setting in settings:
+            _known(setting, study.accepted(planners[planner]), f"{place}: settings: {planner}")
+    for level, values in study.levels.items():
+        for value, settings in values.items():
+            for setting in settings:
+                _known(setting, used, f"{place}: levels: {level}: {value}")
+
+
+def _check_workspace(study: Study, name: str, place: str) -> None:
+    """A fixed workspace can be loaded; random ones are drawn with the problems."""
+    workspace = study.workspaces[name]
+    for key, file in files_of(workspace).items():
+        inside(study.folder, file, f"{place}: {key}: {file}")
+    if not workspace.drawn:
+        try:
+            files.load(workspace.plain(), study.folder)
+        except ValueError as error:
+            raise Fault(f"{place}: {error}") from None
+
+
+def _check_problem(study: Study, built: Callable[[str], Problem], name: str, place: str) -> None:
+    """Start and target are free, in the first layout where the workspace is drawn."""
+    problem, home = study.problems[name], study.workspace_of(name)
+    drawn = [kind for kind, model in WORKSPACES.items() if model.drawn]
+    if bool(home.drawn) != (problem.layouts is not None):
+        needed = (
+            "layouts and obstacles are needed" if home.drawn else f"layouts and obstacles need a workspace of kind {' or '.join(drawn)}"
+        )
+        raise Fault(f"{place}: workspace: {problem.workspace}: {needed}")
+    if home.drawn and problem.start is None:
+        raise Fault(f"{place}: start_cell: {problem.start_cell}: cells of drawn workspaces have no numbers; expected start: [x, y]")
+    if home.with_side != (problem.side is not None):
+        with_side = [kind for kind, model in WORKSPACES.items() if model.with_side]
+        needed = "side is needed" if home.with_side else f"side needs a workspace of kind {' or '.join(with_side)}"
+        raise Fault(f"{place}: workspace: {problem.workspace}: {needed}")
+    if home.kind == "random_circles" and max(problem.obstacles) > home.circles:
+        raise Fault(f"{place}: obstacles: {max(problem.obstacles)}; expected at most {home.circles}, the circles of the workspace")
+    try:
+        built(name)
+    except ValueError as error:
+        raise Fault(f"{place}: {error}") from None
+
+
+def _built(study: Study, name: str) -> Problem:
+    """A problem as planners meet it, in the first layout where the workspace is drawn. Raises ValueError."""
+    problem, home = study.problems[name], study.workspace_of(name)
+    drawn = {"layout": 0, "obstacles": max(problem.obstacles)} if home.drawn else {}
+    described = {name: problem.plain("settings", "layouts") | drawn}
+    return problems.build_all({"study": study.key, "problems": described, "workspaces": {problem.workspace: home.plain()}}, study.folder)[
+        0
+    ][name]
+
+
+def _check_experiment(study: Study, built: Callable[[str], Problem], name: str, place: str) -> None:
+    experiment = study.experiments[name]
+    for problem in experiment.problems:
+        _known(problem, study.problems, f"{place}: problems")
+    for method in experiment.methods:
+        if method in study.controls:
+            raise Fault(f"{place}: methods: {method}: a control; it joins by itself")
+        _known(method, study.methods.keys() - study.controls, f"{place}: methods")
+    accepted = {setting for method in experiment.methods for setting in study.accepted(method)}
+    for setting, values in experiment.vary.items():
+        _known(setting, accepted | set(study.levels), f"{place}: vary")
+        for value in values if setting in study.levels else []:
+            _known(str(value).lower(), study.levels[setting], f"{place}: vary: {setting}")
+    for method in experiment.methods:
+        _check_method_in(study, built, name, method, place)
+
+
+def _check_method_in(study: Study, built: Callable[[str], Problem], name: str, method: str, place: str) -> None:
+    """A method's planner serves the problems of an experiment, and its settings are right under every condition."""
+    module, experiment = planner_module(study.planner(method)), study.experiments[name]
+    for problem in experiment.problems:
+        kind = study.kind_of(problem)
+        if kind not in getattr(module, "workspaces", (kind,)):
+            served = ", ".join(module.workspaces)
+            raise Fault(f"{place}: methods: {method}: its planner serves workspaces of kind {served}, not {kind} ({problem})")
+        if hasattr(module, "serves"):
+            asked(module.serves, f"{place}: methods: {method}: problem {problem}", built(problem))
+    described = job(study, name, method, "full", 0)
+    # One problem for each set of settings that go with problems.
+    apart = {str(met.get("settings")): problem for problem, met in reversed(described["problems"].items())}
+    for condition in conditions(list(apart.values()), experiment.vary):
+        where = f"{place}: vary: {condition.name}: {method}" if condition.values else f"{place}: methods: {method}"
+        check_settings(module, settings_in(described, condition), where)
+
+
+# Names that stand elsewhere, in artefacts.yaml and claims.yaml
+
+
+def _check_names(design: Design, functions: list[str], model: Model, place: str) -> None:
+    """Names in a model are those of something. Of a panel that shows no runs the columns are a function's own."""
+    study = design.study
+    experiments = one_or_list(getattr(model, "experiment", None) or [])
+    known: Mapping[str, Iterable[str]] = {
+        "experiment": study.experiments,
+        "workspace": study.workspaces,
+        "function": functions,
+        "statistic": statistics.STATISTICS,
+        "compared": [name for name, table in study.compared().items() if table.published],
+        "artefact": [*study.tables, *study.figures],
+    }
+    if experiments or isinstance(model, Comparison):
+        known |= {"metric": metrics.METRICS}
+    for path, what, name in named(model):
+        if what == "experiment":
+            _known(name, known[what], _at(place, path))
+    if experiments:
+        columns = frozenset().union(*map(design.columns, experiments))
+        known |= {"column": columns, "level": columns | {"value", "statistic"}}
+    for path, what, name in named(model):
+        where = _at(place, path)
+        if what in known:
+            _known(name, known[what], where)
+        elif what == "where" and experiments:
+            design.check_where(experiments, name, where, controls=not isinstance(model, Check))
+        elif what == "published":
+            inside(study.folder, f"published/{name}", f"{where}: {name}")
+
+
+def _at(place: str, path: tuple[str, ...]) -> str:
+    """The keys that lead to a name in a list, which is known by itself, without its number; those of lists of mappings stay."""
+    return ": ".join([place, *(path[:-1] if path[-1].isdecimal() else path)])
+
+
+def _check_table(design: Design, functions: list[str], table: Table, place: str) -> None:
+    _check_names(design, functions, table, place)
+    if isinstance(table, Pivot) and table.published:
+        published.check(design, table)
+
+
+def _check_claim(design: Design, functions: list[str], claim: Claim, place: str) -> None:
+    _check_names(design, functions, claim, place)
+    for value in claim.variants.get("metric", []):
+        _known(value, metrics.METRICS, f"{place}: variants: metric")
+    for value in claim.variants.get("experiment", []):
+        for name in one_or_list(value):
+            _known(name, design.study.experiments, f"{place}: variants: experiment")
+    for number, each in enumerate(claim.checks):
+        where = f"{place}: checks: {number}"
+        _check_names(design, functions, each, where)
+        if not each.experiments or not hasattr(each, "every"):
+            continue
+        rows = design.selectable(each.experiments, controls=False)
+        values = design.values(each.experiments, each.cells, rows) if each.cells else []
+        for group in each.groups_named if values else []:
+            if group != "rest" and group not in values:
+                raise Fault(f"{where}: group: {group}: unknown{design.hint(group, values)}")
+        design.check_mixtures(each, in_first_variant(claim, each), where)
+
+
+# assumptions.yaml
+
+
+def check_assumption(study: Study, assumption: Assumption, place: str) -> None:
+    """An assumption's claims are claims of the study, its default is in force, and every alternative is a legal value of its setting."""
+    for identity in assumption.claims:
+        _known(identity, [claim.id for claim in study.claims], f"{place}: claims")
+    if not assumption.setting:
+        return
+    if isinstance(assumption.default, dict):
+        for method in assumption.default:
+            _known(method, study.methods, f"{place}: default")
+    methods = concerned(study, assumption)
+    if not methods:
+        used = {setting for method in study.methods for setting in study.resolved(method)}
+        raise Fault(f"{place}: setting: {assumption.setting}: no method has this setting{closest(assumption.setting, used)}")
+    _check_in_force(study, assumption, methods, place)
+    for name, (identity, value) in alternatives(study).items():
+        if identity == assumption.id:
+            changed = with_alternative(study, name)
+            for method in methods_changed(study, name):
+                module = planner_module(study.planner(method))
+                check_settings(module, changed.resolved(method), f"{place}: alternatives: {value}: {method}")
+
+
+def _check_in_force(study: Study, assumption: Assumption, methods: list[str], place: str) -> None:
+    """The default is what runs get: those of each method that it names; without names those of the methods that have no value of their own
+    or, if all have one, of one of them.
+    """
+    in_force = {method: study.resolved(method)[assumption.setting] for method in methods}
+    default = assumption.default
+    if isinstance(default, dict):
+        for method, value in in_force.items():
+            if value != default[method]:
+                raise Fault(f"{place}: default: {method}: {default[method]}: not in force; its {assumption.setting} is {value}")
+        return
+    shared = [value for method, value in in_force.items() if assumption.setting not in study.methods[method].settings]
+    if any(value != default for value in shared) or default not in in_force.values():
+        values = ", ".join(dict.fromkeys(map(str, shared or in_force.values())))
+        raise Fault(f"{place}: default: {default}: not in force; {assumption.setting} is {values}")

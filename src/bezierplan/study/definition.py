@@ -1,0 +1,130 @@
+"""A study as its files say it."""
+
+import importlib.util
+import itertools
+import os
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from bezierplan.problem import planner_module, planner_settings
+from bezierplan.study.artefacts import Figure, Pivot, Table
+from bezierplan.study.claims import Assumption, Claim
+from bezierplan.study.experiments import Experiment, Method, Problem, Workspace
+from bezierplan.workspaces import files
+
+
+@dataclass(frozen=True)
+class Study:
+    """A study as its files say it: a paper of this project or a reader's own folder of the same form (config/README.md).
+
+    key: its name; folder: where it lies; the others: experiments.yaml, artefacts.yaml, claims.yaml and assumptions.yaml. methods:
+    controls as well; controls: their names. settings: of all methods; planner_settings: planner -> settings of its methods alone.
+    """
+
+    key: str
+    folder: Path
+    title: str
+    methods: dict[str, Method]
+    controls: frozenset[str]
+    settings: dict[str, Any]
+    planner_settings: dict[str, dict[str, Any]]
+    levels: dict[str, dict[str, dict[str, Any]]]
+    workspaces: dict[str, Workspace]
+    problems: dict[str, Problem]
+    experiments: dict[str, Experiment]
+    labels: dict[str, str]
+    tables: dict[str, Table]
+    figures: dict[str, Figure]
+    claims: list[Claim]
+    assumptions: list[Assumption]
+
+    def accepted(self, method: str) -> dict[str, Any]:
+        """Settings that the planner of a method has, with their annotations."""
+        return planner_settings(planner_module(self.planner(method)))
+
+    def resolved(self, method: str) -> dict[str, Any]:
+        """All settings of a method, by name: the study's where its planner has them, those of its planner, and its own."""
+        accepted = self.accepted(method)
+        common = {name: value for name, value in self.settings.items() if name in accepted}
+        return common | self.planner_settings.get(self.methods[method].planner, {}) | self.methods[method].settings
+
+    def planner(self, method: str) -> str:
+        """The planner of a method: a name, or the path of a file as seen from here."""
+        planner = self.methods[method].planner
+        return relative(self.folder / planner) if planner.endswith(".py") else planner
+
+    def methods_of(self, experiment: str) -> list[str]:
+        """Methods of an experiment, and behind them the controls that serve all its workspaces."""
+        content = self.experiments[experiment]
+        kinds = {self.kind_of(problem) for problem in content.problems}
+        return content.methods + [name for name in self.methods if name in self.controls and self._serves(name, kinds, content)]
+
+    def _serves(self, control: str, kinds: set[str], experiment: Experiment) -> bool:
+        """Whether a control can join: its planner serves these kinds of workspace, and has no setting that the experiment varies."""
+        module = planner_module(self.planner(control))
+        varied = set(experiment.vary) & set(planner_settings(module))
+        return kinds <= set(getattr(module, "workspaces", kinds)) and not varied
+
+    def workspace_of(self, problem: str) -> Workspace:
+        """The workspace of a problem."""
+        return self.workspaces[self.problems[problem].workspace]
+
+    def kind_of(self, problem: str) -> str:
+        """The kind of workspace that planners meet in a problem."""
+        workspace = self.workspace_of(problem)
+        return workspace.drawn or workspace.made or workspace.kind
+
+    def problems_of(self, experiment: str, scale: str) -> dict[str, dict]:
+        """Descriptions of an experiment's problems, by name, as plain values. One with layouts stands for a problem each layout and
+        number of obstacles.
+        """
+        described = {}
+        for name in self.experiments[experiment].problems:
+            problem = self.problems[name]
+            if problem.layouts is None:
+                described[name] = problem.plain()
+                continue
+            same = problem.plain("layouts", "obstacles")
+            for layout, obstacles in itertools.product(range(problem.layouts[scale]), problem.obstacles):
+                described[f"{name}_{layout}_{obstacles}"] = same | {"layout": layout, "obstacles": obstacles}
+        return described
+
+    def maps(self, workspaces: Iterable[str]) -> list[str]:
+        """Map files of workspaces as seen from here, each once."""
+        described = [self.workspaces[name].plain() for name in workspaces]
+        return sorted({relative(file) for each in described for file in files.sources(each, self.folder)})
+
+    def compared(self) -> dict[str, Pivot]:
+        """The tables of runs, which are compared with published numbers; the others stand for themselves (`listing_job`)."""
+        return {name: table for name, table in self.tables.items() if isinstance(table, Pivot)}
+
+    def published_file(self, table: str) -> str | None:
+        """The file of a table's published numbers as seen from here, or None."""
+        file = getattr(self.tables[table], "published", None)
+        return file and relative(self.folder / "published" / file)
+
+    def published_files(self) -> list[str]:
+        """All files of published numbers as seen from here."""
+        return [relative(file) for file in sorted((self.folder / "published").glob("*.csv"))]
+
+    def variants(self) -> dict[str, str]:
+        """Method -> the method whose published numbers it stands beside."""
+        return {name: method.variant_of for name, method in self.methods.items() if method.variant_of}
+
+    def module(self) -> str | None:
+        """The module with what only this study needs, or None."""
+        name = f"bezierplan.studies.{self.key}"
+        return name if importlib.util.find_spec(name) else None
+
+
+def files_of(workspace: Workspace) -> dict[str, str]:
+    """Files that a workspace is read from, by key."""
+    return {key: getattr(workspace, key) for key in ("file", "heights", "scenarios") if getattr(workspace, key, None)}
+
+
+def relative(path: Path) -> str:
+    """A path from the working folder if it lies inside, so that a moved tree finds its results again; otherwise as it is."""
+    here = os.path.relpath(path)
+    return str(path) if here.startswith("..") else here

@@ -1,0 +1,139 @@
+"""The runs of an experiment before any is made: methods, problems, settings, and what selects or mixes them."""
+
+from functools import cache
+from typing import Any
+
+from bezierplan.checked import Fault, closest
+from bezierplan.metrics import METRICS
+from bezierplan.model import one_or_list
+from bezierplan.problem import PLACE
+from bezierplan.running import RUN_COLUMNS, conditions, settings_in
+from bezierplan.study.claims import Check, Claim
+from bezierplan.study.definition import Study
+from bezierplan.study.jobs import job
+
+Row = dict[str, Any]
+
+# What one unit of a comparison has one value of; several, and their runs would be mixed without a word.
+_FACTORS = ("experiment", "condition", "method")
+# Columns of which a design does not hold every value.
+_MANY = ("repeat", "layout", "problem", "condition", "id")
+
+
+class Design:
+    """The runs of a study's experiments, one row each, without repeats; of a problem that is drawn several times two layouts stand for
+    all.
+    """
+
+    def __init__(self, study: Study) -> None:
+        self.study = study
+        self.rows = cache(self._rows)
+        self.columns = cache(self._columns)
+
+    def _rows(self, experiment: str) -> list[Row]:
+        content, rows = self.study.experiments[experiment], []
+        for method in self.study.methods_of(experiment):
+            described = job(self.study, experiment, method, "full", 0)
+            problems = [name for name, problem in described["problems"].items() if problem.get("layout", 0) < 2]
+            for condition in conditions(problems, content.vary):
+                place = {key: value for key, value in described["problems"][condition.problem].items() if key != "settings"}
+                names = {"experiment": experiment, "condition": condition.name, "problem": condition.problem, "method": method}
+                rows.append(names | place | settings_in(described, condition) | condition.values | {"planner": described["planner"]})
+        return rows
+
+    def _columns(self, experiment: str) -> frozenset[str]:
+        """Columns of the runs table of an experiment that a selection may name."""
+        methods = self.study.methods_of(experiment)
+        problems = [self.study.problems[name] for name in self.study.experiments[experiment].problems]
+        places = {
+            key for problem in problems for key in (*problem.model_fields_set, *(["layout"] if problem.layouts else [])) if key in PLACE
+        }
+        settings = {setting for name in methods for setting in self.study.resolved(name)}
+        return frozenset(
+            {
+                "straight_line",
+                "bound",
+                "bound8",
+                "study",
+                "experiment",
+                *RUN_COLUMNS,
+                *places,
+                *settings,
+                *self.study.experiments[experiment].vary,
+            }
+        )
+
+    def check_where(self, experiments: list[str], where: dict[str, Any], place: str, *, controls: bool = True) -> None:
+        """A selection names columns, values that runs have, and not a combination that no run has. Raises Fault, beginning with a place."""
+        known = frozenset().union(*map(self.columns, experiments))
+        rows = self.selectable(experiments, controls)
+        for column, wanted in where.items():
+            # A condition may also be on an outcome, which some planners alone report.
+            if column not in known and column not in METRICS:
+                raise Fault(f"{place}: {column}: unknown{closest(column, known)}")
+            values = self.values(experiments, column, rows)
+            for value in one_or_list(wanted) if values else []:
+                if value not in values:
+                    raise Fault(f"{place}: {column}: {value}: unknown{self.hint(value, values)}")
+        if rows and not any(_fits(row, where) for row in rows):
+            raise Fault(
+                f"{place}: no run of {', '.join(experiments)} has all of {', '.join(f'{key} {value}' for key, value in where.items())}"
+            )
+
+    def selectable(self, experiments: list[str], controls: bool) -> list[Row]:
+        """Rows of experiments; those of controls are no part of claims."""
+        rows = [row for name in experiments for row in self.rows(name)]
+        return [row for row in rows if controls or row["method"] not in self.study.controls]
+
+    def values(self, experiments: list[str], column: str, rows: list[Row]) -> list[Any]:
+        """All values that a column has in rows of experiments; none where a design does not hold them."""
+        if column == "problem":
+            return [name for experiment in experiments for name in self.study.problems_of(experiment, "full")]
+        if column in _MANY or all(column not in row for row in rows):
+            return []
+        return list({repr(row[column]): row[column] for row in rows if column in row}.values())
+
+    def hint(self, value: Any, values: list[Any]) -> str:
+        """`; did you mean ...?` for a value of a column; a control that stands where methods are compared is named as such."""
+        if value in self.study.controls:
+            return f" here: a control; claims compare methods, known: {', '.join(map(str, values))}"
+        return closest(value, values)
+
+    def check_mixtures(self, check: Check, where: dict[str, Any], place: str) -> None:
+        """What a unit of a comparison, told apart by the check's columns, has several of would be mixed. Raises Fault."""
+        keys = [*check.every, *getattr(check, "pool", ()), *([check.cells] if check.cells else []), check.unit]
+        rows = [row for row in self.selectable(check.experiments, controls=False) if _fits(row, where)]
+        found: dict[tuple, Row] = {}
+        for row in rows:
+            first = found.setdefault(tuple(repr(row.get(key)) for key in keys), row)
+            for factor in _FACTORS:
+                if factor not in keys and row[factor] != first[factor]:
+                    values = f"{first[factor]} and {row[factor]}"
+                    raise Fault(f"{place}: several values of {factor} are neither told apart nor pooled, such as {values}")
+
+
+def _fits(row: Row, where: dict[str, Any]) -> bool:
+    """Whether a run is of the conditions of a selection, as far as that can be told before it is made."""
+    for column, wanted in where.items():
+        outcome = column in METRICS or (column in RUN_COLUMNS and column not in row) or column in ("repeat", "layout")
+        drawn = column == "problem" and "layout" in row
+        if not outcome and not drawn and row.get(column) not in one_or_list(wanted):
+            return False
+    return True
+
+
+def in_first_variant(claim: Claim, check: Check) -> dict[str, Any]:
+    """The selection of a check in the deciding variant: a column of which no check names the first value is one more condition."""
+    extra = {}
+    for column, values in claim.variants.items():
+        firsts = one_or_list(values[0])
+        if column not in ("metric", "experiment") and not any(_names(each, column, firsts) for each in claim.checks):
+            extra[column] = values[0]
+    return check.where | extra
+
+
+def _names(check: Check, column: str, values: list[Any]) -> bool:
+    named = one_or_list(getattr(check, "where", {}).get(column, []))
+    if column == getattr(check, "across", None):
+        named = [*named, *check.groups_named]
+    return any(value in named for value in values)

@@ -1,0 +1,277 @@
+"""What `experiments.yaml` says: methods, workspaces, problems, experiments."""
+
+import math
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field, model_validator
+
+from bezierplan.model import (
+    Count,
+    Line,
+    Model,
+    Name,
+    NotNegative,
+    Number,
+    Positive,
+    Setting,
+    Whole,
+    after,
+    is_number,
+    listed,
+    mapping_or,
+    matching,
+    one_of,
+    value,
+    wrong,
+)
+
+SCALES = ("smoke", "full", "extended")
+
+MOST_CHUNKS = 10_000
+"""Jobs of one method in one experiment."""
+MOST_CONDITIONS = 100_000
+"""Problems of an experiment times combinations of varied values."""
+
+Settings = dict[Name, Setting]
+ProblemName = Annotated[str, matching(r"^[a-z0-9][a-z0-9_]*$", "a name of lower-case letters, digits and _")]
+File = Annotated[str, value(lambda given: isinstance(given, str) and given.isprintable() and 0 < len(given) <= 200, "the name of a file")]
+Point = Annotated[list[Number], after(lambda given: _of_length(given, 2, "[x, y]"))]
+Bounds = Annotated[list[Number], after(lambda given: _of_length(given, 4, "[x low, x high, y low, y high]"))]
+Circle = Annotated[list[Number], after(lambda given: _of_length(given, 3, "[x, y, radius]"))]
+
+
+def _of_length(given: list, length: int, expected: str) -> list:
+    if len(given) != length:
+        raise wrong(f"{given!r}: expected {expected}")
+    return given
+
+
+class Scales(Model):
+    """A number for each scale."""
+
+    smoke: Count = Field(description="a whole number of at least 1")
+    full: Count = Field(description="a whole number of at least 1")
+    extended: Count = Field(description="a whole number of at least 1")
+
+    def __getitem__(self, scale: str) -> int:
+        return getattr(self, scale)
+
+
+class Method(Model):
+    """A planner with its settings."""
+
+    planner: File = Field(description="the name of a file in `src/bezierplan/planners`, or of a file `.py` in the study's folder")
+    settings: Settings = Field({}, description="settings of this method alone, by name; the strongest")
+    variant_of: Name = Field(None, description="the method whose published numbers this one stands beside")
+
+
+class Workspace(Model):
+    """What every description of a workspace has. drawn: of one that is drawn at random, the kind that planners meet; made: of one that is
+    made from files of another form, the kind that planners meet; with_side: whether its problems have a `side`.
+    """
+
+    drawn: ClassVar[str | None] = None
+    made: ClassVar[str | None] = None
+    with_side: ClassVar[bool] = False
+
+    unit: Line = Field(description="the name of the unit of length")
+
+
+class GridMap(Workspace):
+    """A map of cells."""
+
+    kind: Literal["grid"] = Field(description="grid")
+    file: File = Field(description="a map file in the study's folder")
+    cell: Positive = Field(description="the side of a cell, a number above 0")
+    heights: File = Field(description="a file of heights in the study's folder", default=None)
+
+
+class CircleMap(Workspace):
+    """Circles in a rectangle."""
+
+    kind: Literal["circles"] = Field(description="circles")
+    bounds: Bounds = Field(description="[x low, x high, y low, y high]")
+    circles: list[Circle] = Field(description="a list of [x, y, radius]")
+
+
+class PolygonMap(Workspace):
+    """Polygons in a rectangle."""
+
+    kind: Literal["polygons"] = Field(description="polygons")
+    file: File = Field(description="a GeoJSON file in the study's folder")
+
+
+class Raster(Workspace):
+    """Cells drawn from polygons."""
+
+    made: ClassVar[str] = "grid"
+
+    kind: Literal["raster"] = Field(description="raster")
+    file: File = Field(description="a GeoJSON file in the study's folder")
+    cell: Positive = Field(description="the side of a cell, a number above 0")
+    rule: Literal["overlap", "centre"] = Field(
+        description="which cells are occupied: those that overlap an obstacle, or whose centre lies in one"
+    )
+
+
+class RosMap(Workspace):
+    """An image with the YAML file of ROS's map_server."""
+
+    made: ClassVar[str] = "grid"
+
+    kind: Literal["ros_map"] = Field(description="ros_map")
+    file: File = Field(description="the YAML file of a map_server map in the study's folder")
+    robot_radius: NotNegative = Field(0, description="by how much obstacles grow, a number of at least 0")
+    most_pixels: Annotated[int, value(lambda given: type(given) is int and given >= 1, "")] = Field(
+        None, description="the most pixels of an image, a whole number of at least 1"
+    )
+
+
+class MovingAiMap(Workspace):
+    """A map of the MovingAI benchmarks."""
+
+    made: ClassVar[str] = "grid"
+
+    kind: Literal["moving_ai"] = Field(description="moving_ai")
+    file: File = Field(description="a .map file in the study's folder")
+    scenarios: File = Field(None, description="a .scen file of the same map")
+
+
+class RandomCircles(Workspace):
+    """Layouts of circles at random places."""
+
+    drawn: ClassVar[str] = "circles"
+
+    kind: Literal["random_circles"] = Field(description="random_circles")
+    bounds: Bounds = Field(description="[x low, x high, y low, y high]")
+    radius: Positive = Field(description="the radius of every circle, a number above 0")
+    circles: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")] = Field(
+        description="how many circles a layout has, a whole number from 1 to 10000"
+    )
+
+
+class RandomField(Workspace):
+    """Fields of cells with circles at random places."""
+
+    drawn: ClassVar[str] = "grid"
+    with_side: ClassVar[bool] = True
+
+    kind: Literal["random_field"] = Field(description="random_field")
+    radius: Positive = Field(description="the radius of every circle as a share of the field's side, a number above 0")
+    clear_ends: NotNegative = Field(description="how many cells stay free between a circle and start or target, at least 0")
+
+
+class RandomBlocks(Workspace):
+    """Maps with blocks of cells at random places."""
+
+    drawn: ClassVar[str] = "grid"
+    with_side: ClassVar[bool] = True
+
+    kind: Literal["random_blocks"] = Field(description="random_blocks")
+    largest_block: Count = Field(description="the most cells of a block's side, a whole number of at least 1")
+    clear_ends: Count = Field(description="a whole number of at least 1: 1 keeps the cells of start and target free")
+    corners: Literal["free", "one", "none"] = Field(description="how many of the cells beside a diagonal step may be occupied")
+    lattice_length: Positive = Field(None, description="the length that the shortest lattice path must have, a number above 0")
+
+
+WORKSPACES = {model.model_fields["kind"].annotation.__args__[0]: model for model in Workspace.__subclasses__()}
+"""Kind -> its model."""
+
+
+class Problem(Model):
+    """A workspace with a start and a target."""
+
+    workspace: Name = Field(description="the name of a workspace")
+    start: Point = Field(None, description="[x, y] in units")
+    target: Point = Field(None, description="[x, y] in units")
+    start_cell: Whole = Field(None, description="on grids, the number of a cell: from 0, row by row from the bottom left")
+    target_cell: Whole = Field(None, description="likewise")
+    scenario: Count = Field(None, description="in a workspace of kind `moving_ai`, the number of a scenario, from 1")
+    settings: Settings = Field(
+        {}, description="settings that go with this problem, stronger than the study's and weaker than a method's own"
+    )
+    reference: Positive = Field(
+        None,
+        description="the length of the best known path of the methods' own kind, a number above 0; metrics `gap_reference`, "
+        "`excess_reference`",
+    )
+    layouts: Scales = Field(None, description="in a workspace drawn at random: how many are drawn, for each scale; column `layout`")
+    obstacles: listed(
+        Annotated[int, value(lambda given: type(given) is int and 0 <= given <= 100_000, "a whole number from 0 to 100000")]
+    ) = Field(
+        None,
+        description="in a workspace drawn at random, a list of whole numbers: how many circles (of `random_circles` the first so many of a "
+        "layout), or how many occupied cells (`random_blocks`); one problem for each of them and each layout; column `obstacles`",
+    )
+    side: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 5000, "")] = Field(
+        None, description="the side of a random field or of a map of blocks in cells, a whole number from 1 to 5000"
+    )
+    route: Line = Field(None, description="a name for start and target together, a column of the runs table")
+
+    @model_validator(mode="after")
+    def _check_ends(self) -> "Problem":
+        ends = self.model_fields_set & {"start", "target", "start_cell", "target_cell", "scenario"}
+        if ends not in ({"start", "target"}, {"start_cell", "target_cell"}, {"scenario"}):
+            given = " and ".join(sorted(ends)) or "neither"
+            raise wrong(f"{given}: expected either start and target, or start_cell and target_cell, or scenario")
+        if ("layouts" in self.model_fields_set) != ("obstacles" in self.model_fields_set):
+            raise wrong("layouts and obstacles go together")
+        return self
+
+
+class Experiment(Model):
+    """Problems × varied values × methods × repeats."""
+
+    problems: listed(ProblemName) = Field(description="a list of problems")
+    methods: listed(Name) = Field(description="a list of methods")
+    vary: dict[Name, listed(Setting)] = Field({}, description="setting or level → list of values; every combination is run")
+    seeds: Literal["own", "shared", "common"] = Field(
+        "own", description="whether a run's seed is its `own`, `shared` by all methods, or `common` to all methods and conditions"
+    )
+    time_limit: Annotated[float, value(lambda given: is_number(given) and 0 < given <= 1_000_000, "")] = Field(
+        600, description="seconds after which a single run, compiling included, is ended with its job, a number above 0, at most 1000000"
+    )
+    repeats: Scales = Field(description="runs of each method under each condition, for smoke, full and extended")
+    chunk: Scales = Field(description="how many repeats one job runs, for smoke, full and extended")
+
+    @model_validator(mode="after")
+    def _check_size(self) -> "Experiment":
+        for scale in SCALES:
+            if self.repeats[scale] > self.chunk[scale] * MOST_CHUNKS:
+                raise wrong(f"chunk: {scale}: {self.chunk[scale]}: {self.repeats[scale]} repeats are more than {MOST_CHUNKS} chunks")
+        if math.prod(map(len, self.vary.values())) > MOST_CONDITIONS:
+            raise wrong(f"vary: expected at most {MOST_CONDITIONS} combinations of values")
+        return self
+
+    @property
+    def paired(self) -> bool:
+        """Do runs of equal repeats share a seed?"""
+        return self.seeds != "own"
+
+
+class ExperimentsFile(Model):
+    """The file."""
+
+    title: Line = Field(description="one line that names the study")
+    methods: dict[Name, Method] = Field(description="name → planner and settings", min_length=1)
+    controls: dict[Name, Method] = Field(
+        {},
+        description="the same; each joins every experiment whose workspaces its planner serves, unless the experiment varies one of "
+        "its settings. "
+        "Controls appear in comparisons, not in the tables laid out like the paper's",
+    )
+    settings: dict[Name, Annotated[Any, mapping_or(Settings, Setting)]] = Field(
+        description="settings of all methods. A planner's settings are the keyword-only arguments of its function `plan`; each "
+        "needs a value, there "
+        "are no defaults. The name of a planner holds settings of its methods alone, stronger than the others: `prm: {samples: 50}`"
+    )
+    levels: dict[Name, dict[str, Settings]] = Field(
+        {},
+        description="name → value → settings that go with it: a bundle that an experiment can vary like a setting, such as "
+        "`profile: {default: {}, tuned: {...}}`",
+    )
+    workspaces: dict[Name, Annotated[Workspace, one_of("kind", WORKSPACES)]] = Field(
+        description="name → kind, unit, and the keys of the kind"
+    )
+    problems: dict[ProblemName, Problem] = Field(description="name → workspace, start and target", min_length=1)
+    experiments: dict[Name, Experiment] = Field(description="name → problems × varied settings × methods × repeats", min_length=1)

@@ -1,0 +1,28 @@
+"""Files of a study's folder."""
+
+from pathlib import Path
+
+from bezierplan.checked import LONGEST_FILE, Fault
+
+
+def inside(folder: Path, name: str, place: str) -> Path:
+    """A file of a study's folder. Raises Fault, beginning with a place, for one that is not there, that lies outside the folder, also by
+    a link, for what is no regular file, and for one of more than `LONGEST_FILE` bytes.
+    """
+    file = folder / name
+    try:
+        lies_inside = file.resolve().is_relative_to(folder.resolve())
+        if not lies_inside:
+            raise Fault(f"{place}: lies outside the study's folder; expected a file in it")
+        if not file.exists():
+            raise Fault(f"{place}: no such file in {file.parent.name or file.parent}")
+        if not file.is_file():
+            raise Fault(f"{place}: not a regular file")
+        size = file.stat().st_size
+    except (OSError, ValueError) as error:
+        if isinstance(error, Fault):
+            raise
+        raise Fault(f"{place}: cannot be read ({type(error).__name__})") from None
+    if size > LONGEST_FILE:
+        raise Fault(f"{place}: {size} bytes; expected at most {LONGEST_FILE}")
+    return file

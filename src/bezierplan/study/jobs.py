@@ -1,0 +1,210 @@
+"""The jobs, inputs and targets that follow from a study.
+
+What a script gets to see is a job: plain values only, so that Snakemake can tell whether one changed.
+"""
+
+import itertools
+from typing import Any
+
+from bezierplan.model import one_or_list
+from bezierplan.problem import PLACE
+from bezierplan.study.alternatives import experiments_of_claims
+from bezierplan.study.artefacts import Comparison
+from bezierplan.study.claims import Claim
+from bezierplan.study.definition import Study
+
+
+def problems_job(study: Study, experiment: str, scale: str) -> dict:
+    """What the problems of an experiment depend on, the content of map files apart."""
+    described = {
+        name: {key: value for key, value in problem.items() if key != "settings"}
+        for name, problem in study.problems_of(experiment, scale).items()
+    }
+    workspaces = {name: study.workspaces[name].plain() for name in sorted({problem["workspace"] for problem in described.values()})}
+    return {"study": study.key, "problems": described, "workspaces": workspaces}
+
+
+def job(study: Study, experiment: str, method: str, scale: str, chunk: int) -> dict:
+    """A chunk of runs, as `running.run_chunk` takes it. A chunk is run whole, whatever the number of repeats asked for."""
+    content = study.experiments[experiment]
+    size = content.chunk[scale]
+    return {
+        "study": study.key,
+        "experiment": experiment,
+        "method": method,
+        "planner": study.planner(method),
+        "settings": {name: value for name, value in study.resolved(method).items() if name not in content.vary},
+        "problems": _problems_met(study, experiment, method, scale),
+        "vary": content.vary,
+        "levels": {name: level for name, level in study.levels.items() if name in content.vary},
+        "seeds": content.seeds,
+        "time_limit": content.time_limit,
+        "repeats": [chunk * size, (chunk + 1) * size],
+    }
+
+
+def _problems_met(study: Study, experiment: str, method: str, scale: str) -> dict[str, dict]:
+    """Places of an experiment's problems, by name, with the settings that go with them where a method leaves these open."""
+    accepted = study.accepted(method).keys() - study.methods[method].settings.keys()
+    met = {}
+    for name, problem in study.problems_of(experiment, scale).items():
+        settings = {key: value for key, value in problem.get("settings", {}).items() if key in accepted}
+        met[name] = _place(problem) | ({"settings": settings} if settings else {})
+    return met
+
+
+def _place(problem: dict) -> dict:
+    """What the runs table says of a problem's place."""
+    return {key: problem[key] for key in PLACE if key in problem}
+
+
+def chunks(study: Study, experiment: str, scale: str) -> range:
+    """Numbers of the chunks that hold the repeats of an experiment at a scale."""
+    content = study.experiments[experiment]
+    return range(-(-content.repeats[scale] // content.chunk[scale]))
+
+
+def table_job(study: Study, table: str, scale: str) -> dict:
+    """What a table depends on beside runs, problems, bounds and the file of published numbers."""
+    spec = study.compared()[table]
+    experiment = study.experiments[spec.experiment]
+    # The experiment's own methods unless the table chooses: controls stand in the comparison alone.
+    where = {"method": experiment.methods} | spec.where
+    return {
+        "name": f"{study.key}/{table}",
+        "spec": spec.plain() | {"where": where},
+        "labels": study.labels,
+        "variants": {name: method for name, method in study.variants().items() if name in experiment.methods},
+        "controls": [name for name in study.methods_of(spec.experiment) if name in study.controls],
+        "repeats": experiment.repeats[scale],
+        "unit": _unit(study, spec.experiment),
+    }
+
+
+def listing_job(study: Study, table: str) -> dict:
+    """What a table depends on that shows no runs, beside the files of published numbers."""
+    return {"spec": study.tables[table].plain(), "module": study.module(), "labels": study.labels}
+
+
+def figure_job(study: Study, figure: str, scale: str) -> dict:
+    """What a figure depends on beside runs, problems and bounds, and map files where it draws a workspace without runs."""
+    spec = study.figures[figure]
+    experiments = experiments_of(study, figure)
+    bare = sorted({panel.workspace for panel in spec.panels if getattr(panel, "workspace", None)})
+    return {
+        "spec": spec.plain(),
+        "module": study.module(),
+        "labels": study.labels,
+        "workspaces": {name: study.workspaces[name].plain() for name in bare},
+        "repeats": {name: study.experiments[name].repeats[scale] for name in experiments},
+        "jobs": _jobs_rerun(study, figure, scale),
+        "unit": _unit(study, experiments[0]) if experiments else study.workspaces[bare[0] if bare else next(iter(study.workspaces))].unit,
+    }
+
+
+def _jobs_rerun(study: Study, figure: str, scale: str) -> dict[str, dict[str, dict]]:
+    """The jobs of runs that a figure repeats, to draw what no table keeps: experiment -> method -> job."""
+    again = {panel.experiment for panel in study.figures[figure].panels if panel.rerun}
+    return {name: {method: job(study, name, method, scale, 0) for method in methods_of(study, figure, name)} for name in sorted(again)}
+
+
+def _unit(study: Study, experiment: str) -> str:
+    """The unit of length of an experiment, that of its first problem's workspace."""
+    return study.workspace_of(study.experiments[experiment].problems[0]).unit
+
+
+def experiments_of(study: Study, artefact: str) -> list[str]:
+    """Names of the experiments whose results an artefact shows, each once, in order."""
+    if artefact in study.tables:
+        return [study.compared()[artefact].experiment] if artefact in study.compared() else []
+    shown = [getattr(panel, "experiment", None) for panel in study.figures[artefact].panels]
+    return list(dict.fromkeys(filter(None, shown)))
+
+
+def methods_of(study: Study, artefact: str, experiment: str) -> list[str]:
+    """Methods of an experiment whose runs an artefact needs: of a table all (the comparison shows them), of a figure those it selects, by
+    name controls too.
+    """
+    if artefact in study.tables:
+        return study.methods_of(experiment)
+    methods = study.experiments[experiment].methods
+    needed = set()
+    for panel in study.figures[artefact].panels:
+        if getattr(panel, "experiment", None) == experiment:
+            needed.update(one_or_list(panel.where.get("method", methods)))
+    return [method for method in study.methods_of(experiment) if method in needed]
+
+
+def claims_job(study: Study, claims: list[Claim]) -> dict:
+    """What claims depend on beside runs, problems, bounds and the files of published numbers."""
+    experiments = {name: study.experiments[name] for name in experiments_of_claims(claims)}
+    return {
+        "study": study.key,
+        "module": study.module(),
+        "claims": [claim.plain() for claim in claims],
+        "artefacts": {name: artefact.plain() for name, artefact in (study.tables | study.figures).items()},
+        "variant_of": study.variants(),
+        "paired": {name: experiment.paired for name, experiment in experiments.items()},
+        "paper_repeats": {name: experiment.repeats["full"] for name, experiment in experiments.items()},
+        "labels": study.labels,
+    }
+
+
+def kind_of(study: Study, artefact: str) -> str:
+    """The kind of a table, or of the first panel of a figure; of a comparison that of the tables which it is of."""
+    if artefact in study.figures:
+        return study.figures[artefact].panels[0].kind
+    table = study.tables[artefact]
+    return "pivot" if isinstance(table, Comparison) else table.kind
+
+
+def smoke(studies: dict[str, Study]) -> tuple[list[tuple[str, str]], list[tuple[str, str, str]]]:
+    """The small subset: the first artefact of each kind, as (study, artefact), and one method of each planner that none of them runs, as
+    (study, experiment, method).
+    """
+    artefacts, kinds, planners = [], set(), set()
+    for key, study in studies.items():
+        for artefact in itertools.chain(study.tables, study.figures):
+            if kind_of(study, artefact) not in kinds:
+                kinds.add(kind_of(study, artefact))
+                artefacts.append((key, artefact))
+                for experiment in experiments_of(study, artefact):
+                    planners.update(study.planner(method) for method in methods_of(study, artefact, experiment))
+    methods = []
+    for key, study in studies.items():
+        for experiment in study.experiments:
+            for method in study.methods_of(experiment):
+                if study.planner(method) not in planners:
+                    planners.add(study.planner(method))
+                    methods.append((key, experiment, method))
+    return artefacts, methods
+
+
+def caption(study: Study, artefact: str, scale: str) -> str:
+    """What stands below a table or figure: its title, and the methods, settings and repeats in force."""
+    sentences = [(study.tables.get(artefact) or study.figures[artefact]).title]
+    for experiment in experiments_of(study, artefact):
+        content = study.experiments[experiment]
+        methods = [method for method in methods_of(study, artefact, experiment) if method not in study.controls]
+        settings = {method: study.resolved(method) for method in methods}
+        first = settings[methods[0]] if methods else {}
+        shared = {name: value for name, value in first.items() if all(own.get(name) == value for own in settings.values())}
+        for method, own in settings.items():
+            apart = {name: value for name, value in own.items() if name not in shared and name not in content.vary}
+            sentences.append(f"{study.labels.get(method, method)}: {study.planner(method)}{_listed(apart, ' with ')}")
+        if shared:
+            sentences.append(f"All:{_listed(shared, ' ')}" if len(methods) > 1 else f"Settings:{_listed(shared, ' ')}")
+        for problem in content.problems:
+            if settings := study.problems[problem].settings:
+                sentences.append(f"On {study.labels.get(problem, problem)}:{_listed(settings, ' ')}")
+        sentences.append(f"{content.repeats[scale]} runs of each method on each problem")
+    return ". ".join(sentences) + "."
+
+
+def _listed(settings: dict[str, Any], before: str) -> str:
+    return before + ", ".join(f"{name.replace('_', ' ')} {value}" for name, value in settings.items()) if settings else ""
+
+
+def published_drawn(study: Study, figure: str) -> bool:
+    """Does a figure show published numbers?"""
+    return any(panel.published_drawn or getattr(panel, "published", False) for panel in study.figures[figure].panels)

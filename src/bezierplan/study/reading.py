@@ -1,0 +1,89 @@
+"""Studies read from their folders and checked: everything that can be wrong in one is found here, before the first job starts, and
+reported in one line (`checked.Fault`).
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, TypeVar
+
+from bezierplan import checked
+from bezierplan.checked import Fault, closest
+from bezierplan.digest import PACKAGE
+from bezierplan.model import Model, parsed
+from bezierplan.study.artefacts import ArtefactsFile, ConfigFile
+from bezierplan.study.checks import check
+from bezierplan.study.claims import AssumptionsFile, ClaimsFile
+from bezierplan.study.definition import Study, relative
+from bezierplan.study.experiments import ExperimentsFile
+from bezierplan.study.files import inside
+
+M = TypeVar("M", bound=Model)
+
+
+def read_config(given: Mapping[str, Any]) -> list[Path]:
+    """Folders of the studies that a configuration names: config/config.yaml of the working folder, and what was given besides.
+
+    Raises Fault.
+    """
+    file = Path("config/config.yaml")
+    place = f"{file} or --config"
+    content = parsed(ConfigFile, (checked.read(file) if file.is_file() else {}) | dict(given), place)
+    root = PACKAGE.parents[1] / "config" / "studies"
+    folders = []
+    for name in content.studies:
+        folder = root / name if "/" not in name else Path(name)
+        if not (folder / "experiments.yaml").exists():
+            known = [place.parent.name for place in root.glob("*/experiments.yaml")]
+            raise Fault(f"{place}: studies: {name}: no experiments.yaml in {relative(folder)}{closest(name, known)}")
+        folders.append(folder)
+    return folders
+
+
+def load(folders: list[Path]) -> dict[str, Study]:
+    """The studies in folders, by name, read and checked. Raises Fault."""
+    studies = {}
+    for folder in folders:
+        study = read_study(folder)
+        if study.key in studies:
+            raise Fault(f"{relative(folder)}: a study of the name {study.key} is there already; rename the folder")
+        check(study)
+        studies[study.key] = study
+    return studies
+
+
+def read_study(folder: Path) -> Study:
+    """The study in a folder, each of its files checked by itself alone. Raises Fault."""
+    experiments = _read(folder, "experiments", ExperimentsFile)
+    artefacts = _read(folder, "artefacts", ArtefactsFile) or ArtefactsFile()
+    claims, assumptions = _read(folder, "claims", ClaimsFile), _read(folder, "assumptions", AssumptionsFile)
+    for name in experiments.controls:
+        if name in experiments.methods:
+            raise Fault(f"{relative(folder / 'experiments.yaml')}: controls: {name}: a method has this name already")
+    return Study(
+        key=folder.resolve().name,
+        folder=folder,
+        title=experiments.title,
+        methods=experiments.methods | experiments.controls,
+        controls=frozenset(experiments.controls),
+        settings={name: value for name, value in experiments.settings.items() if not isinstance(value, dict)},
+        planner_settings={name: value for name, value in experiments.settings.items() if isinstance(value, dict)},
+        levels=experiments.levels,
+        workspaces=experiments.workspaces,
+        problems=experiments.problems,
+        experiments=experiments.experiments,
+        labels=artefacts.labels,
+        tables=artefacts.tables,
+        figures=artefacts.figures,
+        claims=claims.claims if claims else [],
+        assumptions=assumptions.assumptions if assumptions else [],
+    )
+
+
+def _read(folder: Path, name: str, model: type[M]) -> M | None:
+    """A file of a study; None without it, for all but the experiments can be left out."""
+    file = folder / f"{name}.yaml"
+    if name != "experiments" and not file.exists() and not file.is_symlink():
+        return None
+    place = relative(file)
+    inside(folder, file.name, place)
+    return parsed(model, checked.read(file, place), place)

@@ -1,0 +1,362 @@
+"""What Snakemake asks for a job: its input files, its params, and the files that make up a target.
+
+Each function takes the studies by name, and by name the parts of the path that a job writes: scale, study, experiment, method, chunk,
+table, listing, figure, alternative. Paths are relative to the working folder.
+
+Params hold all that decides what a job writes, and nothing else: names and values (`study`), digests of the code that it calls, and digests
+of the content of maps and published numbers. So no date of a source matters.
+"""
+
+import os
+import re
+from collections.abc import Iterable
+from pathlib import Path
+
+from bezierplan import study as studies
+from bezierplan.checked import Fault
+from bezierplan.digest import PACKAGE, content_digest, source_digest
+from bezierplan.study import Study
+from bezierplan.study.artefacts import Pivot
+from bezierplan.study.claims import Claim
+
+Studies = dict[str, Study]
+
+SCRIPTS = PACKAGE.parents[1] / "workflow" / "scripts"
+
+
+def _folder(scale: str, study: str, alternative: str | None = None) -> str:
+    return f"results/{scale}/{study}" + (f"/sensitivity/{alternative}" if alternative else "")
+
+
+def _chunks(study: Study, scale: str, experiment: str, methods: Iterable[str], alternative: str | None = None) -> list[str]:
+    """Runs of methods of an experiment: as the configuration says, whatever else lies in the folder."""
+    folder = f"{_folder(scale, study.key, alternative)}/runs/{experiment}"
+    return [f"{folder}/{method}/{chunk}.parquet" for method in methods for chunk in studies.chunks(study, experiment, scale)]
+
+
+def _problems(scale: str, study: str, experiments: Iterable[str]) -> list[str]:
+    return [f"{_folder(scale, study)}/problems/{experiment}.parquet" for experiment in experiments]
+
+
+def _bounds(scale: str, study: str, experiments: Iterable[str]) -> list[str]:
+    return [f"{_folder(scale, study)}/problems/{experiment}.bounds.parquet" for experiment in experiments]
+
+
+def _code(script: str, *modules: str | None) -> str:
+    """Digest of a script with all that it imports, and of modules that it finds by name."""
+    return source_digest(str(SCRIPTS / f"{script}.py"), *filter(None, modules))
+
+
+def _planner(planner: str) -> str:
+    """A planner as `source_digest` takes it."""
+    return planner if planner.endswith(".py") else f"bezierplan.planners.{planner}"
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Problems and runs
+
+
+def problems_params(given: Studies, scale: str, study: str, experiment: str) -> dict:
+    """Params of the job that makes the problems of an experiment."""
+    return {
+        "job": studies.problems_job(given[study], experiment, scale),
+        "folder": studies.relative(given[study].folder),
+        "maps": content_digest(*problem_maps(given, scale, study, experiment)),
+        "code": _code("problems"),
+    }
+
+
+def problem_maps(given: Studies, scale: str, study: str, experiment: str) -> list[str]:
+    """Map files of an experiment."""
+    return given[study].maps(studies.problems_job(given[study], experiment, scale)["workspaces"])
+
+
+def bounds_params() -> dict:
+    """Params of the job that finds the bounds of problems."""
+    return {"code": _code("bounds")}
+
+
+def run_params(given: Studies, scale: str, study: str, experiment: str, method: str, chunk: str, alternative: str | None = None) -> dict:
+    """Params of a chunk of runs, under an alternative if one is named."""
+    tried = studies.with_alternative(given[study], alternative) if alternative else given[study]
+    return {
+        "job": studies.job(tried, experiment, method, scale, int(chunk)),
+        "code": _code("runs", _planner(tried.planner(method))),
+    }
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Tables and figures
+
+
+def artefact_inputs(given: Studies, scale: str, study: str, table: str = "", figure: str = "") -> dict[str, list[str]]:
+    """Runs, problems and bounds that a table or figure shows."""
+    name, own = table or figure, given[study]
+    experiments = studies.experiments_of(own, name)
+    return {
+        "runs": [file for experiment in experiments for file in _chunks(own, scale, experiment, studies.methods_of(own, name, experiment))],
+        "problems": _problems(scale, study, experiments),
+        "bounds": _bounds(scale, study, experiments),
+    }
+
+
+def table_inputs(given: Studies, scale: str, study: str, table: str) -> dict[str, str | list[str]]:
+    """Input files of a table of runs."""
+    return artefact_inputs(given, scale, study, table=table) | {"published": given[study].published_file(table) or []}
+
+
+def table_params(given: Studies, scale: str, study: str, table: str) -> dict:
+    """Params of a table of runs."""
+    return {
+        "job": _shown(given[study], table, studies.table_job(given[study], table, scale)),
+        "published": content_digest(*filter(None, [given[study].published_file(table)])),
+        "code": _code("table"),
+    }
+
+
+def listing_published(given: Studies, scale: str, study: str, listing: str) -> list[str]:
+    """The file that a transcribed table shows, the comparisons that one is of, or all files of published numbers for a function."""
+    spec, own = given[study].tables[listing], given[study]
+    if spec.kind == "comparison":
+        return [f"{_folder(scale, study)}/tables/{name}.comparison.csv" for name in spec.of]
+    file = own.published_file(listing)
+    return [file] if file else own.published_files()
+
+
+def listing_params(given: Studies, scale: str, study: str, listing: str) -> dict:
+    """Params of a table that shows no runs."""
+    job, kind = studies.listing_job(given[study], listing), given[study].tables[listing].kind
+    sources = [] if kind == "comparison" else listing_published(given, scale, study, listing)
+    return {
+        "job": _shown(given[study], listing, job),
+        "published": content_digest(*sources),
+        "code": _code("listing", job["module"] if kind == "function" else None),
+    }
+
+
+def figure_inputs(given: Studies, scale: str, study: str, figure: str) -> dict[str, list[str]]:
+    """Input files of a figure: published numbers only for the kinds that draw them and the functions that ask for them."""
+    drawn = studies.published_drawn(given[study], figure)
+    bare = studies.figure_job(given[study], figure, scale)["workspaces"]
+    sources = {"maps": given[study].maps(bare), "published": given[study].published_files() if drawn else []}
+    return artefact_inputs(given, scale, study, figure=figure) | sources
+
+
+def figure_params(given: Studies, scale: str, study: str, figure: str) -> dict:
+    """Params of a figure."""
+    job, inputs = studies.figure_job(given[study], figure, scale), figure_inputs(given, scale, study, figure)
+    panels = job["spec"]["panels"]
+    kinds = {f"bezierplan.figures.{panel['kind']}" for panel in panels}
+    module = given[study].module() if any("data" in panel for panel in panels) else None
+    again = {_planner(each["planner"]) for methods in job["jobs"].values() for each in methods.values()}
+    return {
+        "job": _shown(given[study], figure, job),
+        "folder": studies.relative(given[study].folder),
+        "sources": content_digest(*inputs["maps"], *inputs["published"]),
+        "code": _code("figure", *sorted(kinds), module, *sorted(again)),
+    }
+
+
+def caption(given: Studies, scale: str, study: str, table: str = "", listing: str = "", figure: str = "") -> str:
+    """What the report says below a table or figure, as reStructuredText in which nothing of a study's files is markup."""
+    return escaped(studies.caption(given[study], table or listing or figure, scale))
+
+
+def escaped(text: str) -> str:
+    """Text as one line of reStructuredText that says just this: no markup, no directive, no HTML."""
+    return "".join(f"\\{sign}" if sign.isascii() and not sign.isalnum() and sign != " " else sign for sign in " ".join(text.split()))
+
+
+def _shown(study: Study, artefact: str, job: dict) -> dict:
+    """The job of a table or figure with the words that it prints: without its title, which stands in the caption, and without labels of
+    what it does not show.
+    """
+    spec = {key: value for key, value in job["spec"].items() if key != "title"}
+    return job | {"spec": spec, "labels": _labels(study, artefact)}
+
+
+def _labels(study: Study, artefact: str) -> dict[str, str]:
+    """Labels without those of methods, problems and workspaces that a table or figure cannot show. A function may name any."""
+    spec = (study.tables.get(artefact) or study.figures[artefact]).plain()
+    if spec.get("kind") in ("function", "comparison") or any("data" in panel for panel in spec.get("panels", [])):
+        return study.labels
+    shown: set[str] = set()
+    for experiment in studies.experiments_of(study, artefact):
+        content = study.experiments[experiment]
+        described = [study.problems[name] for name in content.problems]
+        shown |= {*study.methods_of(experiment), *content.problems, *(problem.workspace for problem in described)}
+        shown |= {problem.route for problem in described if problem.route}
+        shown |= {str(value) for values in content.vary.values() for value in values}
+    names = study.methods.keys() | study.problems.keys() | study.workspaces.keys()
+    return {name: label for name, label in study.labels.items() if name in shown or name not in names}
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Claims, audit, alternatives
+
+
+def _claims(study: Study, alternative: str | None) -> list[Claim]:
+    """All claims of a study, or under an alternative those on which it is tried."""
+    return studies.headline_claims(study, alternative) if alternative else study.claims
+
+
+def claims_inputs(given: Studies, scale: str, study: str, alternative: str | None = None) -> dict[str, list[str]]:
+    """Input files of claims. Under an alternative: its runs of the methods that it changes, and those in force of the others."""
+    own = given[study]
+    claims = _claims(own, alternative)
+    changed = studies.methods_changed(own, alternative) if alternative else []
+    runs: list[str] = []
+    experiments = studies.experiments_of_claims(claims)
+    for experiment in experiments:
+        methods = studies.methods_of_claims(own, claims, experiment) if alternative else own.experiments[experiment].methods
+        runs += _chunks(own, scale, experiment, [name for name in methods if name not in changed])
+        runs += _chunks(own, scale, experiment, [name for name in methods if name in changed], alternative)
+    problems, bounds = _problems(scale, study, experiments), _bounds(scale, study, experiments)
+    return {"runs": runs, "problems": problems, "bounds": bounds, "published": own.published_files()}
+
+
+def claims_params(given: Studies, scale: str, study: str, alternative: str | None = None) -> dict:
+    """Params of claims, under an alternative if one is named."""
+    own = given[study]
+    job = studies.claims_job(own, _claims(own, alternative))
+    artefacts = {name: {key: value for key, value in spec.items() if key != "title"} for name, spec in job["artefacts"].items()}
+    repeats = {name: own.experiments[name].repeats[scale] for name in job["paired"]}
+    return {
+        "job": job | {"artefacts": artefacts, "repeats": repeats},
+        "published": content_digest(*own.published_files()),
+        "code": _code("claims", own.module()),
+    }
+
+
+def _audited(study: Study) -> dict[str, Pivot]:
+    """Tables of published numbers, by the stem of their file."""
+    return {Path(table.published).stem: table for table in study.compared().values() if table.published}
+
+
+def _audited_experiments(study: Study) -> list[str]:
+    return sorted({table.experiment for table in _audited(study).values()})
+
+
+def audit_inputs(given: Studies, scale: str, study: str) -> dict[str, list[str]]:
+    """Input files of the audit."""
+    return {"bounds": _bounds(scale, study, _audited_experiments(given[study])), "published": given[study].published_files()}
+
+
+def audit_params(given: Studies, scale: str, study: str) -> dict:
+    """Params of the audit."""
+    own = given[study]
+    return {
+        "job": {
+            "study": study,
+            "module": own.module(),
+            "tables": {name: table.experiment for name, table in _audited(own).items()},
+            "decides": {name: table.decides for name, table in _audited(own).items()},
+            "experiments": _audited_experiments(own),
+        },
+        "published": content_digest(*own.published_files()),
+        "code": _code("audit", own.module()),
+    }
+
+
+def sensitivity_inputs(given: Studies, scale: str, study: str) -> dict[str, str | list[str]]:
+    """Input files of the table of alternatives."""
+    tried = studies.tried(given[study])
+    return {
+        "claims": f"{_folder(scale, study)}/claims.csv",
+        "alternatives": [f"{_folder(scale, study, name)}/claims.csv" for name in tried],
+    }
+
+
+def sensitivity_params(given: Studies, scale: str, study: str) -> dict:
+    """Params of the table of alternatives."""
+    return {"described": studies.alternatives_described(given[study]), "code": _code("sensitivity")}
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# All studies together
+
+
+def _published_tables(given: Studies) -> dict[tuple[str, str], Pivot]:
+    """The tables that are compared with published numbers, by study and table."""
+    return {(key, name): table for key, study in given.items() for name, table in study.compared().items() if table.published}
+
+
+def summary_inputs(given: Studies, scale: str) -> dict[str, list[str]]:
+    """Input files of the summary."""
+    return {
+        "comparisons": [f"{_folder(scale, study)}/tables/{table}.comparison.csv" for study, table in _published_tables(given)],
+        "claims": [f"{_folder(scale, key)}/claims.csv" for key, study in given.items() if study.claims],
+    }
+
+
+def summary_params(given: Studies, scale: str) -> dict:
+    """Params of the summary."""
+    tables = _published_tables(given)
+    job = {
+        "tables": [list(name) for name in tables],
+        "deciding": [table.decides for table in tables.values()],
+        "variants": {key: list(study.variants()) for key, study in given.items()},
+        "titles": {key: study.title for key, study in given.items()},
+    }
+    return {"job": job, "code": _code("summary")}
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Targets
+
+
+def check_names(given: Studies, taken: Iterable[str]) -> None:
+    """Raise Fault for a study whose results or targets would be mistaken for another's. taken: names of rules and other targets."""
+    owners = dict.fromkeys(taken, "the workflow")
+    home = PACKAGE.parents[1] / "config" / "studies"
+    for key, study in given.items():
+        place = studies.relative(study.folder)
+        if not re.fullmatch("[A-Za-z][A-Za-z0-9_-]*", key):
+            raise Fault(f"{place}: {key}: not a name of a study; expected letters, digits, _ and -, a letter first; rename the folder")
+        if (home / key).is_dir() and not (home / key).samefile(study.folder):
+            raise Fault(f"{place}: config/studies has a study {key} already, whose results this one would overwrite; rename the folder")
+        for target in [key, *(f"{key}_{item}" for item in [*study.tables, *study.figures])]:
+            if target in owners:
+                raise Fault(f"{place}: {target}: {owners[target]} has a target of this name already; rename the folder")
+            owners[target] = f"study {key}"
+
+
+def check_folder() -> None:
+    """Raise Fault unless results can be written below the working folder."""
+    for place in (Path(), Path("results")):
+        if place.exists() and not (place.is_dir() and os.access(place, os.W_OK | os.X_OK)):
+            raise Fault(f"{place.resolve()}: cannot be written; the workflow writes its results into results/ of the working folder")
+
+
+def files_of(given: Studies, scale: str, study: str, name: str) -> list[str]:
+    """The files of a table or figure."""
+    if name in given[study].tables:
+        endings = (".csv", ".comparison.csv") if name in given[study].compared() else (".csv",)
+        return [f"{_folder(scale, study)}/tables/{name}{ending}" for ending in endings]
+    return [f"{_folder(scale, study)}/figures/{name}{ending}" for ending in (".svg", ".png", ".csv")]
+
+
+def files_of_study(given: Studies, scale: str, study: str) -> list[str]:
+    """All tables and figures of a study, its claims and its audit."""
+    files = [file for name in [*given[study].tables, *given[study].figures] for file in files_of(given, scale, study, name)]
+    if given[study].claims:
+        files += [f"{_folder(scale, study)}/{name}.csv" for name in ("claims", "audit")]
+    return files
+
+
+def files_of_scale(given: Studies, scale: str) -> list[str]:
+    """Everything at a scale; a summary if there are claims of a study and published numbers of a table."""
+    summary = any(study.claims for study in given.values()) and _published_tables(given)
+    return [file for study in given for file in files_of_study(given, scale, study)] + ([f"results/{scale}/summary.md"] if summary else [])
+
+
+def files_of_sensitivity(given: Studies, scale: str) -> list[str]:
+    """The table of alternatives of each study that has any."""
+    return [f"{_folder(scale, key)}/sensitivity.csv" for key, study in given.items() if studies.tried(study)]
+
+
+def files_of_smoke(given: Studies) -> list[str]:
+    """The small subset."""
+    artefacts, methods = studies.smoke(given)
+    files = [file for study, name in artefacts for file in files_of(given, "smoke", study, name)]
+    return files + [f"{_folder('smoke', study)}/runs/{experiment}/{method}/0.parquet" for study, experiment, method in methods]

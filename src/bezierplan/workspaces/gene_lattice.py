@@ -1,0 +1,102 @@
+"""Which points of a grid can be control points, one gene each, and the polygon of those that are (elhoseny2017, Section 3).
+
+Coordinates and lengths are in cells from the grid's lower left corner.
+"""
+
+import heapq
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from bezierplan.search.sorting import ascending
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.lattice import STEPS
+
+
+class Field(NamedTuple):
+    """Where the curves lie; lengths in cells from the grid's corner.
+
+    occupied: bool (rows, columns). points: (genes, 2) centre of each gene's cell. rank: (genes,) its place in the order in which control
+    points are joined. settable: (genes,) whether it may be 1; choices: the genes that may. places: how many the longer side has, and how
+    many of the lines of genes, and of the genes of a line, lie on the map: columns and rows, or by_rows the other way round. start, target:
+    (2,).
+    """
+
+    occupied: np.ndarray
+    points: np.ndarray
+    rank: np.ndarray
+    settable: np.ndarray
+    choices: np.ndarray
+    places: tuple[int, int, int]
+    by_rows: bool
+    start: np.ndarray
+    target: np.ndarray
+
+
+def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, gene_order: str, point_order: str) -> Field:
+    """The genes of a grid and the order in which they are joined; ends: (2, 2) start and target in cells.
+
+    Raises ValueError if no cell of the lattice is free.
+    """
+    rows, columns = grid.occupied.shape
+    longer = max(rows, columns)
+    # Whole places of 21 points along the longer side, the outer ones at its ends; or all places.
+    steps = np.floor(np.arange(21) * (longer - 1) / 20 + 0.5).astype(int) if gene_lattice == "coarse" else np.arange(longer)
+    column, row = (index.ravel() for index in np.meshgrid(steps, steps, indexing="ij" if gene_order == "columns" else "xy"))
+    points = np.column_stack([column, row]) + 0.5
+    settable = (column < columns) & (row < rows)
+    settable[settable] = ~grid.occupied[row[settable], column[settable]]
+    for end in np.floor(ends):
+        settable &= (column != end[0]) | (row != end[1])
+    choices = np.flatnonzero(settable)
+    if not len(choices):
+        raise ValueError("gene_lattice: no free gene; every cell of the lattice is occupied, or start or target")
+    rank = np.arange(len(points))
+    if point_order == "projection":
+        along = ends[1] - ends[0]
+        left = along[0] * (points[:, 1] - ends[0, 1]) - along[1] * (points[:, 0] - ends[0, 0])
+        rank[np.lexsort((-left, (points - ends[0]) @ along))] = np.arange(len(points))
+    elif point_order == "geodesic":
+        far = np.full(2 * (longer,), np.inf)
+        far[:columns, :rows] = _distances(np.pad(grid.occupied, 1, constant_values=True), *np.floor(ends[0, ::-1]).astype(int), STEPS).T
+        rank[np.argsort(far[column, row], kind="stable")] = np.arange(len(points))
+    by_rows = gene_order == "rows"
+    on_map = int((steps < columns).sum()), int((steps < rows).sum())
+    places = (len(steps), *(reversed(on_map) if by_rows else on_map))
+    return Field(grid.occupied, points, rank, settable, choices, places, by_rows, ends[0], ends[1])
+
+
+@njit(cache=True)
+def _distances(walled, row, column, steps):
+    """Distance (rows, columns) from a cell to each cell over free cells and their eight neighbours, infinite where there is no way.
+
+    walled: the cells with a frame of occupied ones around.
+    """
+    far = np.full(walled.shape, np.inf)
+    far[row + 1, column + 1] = 0.0
+    heap = [(0.0, row + 1, column + 1)]
+    while len(heap) > 0:
+        length, row, column = heapq.heappop(heap)
+        if length > far[row, column]:
+            continue
+        for k in range(len(steps)):
+            up, right = row + steps[k, 0], column + steps[k, 1]
+            ahead = length + math.sqrt(steps[k, 0] ** 2 + steps[k, 1] ** 2)
+            if not walled[up, right] and ahead < far[up, right]:
+                far[up, right] = ahead
+                heapq.heappush(heap, (ahead, up, right))
+    return far[1:-1, 1:-1]
+
+
+@njit(cache=True)
+def polygon(ones: np.ndarray, field: Field) -> np.ndarray:
+    """Start, the control points of a chromosome in their order, and target: (points, 2)."""
+    points = np.empty((len(ones) + 2, 2))
+    order = ones[ascending(field.rank[ones])]
+    for axis in range(2):
+        points[0, axis], points[-1, axis] = field.start[axis], field.target[axis]
+        for i in range(len(order)):
+            points[i + 1, axis] = field.points[order[i], axis]
+    return points

@@ -1,0 +1,185 @@
+"""What a grid's ground is to paths from cell to cell: which edges meet obstacles, what they cost, and the cheapest path (meledje).
+
+An edge is the straight way between the centres of two cells. It meets a cell if it passes through its interior; touching a side or a corner
+does not count, unless corners are closed. This is decided in whole numbers.
+
+Lengths, heights and energies are in cells. Of a map with few cells all edges are measured once, of a larger one when they are asked for;
+the numbers are the same to the last bit.
+"""
+
+import math
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from bezierplan.workspaces.grid import Grid
+
+# Of a map with more cells than this no table of all edges is made: it would grow with the square of their number.
+TABLE_CELLS = 1024
+
+
+class Ground(NamedTuple):
+    """What edges are measured on, all of it in cells. Cells are numbered row by row from the bottom left.
+
+    occupied: bool (rows, columns). heights: (rows, columns), or (0, 0) on flat ground. friction: of the ground, at most 1 on most.
+    closed: whether an edge through a common corner of four cells meets the two beside its way.
+    met, energy: (cells, cells) of the edge from a cell to another, the occupied cells that it meets and what it costs; or (0, 0).
+    """
+
+    occupied: np.ndarray
+    heights: np.ndarray
+    friction: float
+    closed: bool
+    met: np.ndarray
+    energy: np.ndarray
+
+
+def ground_of(grid: Grid, friction: float, closed: bool = False) -> Ground:
+    """The ground of a grid, with all its edges measured if it has no more than `TABLE_CELLS` cells. Not to be changed."""
+    return _ground(*_key(grid, friction, closed))
+
+
+def least_energy(grid: Grid, friction: float, closed: bool, start: int, target: int) -> float:
+    """The energy of `cheapest` on the ground of a grid, kept for the next who asks."""
+    return _least_energy(_key(grid, friction, closed), start, target)
+
+
+def _key(grid: Grid, friction: float, closed: bool) -> tuple:
+    """What the ground of a grid follows from, so that it is made once a map."""
+    heights = b"" if grid.heights is None else (grid.heights / grid.cell).tobytes()
+    return grid.occupied.shape, grid.occupied.tobytes(), heights, float(friction), closed, TABLE_CELLS
+
+
+@lru_cache(maxsize=8)
+def _ground(shape: tuple[int, int], occupied: bytes, heights: bytes, friction: float, closed: bool, table_cells: int) -> Ground:
+    cells = np.frombuffer(occupied, dtype=bool).reshape(shape).copy()
+    above = np.frombuffer(heights).reshape(shape if heights else (0, 0)).copy()
+    bare = Ground(cells, above, friction, closed, np.empty((0, 0), dtype=np.uint16), np.empty((0, 0)))
+    return bare._replace(**dict(zip(("met", "energy"), _tables(bare)))) if cells.size <= table_cells else bare
+
+
+@njit(cache=True)
+def _tables(ground):
+    cells = ground.occupied.size
+    met, energy = np.empty((cells, cells), dtype=np.uint16), np.empty((cells, cells))
+    for one in range(cells):
+        for other in range(cells):
+            met[one, other] = obstacles_met(ground, one, other)
+            energy[one, other] = edge_energy(ground, one, other)
+    return met, energy
+
+
+@njit(cache=True, inline="always")
+def obstacles_met(ground: Ground, one: int, other: int) -> int:
+    """How many occupied cells the edge between two cells meets, these included (meledje, eq. 3: beta)."""
+    if ground.met.size:
+        return int(ground.met[one, other])
+    return _passed(ground, one, other)[0]
+
+
+@njit(cache=True, inline="always")
+def edge_energy(ground: Ground, one: int, other: int) -> float:
+    """What the edge from a cell to another costs: its length, and what it climbs divided by the friction (meledje, eq. 2: epsilon)."""
+    if ground.energy.size:
+        return ground.energy[one, other]
+    length = distance(ground, one, other)
+    return length + _passed(ground, one, other)[1] / ground.friction if ground.heights.size else length
+
+
+@njit(cache=True)
+def distance(ground: Ground, one: int, other: int) -> float:
+    """Length of the edge between two cells."""
+    columns = ground.occupied.shape[1]
+    across, up = other % columns - one % columns, other // columns - one // columns
+    return np.sqrt(float(across * across + up * up))
+
+
+@njit(cache=True)
+def _passed(ground, one, other):
+    """Occupied cells that an edge meets, and the sum of its climbs from cell to cell.
+
+    The edge crosses its next upright grid line after (2 i + 1) / (2 across) of its way, its next level one after (2 j + 1) / (2 up);
+    through a corner it leads from cell to cell without a third, but meets the two beside it if corners are closed.
+    """
+    columns = ground.occupied.shape[1]
+    row, column = one // columns, one % columns
+    across, up = other % columns - column, other // columns - row
+    right, upward = (1 if across > 0 else -1), (1 if up > 0 else -1)
+    across, up = abs(across), abs(up)
+    met, climb = int(ground.occupied[row, column]), 0.0
+    i = j = 0
+    while i < across or j < up:
+        height = ground.heights[row, column] if ground.heights.size else 0.0
+        ahead = (2 * i + 1) * up - (2 * j + 1) * across
+        if ahead == 0 and ground.closed:
+            met += int(ground.occupied[row, column + right]) + int(ground.occupied[row + upward, column])
+        if ahead <= 0:
+            i += 1
+            column += right
+        if ahead >= 0:
+            j += 1
+            row += upward
+        met += int(ground.occupied[row, column])
+        if ground.heights.size:
+            climb += max(ground.heights[row, column] - height, 0.0)
+    return met, climb
+
+
+@lru_cache(maxsize=64)
+def _least_energy(key: tuple, start: int, target: int) -> float:
+    return cheapest(_ground(*key), start, target)[0]
+
+
+def cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.ndarray]:
+    """Least energy, in cells, of a path from cell to cell that meets no obstacle, and its cells; infinite and none without such a path."""
+    energy, before = _cheapest(ground, start, target)
+    if math.isinf(energy):
+        return energy, np.empty(0, dtype=np.int64)
+    path = [target]
+    while path[-1] != start:
+        path.append(int(before[path[-1]]))
+    return energy, np.array(path[::-1])
+
+
+@njit(cache=True)
+def _cheapest(ground, start, target):
+    """Least energy from start to target, and the cell before each cell on its way, by A* with the straight distance.
+
+    An edge is looked at only if it would be a gain: of a large map few are.
+    """
+    cells = ground.occupied.size
+    energy, before, done = np.full(cells, np.inf), np.full(cells, -1), ground.occupied.ravel().copy()
+    energy[start] = 0.0
+    while True:
+        here, least = -1, np.inf
+        for cell in range(cells):
+            if not done[cell] and energy[cell] + distance(ground, cell, target) < least:
+                here, least = cell, energy[cell] + distance(ground, cell, target)
+        if here < 0 or here == target:
+            return energy[target], before
+        done[here] = True
+        for cell in range(cells):
+            if not done[cell] and energy[here] + distance(ground, here, cell) < energy[cell] and obstacles_met(ground, here, cell) == 0:
+                through = energy[here] + edge_energy(ground, here, cell)
+                if through < energy[cell]:
+                    energy[cell], before[cell] = through, here
+
+
+def centres(grid: Grid, cells: np.ndarray) -> np.ndarray:
+    """Centres (n, 2) of cells (n,), in units."""
+    return np.array([grid.centre(cell) for cell in cells.tolist()]).reshape(-1, 2)
+
+
+@njit(cache=True)
+def free_neighbours(cell: int, ground: Ground) -> tuple[np.ndarray, int]:
+    """The free ones of the eight cells around a cell, row by row from the lower left, and how many they are."""
+    rows, columns = ground.occupied.shape
+    neighbours, count = np.empty(8, dtype=np.int64), 0
+    for row in range(max(cell // columns - 1, 0), min(cell // columns + 2, rows)):
+        for column in range(max(cell % columns - 1, 0), min(cell % columns + 2, columns)):
+            if row * columns + column != cell and not ground.occupied[row, column]:
+                neighbours[count] = row * columns + column
+                count += 1
+    return neighbours, count

@@ -1,0 +1,107 @@
+"""Every shell command of the README, executed in a copy of the tree whose configuration names song2016 alone.
+
+As printed: what takes seconds. As dry runs (`snakemake -n`, `make -n`): what takes minutes to hours. The command for a cluster: dry and
+without its executor. Not at all: the installation of that executor, which needs a network and would change this environment.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+TREE = (
+    "Snakefile",
+    "Makefile",
+    "README.md",
+    "environment.txt",
+    "environment-build.txt",
+    "workflow",
+    "src",
+    "config",
+    "profiles",
+    "results/README.md",
+)
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"^```(\w*)\n(.*?)^```$", README, flags=re.M | re.S)
+COMMANDS = [re.split(r"\s+# ", line)[0] for language, block in BLOCKS if language == "sh" for line in block.splitlines()]
+
+DRY = {
+    "make reproduce": "make -n reproduce",
+    "make test": "make -n test",
+    "snakemake song2016": "snakemake -n song2016",
+    "snakemake song2016_figure4": "snakemake -n song2016_figure4",
+    "snakemake song2016_table1": "snakemake -n song2016_table1",
+    "snakemake results/extended/song2016/figures/figure4.svg": "snakemake -n results/extended/song2016/figures/figure4.svg",
+    "snakemake alternatives": "snakemake -n alternatives",
+    "snakemake extended --executor slurm --jobs 100 --default-resources slurm_partition=PARTITION mem_mb=2000 runtime=30": (
+        "snakemake -n extended --jobs 100 --default-resources slurm_partition=PARTITION mem_mb=2000 runtime=30"
+    ),
+}
+LEFT_OUT = {".venv/bin/pip install snakemake-executor-plugin-slurm"}
+# These read results, so they come last.
+LATE = [command for command in COMMANDS if " --report " in command or " digest " in command or " replay " in command]
+ORDER = [command for command in COMMANDS if command not in LATE] + LATE
+
+
+def test_commands_that_are_not_executed_as_printed_stand_in_the_readme():
+    assert DRY.keys() | LEFT_OUT <= set(COMMANDS)
+
+
+@pytest.fixture(scope="module")
+def tree(tmp_path_factory):
+    """A copy of the tree after `make smoke`, and beside it the README's own study; blanks and dollars in the path."""
+    tree = tmp_path_factory.mktemp("readme") / "a clone $(touch bad)"
+    for name in TREE:
+        source, copied = ROOT / name, tree / name
+        copied.parent.mkdir(parents=True, exist_ok=True)
+        (shutil.copytree if source.is_dir() else shutil.copy2)(source, copied)
+    (tree / ".venv").symlink_to(ROOT / ".venv")
+    (tree / "config" / "config.yaml").write_text("studies: [song2016]\n")
+    study = tree.parent / "mystudy"
+    study.mkdir()
+    for language, block in BLOCKS:
+        file = re.match(r"# (\w+\.(?:yaml|py))\n", block)
+        if file:
+            (study / file[1]).write_text(block)
+        if language == "text":
+            (study / "room.txt").write_text(block)
+    executed(tree, "make smoke")
+    return tree
+
+
+def executed(tree, command):
+    """What a command prints, which must succeed."""
+    command = command.replace("/path/to/mystudy", str(tree.parent / "mystudy"))
+    environment = os.environ | {"PYTHONPATH": str(tree / "src")}
+    done = subprocess.run(
+        ["bash", "-c", f". .venv/bin/activate && {command}"], cwd=tree, env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert not (tree / "bad").exists()
+    return done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("command", [command for command in ORDER if command not in LEFT_OUT])
+def test_command_works_as_printed(tree, command):
+    assert executed(tree, DRY.get(command, command)) or command.startswith(". ")
+
+
+def test_own_study_of_the_readme_was_run(tree):
+    assert "Results: results/full/mystudy" in executed(
+        tree, "rm -r results/full/mystudy/tables && snakemake mystudy --config studies=[/path/to/mystudy]"
+    )
+    table = (tree / "results/full/mystudy/tables/lengths.csv").read_text()
+    assert "mine" in table
+    assert "genetic" in table
+
+
+def test_progress_is_shown_without_a_terminal(tree):
+    shutil.rmtree(tree / "results/smoke/song2016/figures")
+    lines = executed(tree, "make smoke").splitlines()
+    (last,) = [line for line in lines if "jobs done" in line and " left" not in line]
+    done, total = re.match(r"(\d+) of (\d+) jobs done, \d+:\d\d:\d\d elapsed", last).groups()
+    assert done == total

@@ -1,0 +1,99 @@
+"""A chunk of runs: which names a seed is made of, which runs are done, and in which order."""
+
+import hashlib
+
+import numpy as np
+import pytest
+
+from bezierplan import running
+from bezierplan.problem import Problem
+from bezierplan.workspaces.grid import from_lines
+
+JOB = {
+    "study": "paper",
+    "experiment": "first",
+    "method": "mine",
+    "planner": "straight_line",
+    "settings": {},
+    # The first two have one layout in common.
+    "problems": {name: {"workspace": "w", "layout": layout} for name, layout in (("p", 3), ("q", 3), ("r", 4))},
+    "vary": {"x": [1, 2]},
+    "levels": {},
+    "repeats": [0, 3],
+}
+
+
+def first_number(seeds, problem="p", x=1, repeat=0, **changes):
+    return running.generator(JOB | {"seeds": seeds} | changes, running.Condition(problem, {"x": x}), repeat).random()
+
+
+CHANGES = {
+    "study": {"study": "other"},
+    "experiment": {"experiment": "second"},
+    "method": {"method": "rival"},
+    "value": {"x": 2},
+    "problem": {"problem": "q"},
+    "problem and layout": {"problem": "r"},
+    "repeat": {"repeat": 1},
+}
+
+
+@pytest.mark.parametrize(
+    ("seeds", "without"), [("own", set()), ("shared", {"method"}), ("common", {"method", "value", "problem"})], ids=lambda each: str(each)
+)
+def test_a_seed_depends_on_what_its_rule_names_and_on_nothing_else(seeds, without):
+    same = {what for what, change in CHANGES.items() if first_number(seeds, **change) == first_number(seeds)}
+    assert same == without
+
+
+@pytest.mark.parametrize("repeat", [7, 999, 1000, 12345])
+def test_a_seed_is_the_sha256_of_the_name_of_its_run(repeat):
+    name = f"paper/first/p,x=1/mine/{repeat}"
+    assert running.run_id(JOB, running.Condition("p", {"x": 1}), repeat) == name
+    seed = int(hashlib.sha256(name.encode()).hexdigest(), 16)
+    assert first_number("own", repeat=repeat) == np.random.default_rng(seed).random()
+
+
+@pytest.mark.parametrize("seeds", ["own", "shared", "common"])
+def test_no_two_repeats_share_their_numbers(seeds):
+    assert len({first_number(seeds, repeat=repeat) for repeat in range(2500)}) == 2500
+
+
+PLANNER = """
+import numpy as np
+from bezierplan.problem import Path, Plan
+
+def plan(problem, rng):
+    middle = rng.uniform(0.5, 1.5, 2)
+    path = Path("polyline", np.array([problem.start, middle, problem.target]))
+    return Plan(path, float(middle[0]), True, 1, np.zeros(3), "tries", {})
+"""
+
+
+@pytest.fixture
+def job(tmp_path):
+    (tmp_path / "random_point.py").write_text(PLANNER)
+    return JOB | {"planner": str(tmp_path / "random_point.py"), "seeds": "own", "repeats": [4, 7]}
+
+
+PROBLEMS = {name: Problem(name, from_lines(["....", "...."], 1.0, "cell"), (0.5, 0.5), (3.5, 1.5)) for name in "pqr"}
+
+
+def test_a_chunk_is_every_condition_with_all_its_repeats(job):
+    runs, times = (table.to_pandas() for table in running.run_chunk(PROBLEMS, job))
+    expected = [f"paper/first/{problem},x={x}/mine/{repeat}" for problem in "pqr" for x in (1, 2) for repeat in (4, 5, 6)]
+    assert runs["id"].to_list() == times["id"].to_list() == expected
+    assert runs["repeat"].to_list() == [4, 5, 6] * 6
+    assert runs["generations"].to_list() == [2] * 18
+    assert (times["wall_s"] > 0).all()
+    # Each run has the numbers of its own generator, whatever ran before it.
+    for run in runs.itertuples():
+        assert run.objective == 0.5 + first_number("own", run.problem, run.x, run.repeat)
+
+
+def test_runs_that_repeat_exactly_are_done_once():
+    runs, times = (table.to_pandas() for table in running.run_chunk(PROBLEMS, JOB | {"seeds": "own"}))
+    assert runs["repeat"].to_list() == [0, 1, 2] * 6
+    assert runs["length"].to_numpy() == pytest.approx(np.hypot(3, 1))
+    assert runs["feasible"].all()
+    assert times.groupby(np.arange(18) // 3)["cpu_s"].nunique().to_list() == [1] * 6

@@ -1,0 +1,102 @@
+"""Names of studies and targets, words for the report, and files that jobs write."""
+
+import dataclasses
+import os
+import re
+from types import SimpleNamespace
+
+import pytest
+from docutils.core import publish_parts
+from snakemake.iocontainers import OutputFiles
+
+from bezierplan import log, targets
+from bezierplan.checked import Fault
+from bezierplan.study import reading
+
+STUDIES = reading.load(reading.read_config({"studies": ["song2016"]}))
+SONG = STUDIES["song2016"]
+RULES = ("runs", "table", "all", "default")
+
+
+def fault(studies):
+    with pytest.raises(Fault) as caught:
+        targets.check_names(studies, RULES)
+    assert "\n" not in str(caught.value)
+    return str(caught.value)
+
+
+def elsewhere(tmp_path, key):
+    folder = tmp_path / key
+    folder.mkdir()
+    return {key: dataclasses.replace(SONG, key=key, folder=folder)}
+
+
+def test_studies_of_the_project_have_names_of_their_own():
+    targets.check_names(STUDIES, RULES)
+
+
+def test_fresh_name_is_taken(tmp_path):
+    targets.check_names(elsewhere(tmp_path, "my-study_2") | STUDIES, RULES)
+
+
+@pytest.mark.parametrize("key", ["x[1]", "{scale}", "a b", "2016", "$(date)", "..x"])
+def test_folder_that_is_no_name_is_told(tmp_path, key):
+    assert f"{key}: not a name of a study" in fault(elsewhere(tmp_path, key))
+
+
+@pytest.mark.parametrize("key", RULES)
+def test_folder_named_like_a_target_is_told(tmp_path, key):
+    assert f"{key}: the workflow has a target of this name already" in fault(elsewhere(tmp_path, key))
+
+
+def test_folder_named_like_a_target_of_another_study_is_told(tmp_path):
+    told = fault(STUDIES | elsewhere(tmp_path, "song2016_table1"))
+    assert "song2016_table1: study song2016 has a target of this name already" in told
+
+
+def test_folder_that_would_overwrite_results_of_a_study_is_told(tmp_path):
+    assert "has a study song2016 already, whose results this one would overwrite" in fault(elsewhere(tmp_path, "song2016"))
+
+
+def test_results_that_cannot_be_written_are_told(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    targets.check_folder()
+    (tmp_path / "results").touch()
+    with pytest.raises(Fault, match="results: cannot be written"):
+        targets.check_folder()
+
+
+HOSTILE = "a title\n\n.. include:: /etc/passwd\n\n.. raw:: html\n\n   <b>x</b> </script> `code`_ *bold* |sub| http://a.b {{ 7 * 7 }} \\"
+
+
+def test_caption_is_one_line_that_says_just_what_it_says():
+    html = publish_parts(targets.escaped(HOSTILE), writer="html")["body"]
+    assert re.fullmatch("<p>[^<>]*</p>", html.strip())
+    plain = html.replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", '"').replace("&amp;", "&").strip()
+    assert plain == f"<p>{' '.join(HOSTILE.split())}</p>"
+
+
+def test_files_appear_when_all_are_written(tmp_path):
+    names = OutputFiles(fromdict={"one": str(tmp_path / "one.csv"), "two": str(tmp_path / "two.csv")})
+    with log.whole_files(names) as parts:
+        for part in (parts.one, parts[1]):
+            assert part.endswith(".csv")
+            with open(part, "w") as file:
+                file.write("x")
+            assert not list(tmp_path.glob("*.csv"))
+    assert sorted(os.listdir(tmp_path)) == ["one.csv", "two.csv"]
+
+
+def test_failed_job_leaves_no_file_and_names_a_damaged_input(tmp_path, monkeypatch):
+    monkeypatch.setattr(log, "end_with_parent", lambda: None)
+    damaged = tmp_path / "cut.parquet"
+    damaged.write_bytes(b"PAR1")
+    output = OutputFiles(fromdict={"one": str(tmp_path / "one.csv")})
+    given = SimpleNamespace(log=[str(tmp_path / "log")], input=[str(damaged)], output=output)
+    with pytest.raises(SystemExit) as ended, log.job(given):
+        raise ValueError("no footer")
+    assert str(ended.value) == f"{damaged}: not a whole Parquet file; delete it and start again: the workflow reproduces it"
+    assert sorted(os.listdir(tmp_path)) == ["cut.parquet"]
+    given.input = []
+    with pytest.raises(SystemExit, match="ValueError: no footer"), log.job(given):
+        raise ValueError("no footer")
