@@ -189,8 +189,10 @@ def plan(
     most_first = most_roadmaps if first_population == "roadmaps" else 0
     found = search(rng, field, rules, *_from_roadmaps(problem, rng, field, population, most_first, roadmap_nodes, roadmap_neighbours))
     solved = len(found.ones) > 0
+    points = grid.in_units(polygon(found.ones, field))
+    points[[0, -1]] = problem.start, problem.target
     return Plan(
-        path=Path(PATH_KINDS[curve], grid.in_units(polygon(found.ones, field))) if solved else None,
+        path=Path(PATH_KINDS[curve], points) if solved else None,
         objective=found.cost * grid.cell,
         claimed_feasible=solved,
         evaluations=found.evaluations,
