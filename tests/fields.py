@@ -30,5 +30,5 @@ def assert_path_fits(problem: Problem, found: Plan) -> None:
     assert found.path.points[[0, -1]].tolist() == [list(problem.start), list(problem.target)]
     assert cell_length.occupied_cells(*cell_length.touched_cells(*cell_length.samples(found.path, grid)), grid.occupied) == 0
     assert check(curves.bezier_pieces(found.path), region(grid)).feasible
-    bound8 = bounds.lattice_path(grid.occupied, grid.cell_of(*problem.start), grid.cell_of(*problem.target), 1.5, "free").length
-    assert bound8 <= cell_length.length8(found.path, grid) <= cell_length.length4(found.path, grid)
+    octile_bound = bounds.lattice_path(grid.occupied, grid.cell_of(*problem.start), grid.cell_of(*problem.target), 1.5, "free").length
+    assert octile_bound <= cell_length.length8(found.path, grid) <= cell_length.length4(found.path, grid)

@@ -20,7 +20,7 @@ JOB = {
     "settings": {"inertia": 1.0},
     "problems": {"disc": {"workspace": "field"}},
     "vary": {"profile": ["a"]},
-    "levels": {"profile": {"a": {}}},
+    "presets": {"profile": {"a": {}}},
     "seeds": "own",
     "repeats": [0, 1],
 }

@@ -63,13 +63,13 @@ def pieces(bound):
     return np.stack([bound.points[:-1], bound.points[1:]], axis=1)
 
 
-def assert_is_path(bound, problem, squeeze="open"):
+def assert_is_path(bound, problem, corner_cutting="open"):
     """The polyline goes from start to target, has the bound's length (with arcs: at most 1e-6 more), and is free."""
     np.testing.assert_allclose(bound.points[[0, -1]], [problem.start, problem.target], atol=1e-12)
     drawn = np.hypot(*np.diff(bound.points, axis=0).T).sum()
     excess = 1e-6 if isinstance(problem.workspace, Circles) else 0
     assert -1e-9 <= drawn - bound.length <= excess + 1e-9
-    assert check(pieces(bound), region(problem.workspace), squeeze).feasible
+    assert check(pieces(bound), region(problem.workspace), corner_cutting).feasible
 
 
 @pytest.mark.parametrize("row", reference("shortest_path"), ids=lambda row: row["map"])
@@ -190,20 +190,20 @@ PINCH[1, 1] = PINCH[2, 2] = True
         ((1.5, 2.5), (2, 2), 0.707107, 0.707107),
     ],
 )
-def test_a_pinch_open_and_closed(start, target, is_open, is_closed, mirrored, cell):
+def test_a_contact_open_and_closed(start, target, is_open, is_closed, mirrored, cell):
     occupied = PINCH
     if mirrored:
         occupied = PINCH[:, ::-1]
         start, target = ((4 - x, y) for x, y in (start, target))
     start, target = (tuple(cell * value for value in point) for point in (start, target))
     problem = on_cells(occupied, start, target, cell)
-    for squeeze, length in (("open", is_open), ("closed", is_closed)):
-        bound = shortest_path(problem, squeeze)
+    for corner_cutting, length in (("open", is_open), ("closed", is_closed)):
+        bound = shortest_path(problem, corner_cutting)
         assert bound.length == pytest.approx(cell * length, abs=1e-5)
-        assert_is_path(bound, problem, squeeze)
+        assert_is_path(bound, problem, corner_cutting)
 
 
-def test_a_pinch_is_the_only_way():
+def test_a_contact_is_the_only_way():
     occupied = np.eye(5, dtype=bool)
     problem = on_cells(occupied, (0.5, 4.5), (4.5, 0.5))
     assert shortest_path(problem).length == pytest.approx(2 * math.hypot(1.5, 2.5))

@@ -101,9 +101,9 @@ TOUCHING = {
     "cells: from an edge into the cell and back": (BLOCK, bezier("(2.25,3)(2.5,2.5)(2.75,3)"), 0.0),
     "cells: out of the grid": (BLOCK, bezier("(1,1)(-2,1)"), 1 / 3),
     "cells: far out of the grid": (BLOCK, bezier("(-5,1)(-5,2)"), 0.0),
-    "pinch: straight through": (PINCH, bezier("(1,3)(3,1)"), FREE),
-    "pinch: apex on it": (PINCH, bezier("(.5,3.5)(2,2)(3.5,.5)"), FREE),
-    "pinch: along grid lines": (PINCH, bezier("(0,2)(4,2)"), FREE),
+    "contact: straight through": (PINCH, bezier("(1,3)(3,1)"), FREE),
+    "contact: apex on it": (PINCH, bezier("(.5,3.5)(2,2)(3.5,.5)"), FREE),
+    "contact: along grid lines": (PINCH, bezier("(0,2)(4,2)"), FREE),
     "square: along a wall": (SQUARE, bezier("(0,6)(10,6)"), FREE),
     "square: past a corner": (SQUARE, bezier("(2,4)(6,8)"), FREE),
     "square: past a corner, 4.5e-9 lower": (SQUARE, lowered(bezier("(2,4)(6,8)"), 4.5e-9), 0.5),
@@ -182,20 +182,20 @@ def test_an_apex_under_a_thin_wall_touches_it(bulge):
         "near it",
     ],
 )
-def test_a_closed_pinch_may_be_touched_but_not_passed(pieces, collision_at):
+def test_a_closed_contact_may_be_touched_but_not_passed(pieces, collision_at):
     assert check(pieces, PINCH).feasible
-    found = check(pieces, PINCH, squeeze="closed")
+    found = check(pieces, PINCH, corner_cutting="closed")
     assert found.feasible == (collision_at is FREE)
     if not found.feasible:
         assert found.collision_at == pytest.approx(collision_at, abs=1e-6)
         assert (found.depth, found.clearance) == (0, 0)
 
 
-def test_a_closed_pinch_in_a_grid_of_large_cells():
+def test_a_closed_contact_in_a_grid_of_large_cells():
     large = cells(4, (1, 2, 1, 1), (2, 1, 1, 1), cell=10.0)
     assert check(10 * bezier("(1,1)(3,3)"), large).feasible
-    assert not check(10 * bezier("(1,1)(3,3)"), large, squeeze="closed").feasible
-    assert check(10 * polyline("(1,1)(2,2)(1.5,1.5)"), large, squeeze="closed").feasible
+    assert not check(10 * bezier("(1,1)(3,3)"), large, corner_cutting="closed").feasible
+    assert check(10 * polyline("(1,1)(2,2)(1.5,1.5)"), large, corner_cutting="closed").feasible
 
 
 def test_the_first_collision_is_the_first_along_the_path():
@@ -366,8 +366,8 @@ def test_unfit_shapes_and_rules_are_refused():
         check(np.zeros((3, 2)), UNIT_DISC)
     with pytest.raises(ValueError, match="degree"):
         check(np.zeros((1, 62, 2)), UNIT_DISC)
-    with pytest.raises(ValueError, match="squeeze"):
-        check(np.zeros((1, 2, 2)), PINCH, squeeze="shut")
+    with pytest.raises(ValueError, match="corner_cutting"):
+        check(np.zeros((1, 2, 2)), PINCH, corner_cutting="shut")
 
 
 @pytest.mark.parametrize("blocked", ["Grid(np.eye(3, dtype=bool), 1.0, 'm')", "Circles((0, 9, 0, 9), np.ones((1, 2)), np.ones(1), 'm')"])

@@ -141,7 +141,7 @@ def test_true_case_is_supported(name):
     row = judged(check, runs)
     assert row["verdict"] == "supported"
     assert re.fullmatch(r"(\d+) of \1", row["holds"])
-    assert row["chance"] > 0.5
+    assert row["replication_probability"] > 0.5
 
 
 @pytest.mark.parametrize("name", CASES)
@@ -150,7 +150,7 @@ def test_false_case_is_contradicted(name):
     row = judged(check, runs)
     assert row["verdict"] == "contradicted"
     assert row["holds"].startswith("0 of")
-    assert row["chance"] < 0.5
+    assert row["replication_probability"] < 0.5
 
 
 @pytest.mark.parametrize("paired", [True, False])
@@ -508,11 +508,11 @@ def test_runs_of_several_conditions_are_never_mixed():
 
 
 def test_the_family_is_that_of_the_deciding_checks():
-    reported = LOWER | {"groups": ["b"], "than": ["a"], "report": True}
+    reported = LOWER | {"groups": ["b"], "than": ["a"], "secondary": True}
     summary, details = judge({"checks": [LOWER, reported]}, APART)
     assert (summary.iloc[0]["verdict"], summary.iloc[0]["holds"]) == ("supported", "1 of 1")
     assert details["mark"].to_list() == ["+", "-"]
-    assert details["decides"].to_list() == [True, False]
+    assert details["primary"].to_list() == [True, False]
     assert details["mark_family"].to_list() == ["+", ""]
     assert details["p_family"].isna().to_list() == [False, True]
 
@@ -554,7 +554,7 @@ def test_variants_take_the_place_of_what_the_checks_name():
     claim = {"checks": [LOWER], "variants": {"method": ["a", "d"], "workspace": ["grid", "other"]}}
     summary, details = judge(claim, runs)
     assert summary["variant"].to_list() == [f"method={m}, workspace={w}" for m in "ad" for w in ("grid", "other")]
-    assert summary["decides"].to_list() == [True, False, False, False]
+    assert summary["primary"].to_list() == [True, False, False, False]
     assert summary["verdict"].to_list() == ["supported", "contradicted", "contradicted", "undecided"]
     assert set(details["comparison"]) == {"a lower than b", "d lower than b"}
     metric = {"checks": [LOWER], "variants": {"metric": ["objective", "evaluations"]}}
@@ -618,9 +618,9 @@ def test_pick_takes_one_run_of_each_condition():
 def test_rows_of_one_unit_are_averaged_first():
     layouts = pd.concat(table({"a": sample(f"a{k}", k), "b": sample(f"b{k}", k + 0.5)}).assign(layout=k) for k in range(8))
     layouts["condition"] = layouts["layout"].astype(str)
-    row = judged(LOWER | {"unit": "layout"}, layouts)
+    row = judged(LOWER | {"replicate": "layout"}, layouts)
     assert (row["n"], row["verdict"]) == (8, "supported")
-    assert judged(SHARE | {"unit": "layout", "event": {"below": 3.5}}, layouts)["effect"] == 0.5
+    assert judged(SHARE | {"replicate": "layout", "event": {"below": 3.5}}, layouts)["effect"] == 0.5
 
 
 def test_where_on_an_outcome_keeps_places_without_such_runs():
@@ -779,18 +779,18 @@ def test_chance_of_a_small_experiment():
     # The difference of two means of n units is normal with variance 2 / n; it is negative with probability Phi(0.5 sqrt(n / 2)).
     runs = table({"a": sample("a", n=2000), "b": sample("b", 0.5, n=2000)})
     for n, expected in [(2, 0.691), (10, 0.868), (50, 0.994)]:
-        assert judged(LOWER, runs, repeats={"tried": n})["chance"] == pytest.approx(expected, abs=0.04)
-    assert math.isnan(judged(LOWER, runs, repeats={})["chance"])
-    assert with_printed(LOWER, repeats={})[0]["chance"] > 0.9
+        assert judged(LOWER, runs, repeats={"tried": n})["replication_probability"] == pytest.approx(expected, abs=0.04)
+    assert math.isnan(judged(LOWER, runs, repeats={})["replication_probability"])
+    assert with_printed(LOWER, repeats={})[0]["replication_probability"] > 0.9
 
 
 def test_chance_of_several_comparisons_is_that_all_hold():
     same = table({name: sample(name) for name in "abcd"})
     row = judged(LOWER | {"than": ["b", "c", "d"]}, same)
     # The first of four equal methods is the best of them one time in four.
-    assert row["chance"] == pytest.approx(0.25, abs=0.06)
+    assert row["replication_probability"] == pytest.approx(0.25, abs=0.06)
     anyone = judge({"checks": [LOWER | {"than": ["b", "c", "d"]}], "holds": "any"}, same)[0].iloc[0]
-    assert anyone["chance"] == pytest.approx(0.75, abs=0.06)
+    assert anyone["replication_probability"] == pytest.approx(0.75, abs=0.06)
 
 
 # Times.
@@ -871,7 +871,7 @@ def test_degenerate_values_give_no_fault(n, value):
 def test_missing_group_is_undecided(kind):
     row = judged(ANY_KIND[kind], table({"a": sample("a")}))
     assert (row["verdict"], row["reason"]) == ("undecided", "no run of b counts")
-    assert math.isnan(row["chance"])
+    assert math.isnan(row["replication_probability"])
 
 
 def test_without_runs_a_claim_is_untestable():
@@ -892,7 +892,7 @@ def test_metric_that_the_runs_do_not_have():
 
 
 def test_reported_check_that_cannot_be_judged_decides_nothing():
-    reported = LOWER | {"experiment": "other", "report": True}
+    reported = LOWER | {"experiment": "other", "secondary": True}
     summary, details = judge({"checks": [LOWER, reported]}, APART)
     assert summary.iloc[0]["verdict"] == "supported"
     assert details["reason"].to_list() == ["", "the experiment other was not run"]

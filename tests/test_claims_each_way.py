@@ -44,7 +44,12 @@ def published(key):
 
 
 def artefacts(key):
-    return study(key).tables | study(key).figures
+    return {name: artefact.plain() for name, artefact in (study(key).tables | study(key).figures).items()}
+
+
+@cache
+def claims_of(key) -> list[dict]:
+    return [claim.plain() for claim in study(key).claims]
 
 
 def deciding(key, claim) -> list[dict]:
@@ -52,19 +57,19 @@ def deciding(key, claim) -> list[dict]:
     material = Material({}, published(key), artefacts(key), {}, {}, {}, {})
     first, *_ = claims.variants(claim)
     checks = [claim_comparisons.with_rest(check, claim, material) for check in claim["checks"]]
-    return [claims.with_work(check)[0] for check in claims.in_variant(checks, first, first) if "report" not in check]
+    return [claims.with_work(check)[0] for check in claims.in_variant(checks, first, first) if "secondary" not in check]
 
 
 def is_generated(claim) -> bool:
-    return all(check["test"] not in ("function", "published_arithmetic") for check in claim["checks"] if "report" not in check)
+    return all(check["test"] not in ("function", "published_arithmetic") for check in claim["checks"] if "secondary" not in check)
 
 
-CASES = [(key, claim["id"]) for key in KEYS for claim in study(key).claims]
-GENERATED = [(key, claim["id"]) for key in KEYS for claim in study(key).claims if is_generated(claim)]
+CASES = [(key, claim["id"]) for key in KEYS for claim in claims_of(key)]
+GENERATED = [(key, claim["id"]) for key in KEYS for claim in claims_of(key) if is_generated(claim)]
 
 
 def claim_of(key, identity):
-    return next(claim for claim in study(key).claims if claim["id"] == identity)
+    return next(claim for claim in claims_of(key) if claim["id"] == identity)
 
 
 # Runs that make a claim true, or its contrary.
@@ -98,7 +103,7 @@ def factors(key, claim, checks, experiment) -> dict[str, list]:
                 found[column] = list(range(LAYOUTS)) if column == "layout" else [1, 2]
         if check["test"] == "trend" and len(set(found[check["x"]])) < 3:
             found[check["x"]] += [10, 20, 30, 40, 50]
-    if any(check.get("unit") == "layout" for check in own):
+    if any(check.get("replicate") == "layout" for check in own):
         found["layout"] = list(range(UNITS))
     found.pop("experiment", None)
     if not found["method"]:
@@ -226,8 +231,8 @@ def verdict(key, claim, results, printed=None) -> pd.Series:
     judged, _ = claims.judge(
         [claim | {"variants": {column: values[:1] for column, values in claim.get("variants", {}).items()}}],
         *(results, printed or published(key), artefacts(key), key, vars(functions[key]) if key in functions else {}),
-        variant_of={name: method["variant_of"] for name, method in own.methods.items() if "variant_of" in method},
-        paired={name: own.experiments[name].get("seeds", "own") != "own" for name in results},
+        variant_of=own.variants(),
+        paired={name: own.experiments[name].paired for name in results},
         repeats=dict.fromkeys(results, 10),
     )
     return judged.iloc[0]
@@ -286,7 +291,7 @@ def printed_lengths(monkeypatch, truth):
     fields["problem"] = fields["route"] + fields["obstacles"].astype(str)
     made = {}
     for name, side in (("fields100", 100), ("fields200", 200)):
-        made |= results_of(fields.assign(bound8=1.6 * side), name, side=side)
+        made |= results_of(fields.assign(octile_bound=1.6 * side), name, side=side)
     numbers = published("elhoseny2017")
     below = {
         name: numbers[name].assign(value=numbers[name]["value"].clip(upper=2 * side)) for name, side in (("table2", 100), ("table3", 200))

@@ -108,7 +108,13 @@ def test_the_text_swaps_two_counts_and_has_eta_end_at_0(rows):
 def results(side, least):
     table = pd.DataFrame(
         [
-            {"problem": f"{route}_{obstacles}_{layout}", "route": route, "obstacles": obstacles, "side": side, "bound8": least + layout}
+            {
+                "problem": f"{route}_{obstacles}_{layout}",
+                "route": route,
+                "obstacles": obstacles,
+                "side": side,
+                "octile_bound": least + layout,
+            }
             for route in ("case1", "case2")
             for obstacles in (5, 10, 15, 20, 25)
             for layout in range(4)

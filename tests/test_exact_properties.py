@@ -272,12 +272,12 @@ def pieces_along(bound):
 
 @settings(deadline=None, max_examples=150)
 @given(PROBLEMS, st.sampled_from(["open", "closed"]))
-def test_a_shortest_path_is_free_and_no_shorter_than_the_straight_line(problem, squeeze):
-    bound = shortest_path(problem, squeeze)
+def test_a_shortest_path_is_free_and_no_shorter_than_the_straight_line(problem, corner_cutting):
+    bound = shortest_path(problem, corner_cutting)
     assume(bound.length < math.inf)
     assert bound.length >= math.dist(problem.start, problem.target) * (1 - 1e-12)
     assert least_length(bound) <= bound.length
-    assert check(pieces_along(bound), region(problem.workspace), squeeze).feasible
+    assert check(pieces_along(bound), region(problem.workspace), corner_cutting).feasible
 
 
 @settings(deadline=None, max_examples=60)
@@ -292,11 +292,11 @@ def test_a_straight_line_is_the_shortest_path_if_it_is_free(problem):
 
 @settings(deadline=None, max_examples=100)
 @given(PROBLEMS, paths(), st.sampled_from(["diagonal", "middle"]), st.sampled_from(["open", "closed"]))
-def test_mirroring(problem, pieces, flip, squeeze):
+def test_mirroring(problem, pieces, flip, corner_cutting):
     mirrored = Problem("", mapped(problem.workspace, flip), *(tuple(mapped_points(p, flip)) for p in (problem.start, problem.target)))
-    assert shortest_path(mirrored, squeeze).length == pytest.approx(shortest_path(problem, squeeze).length, rel=1e-9)
-    found = check(pieces, region(problem.workspace), squeeze)
-    assert_same_check(check(mapped_points(pieces, flip), region(mirrored.workspace), squeeze), found)
+    assert shortest_path(mirrored, corner_cutting).length == pytest.approx(shortest_path(problem, corner_cutting).length, rel=1e-9)
+    found = check(pieces, region(problem.workspace), corner_cutting)
+    assert_same_check(check(mapped_points(pieces, flip), region(mirrored.workspace), corner_cutting), found)
 
 
 @settings(deadline=None, max_examples=60)
@@ -386,18 +386,18 @@ def split(piece, t):
 
 @settings(deadline=None, max_examples=150)
 @given(WORKSPACES, paths(), st.integers(1, 3), st.floats(0.05, 0.95), st.sampled_from(["open", "closed"]))
-def test_the_verdict_does_not_depend_on_how_a_path_is_written(workspace, pieces, times, t, squeeze):
+def test_the_verdict_does_not_depend_on_how_a_path_is_written(workspace, pieces, times, t, corner_cutting):
     blocked = region(workspace)
-    found = check(pieces, blocked, squeeze)
-    higher = check(np.array([elevated(piece, times) for piece in pieces]), blocked, squeeze)
+    found = check(pieces, blocked, corner_cutting)
+    higher = check(np.array([elevated(piece, times) for piece in pieces]), blocked, corner_cutting)
     assert_same_check(higher, found)
-    halves = check(np.concatenate([split(piece, t) for piece in pieces]), blocked, squeeze)
+    halves = check(np.concatenate([split(piece, t) for piece in pieces]), blocked, corner_cutting)
     assert halves.feasible == found.feasible
     if not found.feasible:
         piece, part = divmod(halves.collision_at, 2)
         back = piece + (part * t if part < 1 else t + (part - 1) * (1 - t))
         assert back == pytest.approx(found.collision_at, abs=1e-4)
-    reverse = check(pieces[::-1, ::-1], blocked, squeeze)
+    reverse = check(pieces[::-1, ::-1], blocked, corner_cutting)
     assert reverse.feasible == found.feasible
     assert reverse.clearance == pytest.approx(found.clearance, abs=2e-9)
 

@@ -40,10 +40,10 @@ def told(folder):
     return message
 
 
-def bomb(levels=12):
+def bomb(presets=12):
     """YAML whose aliases stand for ten times as many values at every level."""
     lines = ["a0: &a0 [x, x, x, x, x, x, x, x, x, x]"]
-    lines += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 10)}]" for n in range(1, levels)]
+    lines += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 10)}]" for n in range(1, presets)]
     return "\n".join(lines)
 
 
@@ -55,9 +55,9 @@ TEXTS = {
     "NUL": (E, "title: a\0b\n", "experiments.yaml: not YAML"),
     "another control character": (E, "title: a\x07b\n", "experiments.yaml: not YAML"),
     "bytes that are no text": (E, b"title: \xff\xfe\n", "experiments.yaml: cannot be read (UnicodeDecodeError)"),
-    "deep nesting of lists": (E, "title: " + "[" * 100_000, "experiments.yaml: line 1: nested more than 20 levels deep"),
-    "deep nesting of mappings": (E, "{a: " * 5000, "experiments.yaml: line 1: nested more than 20 levels deep"),
-    "deep nesting by indentation": (E, "".join(" " * n + "a:\n" for n in range(500)), "nested more than 20 levels deep"),
+    "deep nesting of lists": (E, "title: " + "[" * 100_000, "experiments.yaml: line 1: nested more than 20 presets deep"),
+    "deep nesting of mappings": (E, "{a: " * 5000, "experiments.yaml: line 1: nested more than 20 presets deep"),
+    "deep nesting by indentation": (E, "".join(" " * n + "a:\n" for n in range(500)), "nested more than 20 presets deep"),
     "aliases of aliases": (E, bomb(), "more than 200000 values, aliases counted as what they stand for"),
     "aliases of aliases in claims": (C, bomb(), "claims.yaml: line 6: more than 200000 values"),
     "an alias of itself": (E, "a: &a [*a]\n", "experiments.yaml: line 1: *a: stands for nothing before it, or for itself"),
@@ -218,17 +218,17 @@ WORDS = {
         "variant_of: smoth}",
         "methods: smooth_cubic: variant_of: smoth: unknown; did you mean smooth?",
     ),
-    "a control of the name of a method": (
+    "a baseline of the name of a method": (
         E,
         "  shortest_path: {",
         "  smooth: {",
-        "experiments.yaml: controls: smooth: a method has this name already",
+        "experiments.yaml: baselines: smooth: a method has this name already",
     ),
-    "a control in an experiment": (
+    "a baseline in an experiment": (
         E,
         "methods: [nonsmooth,",
         "methods: [shortest_path,",
-        "methods: shortest_path: a control; it joins by itself",
+        "methods: shortest_path: a baseline; it joins by itself",
     ),
     "no methods": (
         E,
@@ -268,19 +268,19 @@ WORDS = {
         "    vary: {genes: [6, many]}\n    repeats:",
         "routes: vary: 0_15,genes=many: nonsmooth: settings: genes: 'many'",
     ),
-    "a misspelt setting of a level": (
+    "a misspelt setting of a preset": (
         E,
         "\nworkspaces:",
         "\nlevels: {profile: {tuned: {gene: 7}}}\nworkspaces:",
-        "levels: profile: tuned: gene: unknown; did you mean genes?",
+        "presets: profile: tuned: gene: unknown; did you mean genes?",
     ),
-    "a level that is a list": (
+    "a preset that is a list": (
         E,
         "\nworkspaces:",
         "\nlevels: {profile: {tuned: [7]}}\nworkspaces:",
-        "levels: profile: tuned: [7]: expected",
+        "presets: profile: tuned: [7]: expected",
     ),
-    "an unknown value of a level": (
+    "an unknown value of a preset": (
         E,
         "    repeats:",
         "    vary: {profile: [tuned]}\n    repeats:",
@@ -570,17 +570,17 @@ WORDS = {
     "a claim twice": (C, "id: C2", "id: C1", "claims.yaml: claims: C1: another one has this id already"),
     "a claim of another name": (C, "id: C2", "id: two", "claims.yaml: claims: 1: id: 'two': expected C and a number"),
     "a long statement": (C, "statement: Smooth paths come", f"statement: {'a' * 200} #", "claims.yaml: claims: 0: statement: 'aaa"),
-    "a control as a group": (
+    "a baseline as a group": (
         C,
         "groups: [smooth], than",
         "groups: [shortest_path], than",
-        "group: shortest_path: unknown here: a control; claims compare methods",
+        "group: shortest_path: unknown here: a baseline; claims compare methods",
     ),
-    "a control in a selection": (
+    "a baseline in a selection": (
         C,
         "where: {method: smooth, problem: [0_255",
         "where: {method: random_search, problem: [0_255",
-        "where: method: random_search: unknown here: a control",
+        "where: method: random_search: unknown here: a baseline",
     ),
     "runs of several problems": (
         C,
@@ -606,7 +606,7 @@ WORDS = {
         "where: {method: smooth, curve: polyline}",
         "where: no run of routes has all of",
     ),
-    "an unknown unit of a claim": (C, "threshold: 0.5,", "threshold: 0.5, unit: layout,", "unit: layout: unknown"),
+    "an unknown replicate of a claim": (C, "threshold: 0.5,", "threshold: 0.5, replicate: layout,", "replicate: layout: unknown"),
     "an unknown metric of a pick": (
         C,
         "threshold: all, pick: {lowest: objective}",
@@ -625,7 +625,7 @@ WORDS = {
         "metric: [length, objectiv]}",
         "variants: metric: objectiv: unknown; did you mean objective?",
     ),
-    "a report of no": (C, "report: true}", "report: false}", "report: False: expected true: shown, does not decide"),
+    "a report of no": (C, "secondary: true}", "secondary: false}", "secondary: False: expected true: shown, does not decide"),
     # Assumptions
     "a default that is not in force": (
         S,

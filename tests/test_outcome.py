@@ -26,7 +26,7 @@ def comparison(values, ours, methods=("plain", "other")):
 def test_readings_that_do_not_decide_are_not_counted():
     numbers = summary.numbers({("one", "table1"): comparison([1.0, 9.0], [1.2, 1.2])}, {"one": ["other"]})
     claims = pd.DataFrame(
-        {"study": "one", "id": ["C1", "C1", "C2"], "decides": [True, False, True], "verdict": ["supported", "in part", "no effect"]}
+        {"study": "one", "id": ["C1", "C1", "C2"], "primary": [True, False, True], "verdict": ["supported", "in part", "no effect"]}
         | {"finding": False}
     )
     found = summary.outcome(numbers, claims).loc["one"]
@@ -36,7 +36,7 @@ def test_readings_that_do_not_decide_are_not_counted():
 
 def test_published_number_that_is_wrong_is_counted_as_not_reproduced():
     numbers = summary.numbers({("one", "table1"): comparison([1.0, 9.0], [1.2, 1.2])}, {"one": []})
-    claims = pd.DataFrame({"study": ["one"], "id": ["C1"], "decides": [True], "finding": [False], "verdict": ["supported"]})
+    claims = pd.DataFrame({"study": ["one"], "id": ["C1"], "primary": [True], "finding": [False], "verdict": ["supported"]})
     found = summary.outcome(numbers, claims).loc["one"]
     assert (found["numbers"], found["reproduced"]) == (2, 1)
 
@@ -49,7 +49,7 @@ def test_numbers_without_a_published_value_are_left_out():
 def test_other_conditions_than_the_deciding_one_are_not_counted():
     table = comparison([1.0, 9.0], [1.2, 9.0]).assign(workspace=["first", "second"])
     numbers = summary.numbers({("one", "table1"): table}, {"one": []}, {("one", "table1"): {"workspace": "first"}})
-    assert numbers["decides"].tolist() == [True, False]
+    assert numbers["primary"].tolist() == [True, False]
 
 
 def counted(*tables):
@@ -80,7 +80,7 @@ def test_counts_that_add_up_are_one_number_fewer():
 def test_outcome_counts_verdicts_of_numbers():
     words = ["reproduced", "not told apart", "cannot fail", "not reproduced"]
     table = comparison([1.0, 2.0, 3.0, 9.0], [1.2, 2.2, 3.2, 4.0], list("abcd")).assign(verdict=words)
-    claims = pd.DataFrame({"study": ["one"], "id": ["C1"], "decides": [True], "verdict": ["supported"]})
+    claims = pd.DataFrame({"study": ["one"], "id": ["C1"], "primary": [True], "verdict": ["supported"]})
     found = summary.outcome(summary.numbers({("one", "table1"): table}, {"one": []}), claims).loc["one"]
     assert found[["numbers", *words]].to_list() == [4, 1, 1, 1, 1]
 

@@ -36,7 +36,7 @@ methods:
   low: {planner: bend.py, settings: {bend: 3.0}}
   high: {planner: bend.py, settings: {bend: 5.0}}
   line: {planner: straight_line}
-controls:
+baselines:
   shortest_path: {planner: shortest_path}
 settings: {}
 workspaces:

@@ -1,4 +1,4 @@
-"""The probabilistic road map: its sight test, its graph against a plain reference, degenerate cases."""
+"""The probabilistic roadmap: its sight test, its graph against a plain reference, degenerate cases."""
 
 import itertools
 import math

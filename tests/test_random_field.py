@@ -89,7 +89,7 @@ def test_bounds_of_a_moved_grid_are_those_of_the_same_cells_at_the_origin(tmp_pa
     assert one.length == other.length
     np.testing.assert_allclose(one.points + 0.5, other.points, rtol=0, atol=1e-12)
     table = problems.bounds_of({"a": moved}).to_pydict()
-    assert table["bound8"][0] >= 150
+    assert table["octile_bound"][0] >= 150
     assert table["bound"][0] == one.length
     centre = moved.workspace.drawn.centres[0]
     assert blocks(region(moved.workspace), tuple(np.rint(np.clip(centre, 0, 100))))

@@ -55,8 +55,8 @@ def test_published_length_is_audited_against_the_bound_of_its_problem():
     table = pd.DataFrame(rows, columns=["method", "metric", "statistic", "value"]).assign(printed=["8.9", "9.1", "0.5", "0.1"])
     one, two = (pd.DataFrame({"bound": [9.0, 5.0][:n]}, index=["disc", "other"][:n]) for n in (1, 2))
 
-    def audited(table, bounds, decides):
-        return [row["consistent"] for row in audit.below_bound({"t": table}, {"t": bounds}, {"t": decides} if decides else {})]
+    def audited(table, bounds, primary):
+        return [row["consistent"] for row in audit.below_bound({"t": table}, {"t": bounds}, {"t": primary} if primary else {})]
 
     assert audited(table, one, None) == [False, True]
     assert audited(table, two, None) == []

@@ -37,7 +37,7 @@ def job(folder, **changed):
         "settings": {},
         "problems": {"disc": {"workspace": "field"}},
         "vary": {"bend": [0.0, 1.0, 2.0]},
-        "levels": {},
+        "presets": {},
         "seeds": "own",
         "repeats": [4, 10],
     } | changed

@@ -18,7 +18,7 @@ JOB = {
     # The first two have one layout in common.
     "problems": {name: {"workspace": "w", "layout": layout} for name, layout in (("p", 3), ("q", 3), ("r", 4))},
     "vary": {"x": [1, 2]},
-    "levels": {},
+    "presets": {},
     "repeats": [0, 3],
 }
 
@@ -39,7 +39,9 @@ CHANGES = {
 
 
 @pytest.mark.parametrize(
-    ("seeds", "without"), [("own", set()), ("shared", {"method"}), ("common", {"method", "value", "problem"})], ids=lambda each: str(each)
+    ("seeds", "without"),
+    [("own", set()), ("shared", {"method"}), ("common", {"method", "value", "problem"})],
+    ids=["own", "shared", "common"],
 )
 def test_a_seed_depends_on_what_its_rule_names_and_on_nothing_else(seeds, without):
     same = {what for what, change in CHANGES.items() if first_number(seeds, **change) == first_number(seeds)}

@@ -8,10 +8,10 @@ from bezierplan.analysis import audit, sensitivity
 
 def claims(**verdicts):
     rows = [
-        {"id": name, "decides": True, "statement": f"says {name}", "verdict": verdict, "holds": "1 of 1", "effect": 1.5}
+        {"id": name, "primary": True, "statement": f"says {name}", "verdict": verdict, "holds": "1 of 1", "effect": 1.5}
         for name, verdict in verdicts.items()
     ]
-    return pd.DataFrame([*rows, rows[0] | {"decides": False, "verdict": "undecided"}])
+    return pd.DataFrame([*rows, rows[0] | {"primary": False, "verdict": "undecided"}])
 
 
 def test_a_verdict_changes_where_the_alternative_has_another_one():

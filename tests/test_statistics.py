@@ -1,4 +1,4 @@
-"""Statistics, bootstrap intervals, and the yardstick: closed forms, and how often they are right on known distributions."""
+"""Statistics, bootstrap intervals, and prediction intervals: closed forms, and how often they are right on known distributions."""
 
 import math
 
@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezierplan.analysis import statistics
-from bezierplan.analysis.statistics import LEAST_RUNS, STATISTICS, generator, interval, predicted, resampled, statistic, yardstick
+from bezierplan.analysis.statistics import LEAST_RUNS, STATISTICS, generator, interval, predicted, predictive_quantile, resampled, statistic
 
 samples = st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=30).map(np.array)
 
@@ -134,12 +134,12 @@ OURS = np.random.default_rng(3).normal(100, 5, size=60)
 @pytest.mark.parametrize("size", [None, 1, 10, 60])
 @pytest.mark.parametrize(("published", "quantile"), [(0.0, 0.0), (200.0, 1.0)])
 def test_value_far_outside_is_not_reproduced(size, published, quantile):
-    assert yardstick("mean", OURS, published, size, 2, generator("far")) == (quantile, False)
+    assert predictive_quantile("mean", OURS, published, size, 2, generator("far")) == (quantile, False)
 
 
 @pytest.mark.parametrize("size", [None, 1, 10, 60])
 def test_value_in_the_middle_is_reproduced(size):
-    quantile, reproduced = yardstick("mean", OURS, float(np.median(OURS)), size, 2, generator("middle"))
+    quantile, reproduced = predictive_quantile("mean", OURS, float(np.median(OURS)), size, 2, generator("middle"))
     assert reproduced
     assert 0.2 < quantile < 0.8
 
@@ -147,27 +147,27 @@ def test_value_in_the_middle_is_reproduced(size):
 def test_size_of_the_papers_experiment_matters():
     # One and a half standard deviations are ordinary for one run, and far from the mean of sixty.
     published = float(OURS.mean() + 1.5 * OURS.std())
-    assert yardstick("mean", OURS, published, 1, None, generator("size"))[1]
-    assert not yardstick("mean", OURS, published, 60, None, generator("size"))[1]
+    assert predictive_quantile("mean", OURS, published, 1, None, generator("size"))[1]
+    assert not predictive_quantile("mean", OURS, published, 60, None, generator("size"))[1]
 
 
 def test_ties_count_for_it():
-    assert yardstick("median", np.full(20, 64.0), 64.0, None, 0, generator("ties")) == (0.5, True)
+    assert predictive_quantile("median", np.full(20, 64.0), 64.0, None, 0, generator("ties")) == (0.5, True)
 
 
 def test_ours_are_rounded_like_the_printed_number():
     exact = np.full(20, 29.94163)
-    assert yardstick("mean", exact, 29.9416, 20, 4, generator("rounded"))[1]
-    assert not yardstick("mean", exact, 29.9417, 20, 4, generator("rounded"))[1]
+    assert predictive_quantile("mean", exact, 29.9416, 20, 4, generator("rounded"))[1]
+    assert not predictive_quantile("mean", exact, 29.9417, 20, 4, generator("rounded"))[1]
 
 
 def test_too_few_runs_are_not_judged():
-    assert yardstick("mean", OURS[: LEAST_RUNS - 1], 0.0, 10, 2, generator("few")) == (0.0, None)
+    assert predictive_quantile("mean", OURS[: LEAST_RUNS - 1], 0.0, 10, 2, generator("few")) == (0.0, None)
 
 
 @pytest.mark.parametrize(("values", "published"), [(np.array([]), 1.0), (OURS, math.nan)])
 def test_nothing_to_judge(values, published):
-    quantile, reproduced = yardstick("mean", values, published, 10, 2, generator("nothing"))
+    quantile, reproduced = predictive_quantile("mean", values, published, 10, 2, generator("nothing"))
     assert math.isnan(quantile)
     assert reproduced is None
 
@@ -179,18 +179,18 @@ def _drawn(name: str, size: int, rng: np.random.Generator) -> np.ndarray:
 
 @pytest.mark.parametrize("name", ["mean", "median", "min", "max", "count", "share"])
 @pytest.mark.parametrize(("ours", "theirs"), [(10, 10), (30, 30), (10, 40), (200, 10)])
-def test_yardstick_refuses_few_true_numbers(name, ours, theirs):
+def test_prediction_refuses_few_true_numbers(name, ours, theirs):
     rng = np.random.default_rng(4)
     refused = 0
     for repeat in range(300):
         values, published = _drawn(name, ours, rng), statistic(name, _drawn(name, theirs, rng))
-        refused += not yardstick(name, values, published, theirs, None, generator(f"true {repeat}"))[1]
+        refused += not predictive_quantile(name, values, published, theirs, None, generator(f"true {repeat}"))[1]
     assert refused / 300 <= 0.08
 
 
 @pytest.mark.parametrize("runs", [10, 30])
 def test_resampling_alone_would_refuse_many(runs):
-    # Why the yardstick draws in two stages: ours are a sample too.
+    # Why the prediction interval draws in two stages: ours are a sample too.
     rng = np.random.default_rng(5)
     refused = 0
     for repeat in range(300):
@@ -201,15 +201,17 @@ def test_resampling_alone_would_refuse_many(runs):
 
 
 @pytest.mark.parametrize(("name", "away"), [("mean", 1.0), ("median", 1.3), ("min", 3.0), ("share", 0.7)])
-def test_yardstick_refuses_what_is_far_off(name, away):
+def test_prediction_refuses_what_is_far_off(name, away):
     rng = np.random.default_rng(6)
     values = np.ones(30) if name == "share" else rng.normal(size=30)
-    assert not yardstick(name, values, statistic(name, values) + (away if name != "share" else -away), 30, None, generator("far"))[1]
+    assert not predictive_quantile(
+        name, values, statistic(name, values) + (away if name != "share" else -away), 30, None, generator("far")
+    )[1]
 
 
 @pytest.mark.parametrize(("ours", "theirs"), [(10, 10), (30, 30), (10, 40), (200, 10)])
 @pytest.mark.parametrize(("shape", "most"), [("normal", 0.08), ("gamma", 0.12), ("exponential", 0.2)])
-def test_yardstick_refuses_few_true_standard_deviations(shape, most, ours, theirs):
+def test_prediction_refuses_few_true_standard_deviations(shape, most, ours, theirs):
     """Draws from resamples would refuse up to a quarter of those of a normal sample, and more of skewed ones."""
     rng = np.random.default_rng(9)
     draw = {"normal": rng.normal, "gamma": lambda size: rng.gamma(5, size=size), "exponential": lambda size: rng.exponential(size=size)}[
@@ -218,14 +220,14 @@ def test_yardstick_refuses_few_true_standard_deviations(shape, most, ours, their
     refused = 0
     for _ in range(400):
         values, published = draw(size=ours), statistic("std", draw(size=theirs))
-        refused += not yardstick("std", values, published, theirs, None, generator("std"))[1]
+        refused += not predictive_quantile("std", values, published, theirs, None, generator("std"))[1]
     assert refused / 400 <= most
 
 
 def test_standard_deviation_far_off_is_refused():
     for factor in (0.4, 2.5):
-        assert not yardstick("std", OURS, factor * statistic("std", OURS), 30, None, generator("far"))[1]
-    assert yardstick("std", np.full(30, 5.0), 0.0, 30, None, generator("same")) == (0.5, True)
+        assert not predictive_quantile("std", OURS, factor * statistic("std", OURS), 30, None, generator("far"))[1]
+    assert predictive_quantile("std", np.full(30, 5.0), 0.0, 30, None, generator("same")) == (0.5, True)
 
 
 @pytest.mark.parametrize(
@@ -250,11 +252,11 @@ def test_power_is_the_share_of_numbers_beyond_the_ends():
 
 
 def test_no_extreme_lies_beyond_what_is_possible():
-    assert statistics.chance("min", OURS, 60, generator("bound"), (80.0, math.inf))[0] == 80.0
-    assert yardstick("min", OURS, 80.0, 60, None, generator("bound"), (80.0, math.inf))[1]
-    assert not yardstick("min", OURS, 79.99, 60, None, generator("bound"), (80.0, math.inf))[1]
-    assert yardstick("min", OURS, 79.99, 60, None, generator("bound"))[1]
-    assert statistics.chance("max", OURS, 60, generator("bound"), (80.0, 130.0))[1] == 130.0
+    assert statistics.prediction_interval("min", OURS, 60, generator("bound"), (80.0, math.inf))[0] == 80.0
+    assert predictive_quantile("min", OURS, 80.0, 60, None, generator("bound"), (80.0, math.inf))[1]
+    assert not predictive_quantile("min", OURS, 79.99, 60, None, generator("bound"), (80.0, math.inf))[1]
+    assert predictive_quantile("min", OURS, 79.99, 60, None, generator("bound"))[1]
+    assert statistics.prediction_interval("max", OURS, 60, generator("bound"), (80.0, 130.0))[1] == 130.0
 
 
 def test_predicted_mean_has_the_error_of_both_samples():
@@ -264,16 +266,19 @@ def test_predicted_mean_has_the_error_of_both_samples():
     assert drawn.std() == pytest.approx(values.std() * math.sqrt(1 / 20 + 1 / 50), rel=0.08)
 
 
-def test_chance_is_what_the_yardstick_accepts():
+def test_prediction_interval_is_what_the_quantile_accepts():
     """A published number is reproduced where it lies between the ends, and beyond them it is not."""
     values = np.random.default_rng(0).normal(10, 2, 30)
     for name in ("mean", "median", "min"):
-        low, high = statistics.chance(name, values, 10, statistics.generator(name))
+        low, high = statistics.prediction_interval(name, values, 10, statistics.generator(name))
         assert low < statistics.statistic(name, values) < high or name == "min"
         for published, within in ((low + 1e-6, True), (high - 1e-6, True), (low - 0.05, False), (high + 0.05, False)):
             if np.isfinite(published):
-                assert statistics.yardstick(name, values, published, 10, None, statistics.generator(name))[1] == within, (name, published)
-    assert np.isnan(statistics.chance("mean", np.array([]), 10, statistics.generator("empty"))).all()
+                assert statistics.predictive_quantile(name, values, published, 10, None, statistics.generator(name))[1] == within, (
+                    name,
+                    published,
+                )
+    assert np.isnan(statistics.prediction_interval("mean", np.array([]), 10, statistics.generator("empty"))).all()
 
 
 def test_holm_against_a_worked_example():

@@ -179,7 +179,7 @@ def test_rows_do_not_depend_on_the_others():
 def test_columns_of_the_comparison():
     assert ",".join(compare(results()).columns) == (
         "problem,method,metric,statistic,unit,n_published,value_published,n_ours,value_ours,best,mean,median,quartile1,quartile3,"
-        "low95_ours,high95_ours,low95_chance,high95_chance,quantile_published,reproduced,can_fail,power,verdict,possible,"
+        "low95_ours,high95_ours,low95_predicted,high95_predicted,quantile_published,reproduced,can_fail,power,verdict,possible,"
         "share_claimed,share_feasible,bound,gap"
     )
 
@@ -254,7 +254,7 @@ def test_published_minimum_below_the_bound_is_not_reproduced():
 def test_published_minimum_between_the_bound_and_ours_cannot_fail():
     found = least(9.0)
     assert found["reproduced"]
-    assert found["low95_chance"] == 9.0
+    assert found["low95_predicted"] == 9.0
     assert (found["can_fail"], found["verdict"]) == (False, "cannot fail")
 
 
@@ -263,7 +263,7 @@ def test_what_would_accept_another_method_too_is_not_told_apart():
     apart, alike = (compare(results(), plain=f"{ours.median()}"), least(float(ours.min()) + 0.05, fast=float(ours.min()) + 0.06))
     assert (alike["reproduced"], alike["power"], alike["verdict"]) == (True, 0.0, "not told apart")
     found = row(apart, "long", "plain", "length")
-    assert (found["power"], found["verdict"]) == (float(found["low95_chance"] > 10 or found["high95_chance"] < 10), "not told apart")
+    assert (found["power"], found["verdict"]) == (float(found["low95_predicted"] > 10 or found["high95_predicted"] < 10), "not told apart")
 
 
 def test_without_another_method_a_tenth_is_what_matters():
@@ -281,14 +281,14 @@ def test_number_that_the_metric_cannot_have_is_not_possible():
 def test_size_of_the_paper_is_not_cut_to_the_share_that_counts(monkeypatch):
     """A fifth of our runs failed; the paper's ten are ten."""
     sizes = []
-    monkeypatch.setattr(statistics, "yardstick", lambda *given: sizes.append(given[3]) or (0.5, True))
+    monkeypatch.setattr(statistics, "predictive_quantile", lambda *given: sizes.append(given[3]) or (0.5, True))
     least(10.0, n=10)
     assert set(sizes) == {10, None}
 
 
 def test_lengths_that_count_cells_carry_their_own_bound_and_gap():
     ours = results()
-    ours = ours._replace(runs=ours.runs.assign(bound8=11.0, path_curve="", path_points=None))
+    ours = ours._replace(runs=ours.runs.assign(octile_bound=11.0, path_curve="", path_points=None))
     wanted = {"length": "gap", "cells4": "gap4", "cells8": "gap8"}
     values = [{"metric": metric, "statistic": "mean", "label": metric, "decimals": 1} for metric in wanted]
     cells = tables.cells(ours, SPEC | {"values": values, "where": {"problem": "long"}}, ["problem", "method"])
@@ -342,7 +342,7 @@ def test_a_table_of_a_function_is_computed_from_the_published_numbers(tmp_path):
 
 
 def test_a_comparison_shows_published_numbers_with_what_chance_gives(tmp_path):
-    columns = ["metric", "statistic", "n_published", "value_published", "n_ours", "value_ours", "low95_chance", "high95_chance"]
+    columns = ["metric", "statistic", "n_published", "value_published", "n_ours", "value_ours", "low95_predicted", "high95_predicted"]
     first = pd.DataFrame([("plain", "equal", "length", "mean", 10, 2.5, 10, 2.75, 2.12345, 3.5)], columns=["method", "workspace", *columns])
     second = pd.DataFrame([("plain", 3, "length", "mean", 10, 4.5, 10, 4.0, 3.0, 5.0)], columns=["method", "obstacles", *columns])
     rows = pd.concat([first, first.assign(workspace="other"), first.assign(value_published=None), first.assign(metric="rank")])
@@ -356,7 +356,7 @@ def test_a_comparison_shows_published_numbers_with_what_chance_gives(tmp_path):
     assert shown["table"].to_list() == ["table3", "table6"]
     assert shown.columns[:4].to_list() == ["table", "method", "workspace", "obstacles"]
     assert shown["method"].to_list() == ["plain curves"] * 2
-    assert shown["95 % by chance, from"].to_list() == [2.123, 3.0]
+    assert shown["95 % prediction interval, from"].to_list() == [2.123, 3.0]
     assert shown["published"].to_list() == [2.5, 4.5]
 
 

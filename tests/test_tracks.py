@@ -26,7 +26,7 @@ JOB = {
     "settings": SETTINGS | {"chaotic_term": "none", "iterations": 20},
     "problems": {"field": {"workspace": "field"}},
     "vary": {"inertia": [1.0, 0.7]},
-    "levels": {},
+    "presets": {},
     "seeds": "common",
     "repeats": [0, 6],
 }

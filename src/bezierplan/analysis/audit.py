@@ -15,11 +15,11 @@ _SPREADS = ("std", "iqr", "range")
 _PRINTED = ("metric", "statistic", "n", "unit", "value")
 
 
-def below_bound(tables: dict[str, pd.DataFrame], bounds: dict[str, pd.DataFrame], decides: dict[str, dict]) -> list[dict]:
+def below_bound(tables: dict[str, pd.DataFrame], bounds: dict[str, pd.DataFrame], primary: dict[str, dict]) -> list[dict]:
     """Every published length against the exact shortest length of its problem.
 
     tables: published numbers, by table, as from `read_published`. bounds: of the same tables' experiments, a row a problem, its name as
-    index. decides: of a table, column -> the value that is the paper's reading. The allowance is half a unit of the last printed digit.
+    index. primary: of a table, column -> the value that is the paper's reading. The allowance is half a unit of the last printed digit.
 
     A number's problem is the one that its row names, as problem or as workspace; without either the one that is the paper's reading, or the
     only one of the experiment. Numbers of several problems are left out.
@@ -28,7 +28,7 @@ def below_bound(tables: dict[str, pd.DataFrame], bounds: dict[str, pd.DataFrame]
     for name, table in tables.items():
         keys = [column for column in table if column not in (*_PRINTED, "printed")]
         for _, row in table[table["metric"].isin(_AT_LEAST_A_LENGTH) & ~table["statistic"].isin(_SPREADS)].iterrows():
-            bound = bounds[name]["bound"].get(_problem(decides.get(name, {}) | row.to_dict(), bounds[name]), math.nan)
+            bound = bounds[name]["bound"].get(_problem(primary.get(name, {}) | row.to_dict(), bounds[name]), math.nan)
             if math.isnan(bound):
                 continue
             rows.append(

@@ -97,7 +97,7 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
     runs = _measured_runs(check, claim, material)
     if runs.empty:
         raise Untestable("no run is of the conditions that the claim names")
-    column, unit = _cell_column(check), check.get("unit", "repeat")
+    column, unit = _cell_column(check), check.get("replicate", "repeat")
     every, pool = check.get("every", []), check.get("pool", [])
     tables, printed_metric = _published_tables(check, claim, material), check.get("printed_metric", check["metric"])
     keys = ["experiment", *every, *pool, *([column] if column else []), *(key for _, table in tables for key in table if key in runs)]
@@ -245,12 +245,12 @@ def _cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
 def _is_boolean(check: dict, material: Material) -> bool:
     """Is the metric a column of truths, and not averaged over the runs of a unit?"""
     runs = material.results[listed(check["experiment"])[0]].runs
-    return check.get("unit", "repeat") == "repeat" and check["metric"] in runs and pd.api.types.is_bool_dtype(runs[check["metric"]])
+    return check.get("replicate", "repeat") == "repeat" and check["metric"] in runs and pd.api.types.is_bool_dtype(runs[check["metric"]])
 
 
 def _shares_draws(check: dict, material: Material) -> bool:
     """Do units of the same number share a drawn workspace or a start?"""
-    return "unit" in check or all(material.paired.get(name, False) for name in listed(check["experiment"]))
+    return "replicate" in check or all(material.paired.get(name, False) for name in listed(check["experiment"]))
 
 
 def _note(check: dict, rows: pd.DataFrame, column: str | None, cells: list) -> str:

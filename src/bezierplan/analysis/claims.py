@@ -33,14 +33,14 @@ Columns of claims.csv, one row a claim and variant:
 | --- | --- |
 | study, id, place, statement | of the claim |
 | variant | values that take the place of the deciding ones; of the deciding row, those themselves |
-| decides | is this the deciding variant? |
+| primary | is this the deciding variant? |
 | finding | is it our own finding, and no sentence of the paper? |
 | verdict | as above |
 | holds | how many comparisons of the deciding checks are + |
 | where_it_holds | which of them are + in the family, in words; if none is, where the contrary holds; empty where all or none do |
 | published | how many of them hold in the printed numbers, by value alone, of those that are printed |
 | effect ... p_family | of the comparison that decides: the worst -, else that with the largest p; the columns as below |
-| chance | share of experiments of the paper's size, drawn from our runs, in which the claim holds by values alone |
+| replication_probability | share of experiments of the paper's size, drawn from our runs, in which the claim holds by values alone |
 | size | our effect beside the printed one: alike (that lies in our interval), smaller, larger, opposite |
 | artefact | what shows it |
 | timed | judged on CPU times, which differ from machine to machine |
@@ -52,7 +52,7 @@ Columns of claim_checks.csv, one row a comparison:
 | --- | --- |
 | study, id, variant, timed | as above |
 | check | number of the check within the claim, from 1 |
-| decides | false for checks that are only reported |
+| primary | false for checks that are only reported |
 | test, metric, statistic, unit | of the check; unit of the metric |
 | condition, comparison | where, and what is compared |
 | mark, mark_family | by itself; in the family, empty for reported checks |
@@ -82,12 +82,12 @@ from bezierplan.analysis.results import Results
 from bezierplan.study.checked import Fault, closest
 
 CLAIM_COLUMNS = [
-    *("study", "id", "variant", "decides", "finding", "place", "statement", "verdict", "holds", "where_it_holds", "published"),
+    *("study", "id", "variant", "primary", "finding", "place", "statement", "verdict", "holds", "where_it_holds", "published"),
     *("effect", "effect_size_name", "effect_size", "low95", "high95", "n", "counted", "p", "p_family"),
-    *("chance", "size", "artefact", "timed", "reason"),
+    *("replication_probability", "size", "artefact", "timed", "reason"),
 ]
 CHECK_COLUMNS = [
-    *("study", "id", "variant", "check", "decides", "test", "metric", "statistic", "unit", "condition", "comparison"),
+    *("study", "id", "variant", "check", "primary", "test", "metric", "statistic", "unit", "condition", "comparison"),
     *("mark", "mark_family", "effect", "effect_size_name", "effect_size", "low95", "high95", "n", "counted", "p", "p_family"),
     *("margin", "least_detectable"),
     *("rho", "r_squared", "effect_published", "published", "timed", "reason"),
@@ -99,11 +99,11 @@ Function = Callable[[dict, dict[str, Results], dict[str, pd.DataFrame]], Answer]
 
 
 class _Judged(NamedTuple):
-    """One comparison; `comparison` is None where no runs are compared. decides: False for a reported check."""
+    """One comparison; `comparison` is None where no runs are compared. primary: False for a reported check."""
 
     number: int
     check: dict
-    decides: bool
+    primary: bool
     condition: str
     name: str
     comparison: Comparison | None
@@ -138,7 +138,7 @@ def judge(
         first, *_ = assignments = variants(claim)
         for assignment in assignments:
             row, details = _judge_variant(claim, first, assignment, study, material, functions)
-            claim_rows.append(row | {"decides": assignment is first})
+            claim_rows.append(row | {"primary": assignment is first})
             check_rows += details
     return pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype({"n": "Int64"}), pd.DataFrame(check_rows, columns=CHECK_COLUMNS)
 
@@ -202,7 +202,7 @@ def with_work(check: dict) -> list[dict]:
     if "work" not in check:
         return [check]
     seconds = {key: value for key, value in check.items() if key != "work"}
-    return [seconds | {"metric": check["work"], "printed_metric": check["metric"]}, seconds | {"report": True}]
+    return [seconds | {"metric": check["work"], "printed_metric": check["metric"]}, seconds | {"secondary": True}]
 
 
 def _judge_variant(
@@ -221,19 +221,19 @@ def _judge_variant(
         "variant": variant,
         "artefact": ", ".join(listed(claim.get("artefact", []))),
         "finding": claim.get("finding", False),
-        "timed": any(_is_timed(check) for check in checks if "report" not in check and "work" not in check),
+        "timed": any(_is_timed(check) for check in checks if "secondary" not in check and "work" not in check),
     }
     judged, obstacle = [], ""
     for number, check in [(number, each) for number, given in enumerate(checks, start=1) for each in with_work(given)]:
         try:
             judged += _findings(number, check, claim, name, material, functions)
         except Untestable as reason:
-            if "report" in check:
+            if "secondary" in check:
                 judged.append(_Judged(number, check, False, "", "", None, Finding(reason=str(reason))))
             else:
                 obstacle = obstacle or str(reason)
     judged = _marked(judged)
-    deciding = [each for each in judged if each.decides]
+    deciding = [each for each in judged if each.primary]
     rows = [_check_row(each, material) | {key: described[key] for key in ("study", "id", "variant")} for each in judged]
     if obstacle:
         return described | {"verdict": "untestable", "published": _published(deciding), "reason": obstacle}, rows
@@ -253,7 +253,7 @@ def _judge_variant(
         "high95": finding.high,
         "counted": shown.comparison.counted if shown.comparison else "",
         "p_family": shown.p_family,
-        "chance": _chance(deciding, holds, f"{name}/chance"),
+        "replication_probability": _replication_probability(deciding, holds, f"{name}/replication"),
         "size": _size(shown),
         "reason": "; ".join(filter(None, [_reason(shown), _disagreement(judged), claim.get("note", "")])),
     }
@@ -262,19 +262,19 @@ def _judge_variant(
 
 def _findings(number: int, check: dict, claim: dict, name: str, material: Material, functions: dict[str, Function]) -> list[_Judged]:
     """The comparisons of one check with what they found. Raises Untestable."""
-    decides = "report" not in check
+    primary = "secondary" not in check
     if check["test"] == "published_arithmetic":
         computed = claim_published.arithmetic(check, material.published)
         if empty := [finding.reason for _, finding in computed if finding.mark == "?"]:
             raise Untestable(empty[0])
-        return [_Judged(number, check, decides, condition, check["form"], None, finding) for condition, finding in computed]
+        return [_Judged(number, check, primary, condition, check["form"], None, finding) for condition, finding in computed]
     if check["test"] == "function":
-        return [_Judged(number, check, decides, "", check["name"], None, _asked(check, claim, material, functions))]
+        return [_Judged(number, check, primary, "", check["name"], None, _asked(check, claim, material, functions))]
     if _is_timed(check) and check.get("scale") != "relative":
         raise Untestable("absolute seconds say nothing about another machine")
     return [
         _Judged(
-            *(number, check, decides, comparison.place, comparison.name, comparison),
+            *(number, check, primary, comparison.place, comparison.name, comparison),
             claim_tests.TESTS[check["test"]](check, comparison, f"{name}/{number}/{comparison.name}"),
         )
         for comparison in claim_comparisons.comparisons(check, claim, material)
@@ -295,12 +295,12 @@ def _asked(check: dict, claim: dict, material: Material, functions: dict[str, Fu
 
 def _marked(judged: list[_Judged]) -> list[_Judged]:
     """The comparisons with their marks, the deciding ones also with those of the family."""
-    tested = [number for number, each in enumerate(judged) if each.decides and not math.isnan(each.finding.p)]
+    tested = [number for number, each in enumerate(judged) if each.primary and not math.isnan(each.finding.p)]
     corrected = dict(zip(tested, claim_verdicts.family(np.array([judged[number].finding.p for number in tested]))))
     marked = []
     for number, each in enumerate(judged):
         p_family = corrected.get(number, math.nan)
-        together = claim_verdicts.mark(each.finding, p_family) if each.decides else ""
+        together = claim_verdicts.mark(each.finding, p_family) if each.primary else ""
         marked.append(each._replace(mark=claim_verdicts.mark(each.finding, each.finding.p), mark_family=together, p_family=p_family))
     return marked
 
@@ -329,8 +329,8 @@ def _group_in_words(check: dict, group: Any) -> Any:
 
 def _disagreement(judged: list[_Judged]) -> str:
     """Says so where seconds and counted work do not agree, one of which decides and the other is reported."""
-    others = {(each.condition, each.name, _is_timed(each.check)): each.mark for each in judged if not each.decides}
-    deciding = [each for each in judged if each.decides]
+    others = {(each.condition, each.name, _is_timed(each.check)): each.mark for each in judged if not each.primary}
+    deciding = [each for each in judged if each.primary]
     pairs = [(each, others.get((each.condition, each.name, not _is_timed(each.check)))) for each in deciding]
     pairs = [(each, other) for each, other in pairs if other is not None and (_is_timed(each.check) or "printed_metric" in each.check)]
     differing = sum(each.mark != other for each, other in pairs)
@@ -377,7 +377,7 @@ def _published(deciding: list[_Judged]) -> str:
     return f"{sum(held)} of {len(held)}" if held else "not printed"
 
 
-def _chance(deciding: list[_Judged], holds: str, name: str) -> float:
+def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> float:
     """Share of experiments of the paper's size, drawn from our runs, in which the claim holds by point values.
 
     Not a number where some comparison is not one of all runs of its cells, where a cell is empty, or the paper's size is unknown.
@@ -430,7 +430,7 @@ def _check_row(each: _Judged, material: Material) -> dict:
     fields = ("effect", "effect_size_name", "effect_size", "n", "p", "margin", "least_detectable", "rho", "r_squared")
     return {
         "check": each.number,
-        "decides": each.decides,
+        "primary": each.primary,
         "test": check["test"],
         "metric": check.get("metric", ""),
         "statistic": check.get("statistic", "rank") if check["test"] in ("lower", "ordered", "trend", "equal_within") else "",

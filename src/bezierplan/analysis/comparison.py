@@ -14,8 +14,8 @@ One row for each group of runs, metric and statistic; an empty cell means that t
 | value_ours | the statistic of these runs |
 | best, mean, median, quartile1, quartile3 | of the same runs; best is the lowest |
 | low95_ours, high95_ours | 95 % bootstrap interval of value_ours; empty below two runs, and for min, max and range |
-| low95_chance, high95_chance | central 95 % of what experiments of n_published runs may print, as far as ours tell (`statistics.chance`) |
-| quantile_published | quantile of the published number in experiments of n_published runs (`yardstick`); in our runs if that is empty |
+| low95_predicted, high95_predicted | central 95 % of what experiments of n_published runs may print: their prediction interval |
+| quantile_published | quantile of the published number in experiments of n_published runs; in our runs if that is empty |
 | reproduced | is that within the central 95 %? Ours are rounded like the printed one, ties count; empty for times, and below six runs |
 | can_fail | could a number on the published one's side of ours have been refused (`statistics.can_fail`)? |
 | power | share of the numbers that matter (`_rivals`) that would have been refused in the place of the published one |
@@ -45,7 +45,7 @@ MATTERS = 0.1
 _COLUMNS = [
     *("metric", "statistic", "unit", "n_published", "value_published", "n_ours", "value_ours"),
     *("best", "mean", "median", "quartile1", "quartile3", "low95_ours", "high95_ours"),
-    *("low95_chance", "high95_chance", "quantile_published", "reproduced", "can_fail", "power", "verdict", "possible"),
+    *("low95_predicted", "high95_predicted", "quantile_published", "reproduced", "can_fail", "power", "verdict", "possible"),
     *("share_claimed", "share_feasible", "bound", "gap"),
 ]
 
@@ -64,17 +64,17 @@ def as_read(published: pd.DataFrame, spec: dict) -> pd.DataFrame:
 
 
 def compare(
-    results: Results, spec: dict, published: pd.DataFrame, variant_of: dict[str, str], controls: list[str], name: str
+    results: Results, spec: dict, published: pd.DataFrame, variant_of: dict[str, str], baselines: list[str], name: str
 ) -> pd.DataFrame:
     """The published numbers of a table beside ours, in the order of the table; the columns are described above.
 
     spec: as for `tables.pivot`. published: as from `read_published`. variant_of: method -> the method whose published numbers it is
-    compared with. controls: methods without a published number. Variants of the table's methods and controls get rows, whether or not
+    compared with. baselines: methods without a published number. Variants of the table's methods and baselines get rows, whether or not
     the table shows them. name: `study/table`, from which each row's random draws follow.
     """
     given = published.columns[: published.columns.get_loc("metric")].to_list()
     keys = given + [key for key in tables.keys(spec) if key not in given]
-    spec = _with_variants(spec, variant_of, controls) if "method" in keys else spec
+    spec = _with_variants(spec, variant_of, baselines) if "method" in keys else spec
     both = _side_by_side(tables.cells(results, spec, keys), published, given, variant_of)
     order = tables.in_order(both, spec, list(results.problems)).sort_values([*keys, "value", "metric", "statistic"]).index
     both = both.loc[order].reset_index(drop=True)
@@ -103,14 +103,14 @@ def _side_by_side(ours: pd.DataFrame, published: pd.DataFrame, given: list[str],
     return both.assign(statistic=[printed.get(quantity, quantity[1]) for quantity in zip(both["metric"], both["statistic"])])
 
 
-def _with_variants(spec: dict, variant_of: dict[str, str], controls: list[str]) -> dict:
-    """The table's description with the variants of its methods and the controls selected as well, behind them."""
+def _with_variants(spec: dict, variant_of: dict[str, str], baselines: list[str]) -> dict:
+    """The table's description with the variants of its methods and the baselines selected as well, behind them."""
     where = spec.get("where", {})
     if "method" not in where:
         return spec
     methods = where["method"] if isinstance(where["method"], list) else [where["method"]]
     variants = [variant for variant, method in variant_of.items() if method in methods and variant not in methods]
-    beside = variants + [control for control in controls if control not in methods]
+    beside = variants + [baseline for baseline in baselines if baseline not in methods]
     return spec | {"where": where | {"method": methods + beside}, "beside": beside}
 
 
@@ -137,15 +137,15 @@ def _described(row: pd.Series, keys: list[str], name: str, rivals: np.ndarray) -
     # The paper's own number of runs, whatever share of ours failed.
     size = None if pd.isna(row["n_published"]) else int(row["n_published"])
     published, single = row["value_published"], (row["least"], row["most"])
-    quantile, reproduced = statistics.yardstick(
-        statistic, numbers, published, size, row["decimals"], statistics.generator(f"{row_name}/yardstick"), single
+    quantile, reproduced = statistics.predictive_quantile(
+        statistic, numbers, published, size, row["decimals"], statistics.generator(f"{row_name}/prediction"), single
     )
     if row["unit"] == "s":
         # Seconds of another machine are shown, not judged.
         reproduced = None
-    chance = (math.nan, math.nan)
+    predicted = (math.nan, math.nan)
     if not pd.isna(published):
-        chance = statistics.chance(statistic, numbers, size, statistics.generator(f"{row_name}/yardstick"), single)
+        predicted = statistics.prediction_interval(statistic, numbers, size, statistics.generator(f"{row_name}/prediction"), single)
     return {
         "n_ours": len(numbers),
         "value_ours": statistics.statistic(statistic, numbers),
@@ -153,16 +153,16 @@ def _described(row: pd.Series, keys: list[str], name: str, rivals: np.ndarray) -
         **{each: statistics.statistic(each, numbers) for each in ("mean", "median", "quartile1", "quartile3")},
         "low95_ours": low,
         "high95_ours": high,
-        "low95_chance": chance[0],
-        "high95_chance": chance[1],
+        "low95_predicted": predicted[0],
+        "high95_predicted": predicted[1],
         "quantile_published": quantile,
         "reproduced": reproduced,
-        **_judged(row, reproduced, statistics.statistic(statistic, numbers), chance, size, rivals),
+        **_judged(row, reproduced, statistics.statistic(statistic, numbers), predicted, size, rivals),
     }
 
 
 def _judged(
-    row: pd.Series, reproduced: bool | None, ours: float, chance: tuple[float, float], size: int | None, rivals: np.ndarray
+    row: pd.Series, reproduced: bool | None, ours: float, predicted: tuple[float, float], size: int | None, rivals: np.ndarray
 ) -> dict[str, Any]:
     """Whether the test of one row could have failed, what it tells apart, and its verdict; empty where it is not judged."""
     published = row["value_published"]
@@ -175,8 +175,8 @@ def _judged(
     judged = {"possible": bool(on_any_map and published <= possible[1] + half)}
     if reproduced is None:
         return judged | {"can_fail": None}
-    ends = (chance[0] - half, chance[1] + half)
-    can_fail = not reproduced or statistics.can_fail(published, ours, chance, possible)
+    ends = (predicted[0] - half, predicted[1] + half)
+    can_fail = not reproduced or statistics.can_fail(published, ours, predicted, possible)
     power = statistics.told_apart(rivals if len(rivals) else ours * np.array([1 - MATTERS, 1 + MATTERS]), ends)
     if not reproduced:
         verdict = "not reproduced"

@@ -42,7 +42,7 @@ class Metric(NamedTuple):
 
     feasible_only: taken over the runs whose path the certified checker accepts, otherwise over all runs.
     compute: (runs, problems) -> one number a run (n,), where runs is a table of at least one run; None for a column of the runs table.
-    among_rows: it compares the methods of a table with each other, so variants and controls beside the table have none.
+    among_rows: it compares the methods of a table with each other, so variants and baselines beside the table have none.
     least: the least value that a run can have, or the column of the runs table that holds it. most: the largest.
     bound, gap: the column with the bound of its kind of length, and the metric that is the gap to it.
     """
@@ -366,7 +366,7 @@ def _cell_length(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) ->
     from bezierplan.geometry import cell_length
 
     lengths = _of_path_on_grid(getattr(cell_length, name), runs, problems)
-    for run, length, bound in zip(runs["id"], lengths, runs["bound8"]):
+    for run, length, bound in zip(runs["id"], lengths, runs["octile_bound"]):
         if length < bound * (1 - 1e-12):
             raise ValueError(f"run {run} is said to be feasible, but its length {length:.12g} in cells lies below the bound {bound:.12g}")
     return lengths
@@ -388,12 +388,12 @@ def _straight_blocked(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Se
 
 def _gap_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
     """A length that counts cells over the least one of the problem, minus 1 (n,)."""
-    return _cell_length(name, runs, problems) / runs["bound8"] - 1
+    return _cell_length(name, runs, problems) / runs["octile_bound"] - 1
 
 
 # Lengths that count cells have a bound and a gap of their own.
-_CELLS4 = {"bound": "bound8", "gap": "gap4"}
-_CELLS8 = {"bound": "bound8", "gap": "gap8"}
+_CELLS4 = {"bound": "octile_bound", "gap": "gap4"}
+_CELLS8 = {"bound": "octile_bound", "gap": "gap8"}
 
 METRICS: dict[str, Metric] = {
     "objective": Metric("u", "the planner's own final value, in its own rule", False),
@@ -462,16 +462,16 @@ METRICS: dict[str, Metric] = {
     "gap_reference": Metric("-", "length / length of the best known path of the same kind - 1", True, _gap_reference),
     "excess_reference": Metric("u", "length - length of the best known path of the same kind", True, _excess_reference),
     "cells4": Metric(
-        "u", "cells that the path touches, 1.5 for a diagonal step", True, partial(_cell_length, "length4"), least="bound8", **_CELLS4
+        "u", "cells that the path touches, 1.5 for a diagonal step", True, partial(_cell_length, "length4"), least="octile_bound", **_CELLS4
     ),
     "cells8": Metric(
-        "u", "the same without the corners of the sequence of cells", True, partial(_cell_length, "length8"), least="bound8", **_CELLS8
+        "u", "cells4 without the corners of the sequence of cells", True, partial(_cell_length, "length8"), least="octile_bound", **_CELLS8
     ),
-    "bound8": Metric("u", "least length of a path of free cells, 1.5 for a diagonal step", False),
+    "octile_bound": Metric("u", "least length of a path of free cells, 1.5 for a diagonal step", False),
     "homotopy": Metric("-", "class of the path: the sum of 2^k over the circles k that it leaves to its left", True, _homotopy),
     "best_corridor": Metric("-", "whether the path is free and passes each circle where the shortest one does", False, _best_corridor),
-    "gap4": Metric("-", "cells4 / bound8 - 1", True, partial(_gap_cells, "length4"), least=0.0, **_CELLS4),
-    "gap8": Metric("-", "cells8 / bound8 - 1", True, partial(_gap_cells, "length8"), least=0.0, **_CELLS8),
+    "gap4": Metric("-", "cells4 / octile_bound - 1", True, partial(_gap_cells, "length4"), least=0.0, **_CELLS4),
+    "gap8": Metric("-", "cells8 / octile_bound - 1", True, partial(_gap_cells, "length8"), least=0.0, **_CELLS8),
     "straight_blocked": Metric("-", "whether the straight line from start to target touches an occupied cell", False, _straight_blocked),
     "history_mean": Metric("u", "mean over the generations of the best objective so far", False, _history_mean),
     "deviation": Metric("-", "absolute deviation of the length from the median of its condition and method, relative", True, _deviation),

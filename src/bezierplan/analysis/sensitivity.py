@@ -15,7 +15,7 @@ def sensitivity(claims: pd.DataFrame, alternatives: dict[str, pd.DataFrame], des
     claims: claims of the study with all values in force. alternatives: by name, claims with that alternative. described: by name, the
     columns study, assumption, detail, setting, default, alternative.
     """
-    deciding = claims[claims["decides"]].set_index("id")
+    deciding = claims[claims["primary"]].set_index("id")
     rows = []
     for name, judged in alternatives.items():
         for tried in judged.itertuples():

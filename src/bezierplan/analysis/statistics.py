@@ -1,4 +1,4 @@
-"""Named statistics, bootstrap intervals, and the yardstick for a published number.
+"""Named statistics, bootstrap intervals, and the prediction interval for a published number.
 
 Resampling is plain numpy: `scipy.stats.bootstrap` does the same draws, and its import alone takes longer than the tables of a paper.
 """
@@ -172,7 +172,7 @@ def predicted(name: str, values: np.ndarray, size: int, rng: np.random.Generator
     return drawn
 
 
-def yardstick(
+def predictive_quantile(
     name: str,
     values: np.ndarray,
     published: float,
@@ -200,14 +200,14 @@ def yardstick(
     return float((below + 1 - above) / 2), reproduced
 
 
-def chance(
+def prediction_interval(
     name: str,
     values: np.ndarray,
     size: int | None,
     rng: np.random.Generator,
     possible: tuple[float, float] = (-math.inf, math.inf),
 ) -> tuple[float, float]:
-    """Ends of the central 95 % among which `yardstick` wants a published number, with the same random draws; not numbers without values.
+    """Ends of the central 95 % in which `predictive_quantile` wants a published number, from the same random draws; nan without values.
 
     Where our values (n,) do not tell how far the least or the largest of `size` others may lie, an end is the least or the largest value
     that is possible, or infinite.

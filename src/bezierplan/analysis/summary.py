@@ -14,30 +14,30 @@ def numbers(
     """Every row of comparisons that has a published number.
 
     comparisons: (study, table) -> `comparison.compare`. variants: study -> its methods that are another reading of a published one.
-    deciding: (study, table) -> column -> the value whose rows are the paper's reading. Columns: study, table, decides (the row is no other
+    deciding: (study, table) -> column -> the value whose rows are the paper's reading. Columns: study, table, primary (the row is no other
     reading), counted (it decides, can be judged, and says something new: `_counted`), then those of the comparisons, key columns first.
     """
     frames = []
     for (study, table), frame in comparisons.items():
         printed = frame[frame["value_published"].notna()]
-        decides = pd.Series(True, index=printed.index)
+        primary = pd.Series(True, index=printed.index)
         if "method" in printed:
-            decides &= ~printed["method"].isin(variants[study])
+            primary &= ~printed["method"].isin(variants[study])
         for column, value in (deciding or {}).get((study, table), {}).items():
-            decides &= printed[column] == value
-        frames.append(printed.assign(study=study, table=table, decides=decides))
+            primary &= printed[column] == value
+        frames.append(printed.assign(study=study, table=table, primary=primary))
     everything = pd.concat(frames, ignore_index=True)
-    last = list(everything.columns[everything.columns.get_loc("metric") :].drop(["study", "table", "decides"], errors="ignore"))
-    keys = [column for column in everything.columns if column not in last and column not in ("study", "table", "decides")]
+    last = list(everything.columns[everything.columns.get_loc("metric") :].drop(["study", "table", "primary"], errors="ignore"))
+    keys = [column for column in everything.columns if column not in last and column not in ("study", "table", "primary")]
     everything = everything.assign(counted=_counted(everything, keys))
-    return everything[["study", "table", "decides", "counted", *keys, *last]]
+    return everything[["study", "table", "primary", "counted", *keys, *last]]
 
 
 def _counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
     """Which rows (n,) stand in the denominator: those that decide and are judged, but for numbers that cannot be, repeats of a number in
     another table, and the last of counts that add up to the number of runs.
     """
-    counted = (numbers["decides"] & numbers["reproduced"].notna() & numbers["possible"].astype("boolean").fillna(True)).to_numpy(dtype=bool)
+    counted = (numbers["primary"] & numbers["reproduced"].notna() & numbers["possible"].astype("boolean").fillna(True)).to_numpy(dtype=bool)
     same = ["study", "metric", "statistic", "value_published", *({"method"} & set(keys))]
     for _, rows in numbers[counted].groupby(same, dropna=False, sort=False):
         for n, (index, row) in enumerate(rows.iterrows()):
@@ -63,7 +63,7 @@ def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
     numbers: as from `numbers`. claims: as from `claims.judge`. Of readings and variants only those count that decide.
     """
     judged = numbers[numbers["counted"]]
-    deciding = claims[claims["decides"] & ~claims["finding"].astype(bool)]
+    deciding = claims[claims["primary"] & ~claims["finding"].astype(bool)]
     verdicts = pd.crosstab(deciding["study"], deciding["verdict"]).reindex(columns=VERDICTS, fill_value=0)
     counts = pd.crosstab(judged["study"], judged["verdict"]).reindex(columns=NUMBERS, fill_value=0)
     counts.insert(0, "numbers", counts.sum(axis=1))
@@ -90,7 +90,7 @@ def report(numbers: pd.DataFrame, claims: pd.DataFrame, titles: dict[str, str], 
         markdown(outcome(numbers, claims)),
     ]
     for study, title in titles.items():
-        own = claims[(claims["study"] == study) & claims["decides"]].set_index("id")
+        own = claims[(claims["study"] == study) & claims["primary"]].set_index("id")
         found = own["finding"].astype(bool)
         if not own.empty:
             parts += [f"## {title}", _listed(own[~found])]

@@ -72,23 +72,23 @@ def least_length(bound: Bound) -> float:
     return bound.length * (1 - 1e-9) - 1e-8 * float(np.abs(np.diff(heading)).sum())
 
 
-def shortest_path(problem: Problem, squeeze: Literal["open", "closed"] = "open") -> Bound:
+def shortest_path(problem: Problem, corner_cutting: Literal["open", "closed"] = "open") -> Bound:
     """The shortest path from start to target; no path if one of them is blocked.
 
-    squeeze: whether it may pass between two occupied cells that meet only by a corner; matters on grids only.
+    corner_cutting: whether it may pass between two occupied cells that meet only by a corner; matters on grids only.
 
     On a grid the visibility of start and target is decided for the nearest points of a lattice: coordinates that are no fractions of a cell
     with a common denominator of at most 2**20 are off by up to 5e-7 cells there. Lengths are those of the points themselves. Around circles
     the length is a sum of closed forms, and the polyline is up to `POLYLINE_EXCESS` longer.
 
-    Raises ValueError for an unknown squeeze rule, and for the rule `closed` on a grid with more than `MOST_NODES` corners.
+    Raises ValueError for an unknown rule of corner cutting, and for the rule `closed` on a grid with more than `MOST_NODES` corners.
     """
     blocked = region(problem.workspace)
     for point in (problem.start, problem.target):
-        if not check(np.array([[point, point]]), blocked, squeeze).feasible:
+        if not check(np.array([[point, point]]), blocked, corner_cutting).feasible:
             return _no_path()
     if isinstance(blocked, GridRegion):
-        return _shortest_on_grid(problem, blocked, squeeze)
+        return _shortest_on_grid(problem, blocked, corner_cutting)
     if isinstance(blocked, CircleRegion):
         return _shortest_around_circles(problem, blocked)
     return _shortest_among_polygons(problem, blocked)
@@ -257,19 +257,19 @@ def _along(points: np.ndarray, nodes: np.ndarray) -> Bound:
 # Grids: visibility between corners, in whole numbers
 
 
-def _shortest_on_grid(problem: Problem, blocked: GridRegion, squeeze: str) -> Bound:
+def _shortest_on_grid(problem: Problem, blocked: GridRegion, corner_cutting: str) -> Bound:
     """The visibility graph of start, target and the corners at which a shortest path can turn.
 
-    Those are the vertices with exactly one occupied cell around them, and pinches. A pinch that is closed is two nodes, one a free
+    Those are the vertices with exactly one occupied cell around them, and contacts. A contact that is closed is two nodes, one a free
     quadrant, each with directions of its own quadrant only.
     """
     cells = np.ascontiguousarray(blocked.blocked[::2, ::2])
-    corners, slopes, quadrants = _grid_corners(cells, squeeze == "closed")
+    corners, slopes, quadrants = _grid_corners(cells, corner_cutting == "closed")
     ends = from_origin(np.array([problem.start, problem.target], dtype=float), blocked)
     scale = _lattice(ends / blocked.cell, min(_FINEST_LATTICE, _LARGEST_WHOLE // max(cells.shape)))
     lattice = np.concatenate([np.rint(ends / blocked.cell * scale).astype(np.int64), corners * scale])
     slopes = np.concatenate([[0, 0], slopes])
-    if len(lattice) > MOST_NODES and squeeze == "open":
+    if len(lattice) > MOST_NODES and corner_cutting == "open":
         most = _least_over_cells(problem)
         if math.isinf(most):
             return _no_path()
@@ -277,7 +277,7 @@ def _shortest_on_grid(problem: Problem, blocked: GridRegion, squeeze: str) -> Bo
         return _moved(_along(np.concatenate([ends, corners * blocked.cell]), nodes), blocked.origin)
     _refuse_large(len(lattice))
     quadrants = np.concatenate([np.zeros((2, 2), dtype=np.int64), quadrants])
-    visible = _visible_on_grid(lattice, slopes, quadrants, cells, scale, squeeze == "closed")
+    visible = _visible_on_grid(lattice, slopes, quadrants, cells, scale, corner_cutting == "closed")
     return _moved(_shortest_in_graph(np.concatenate([ends, corners * blocked.cell]), visible), blocked.origin)
 
 
@@ -290,7 +290,7 @@ def _grid_corners(cells: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarr
     below_left, below_right, above_left, above_right = around
     single = around.sum(axis=0) == 1
     pair = around.sum(axis=0) == 2
-    # Around a single occupied cell a path turns from one of the two quadrants beside it to the other; at a pinch it stays in the free ones.
+    # Around a single occupied cell a path turns from one of the two quadrants beside it to the other; at a contact it stays in free ones.
     rising = (single & (below_right | above_left)) | (pair & below_right & above_left)
     falling = (single & (below_left | above_right)) | (pair & below_left & above_right)
     row, column = np.nonzero(rising | falling)
@@ -298,12 +298,12 @@ def _grid_corners(cells: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarr
     slopes = np.where(rising[row, column], 1, -1)
     quadrants = np.zeros_like(corners)
     if closed:
-        pinch = pair[row, column]
-        twice = np.repeat(np.arange(len(corners)), np.where(pinch, 2, 1))
-        corners, slopes, pinch = corners[twice], slopes[twice], pinch[twice]
+        contact = pair[row, column]
+        twice = np.repeat(np.arange(len(corners)), np.where(contact, 2, 1))
+        corners, slopes, contact = corners[twice], slopes[twice], contact[twice]
         first = np.concatenate([[True], twice[1:] != twice[:-1]])[: len(twice)]
         side = np.where(first, 1, -1)
-        quadrants = np.where(pinch[:, None], np.column_stack([side, side * slopes]), 0)
+        quadrants = np.where(contact[:, None], np.column_stack([side, side * slopes]), 0)
     return corners, slopes, quadrants
 
 
@@ -333,7 +333,7 @@ def _visible_on_grid(
             if not (_in_quadrant(dx, dy, quadrants[i]) and _in_quadrant(-dx, -dy, quadrants[j])):
                 continue
             if dx == 0 and dy == 0:
-                # The two nodes of a closed pinch lie in one place and do not see each other.
+                # The two nodes of a closed contact lie in one place and do not see each other.
                 visible[i, j] = quadrants[i, 0] == 0 or quadrants[j, 0] == 0
             else:
                 visible[i, j] = _sees(nodes[i], nodes[j], cells, scale, closed)
@@ -421,13 +421,13 @@ def _sees_along_column(x: int, low: int, length: int, cells: np.ndarray, scale: 
     for row in range(low // scale, (low + length - 1) // scale + 1):
         if cells[row + 1, column + 1] and (not on_line or cells[row + 1, column]):
             return False
-        if closed and on_line and row * scale > low and _is_pinch(cells, row, column):
+        if closed and on_line and row * scale > low and _is_contact(cells, row, column):
             return False
     return True
 
 
 @njit(cache=True)
-def _is_pinch(cells: np.ndarray, row: int, column: int) -> bool:
+def _is_contact(cells: np.ndarray, row: int, column: int) -> bool:
     """Whether two occupied cells meet only by a corner in a vertex, given by its grid lines."""
     below_left, below_right = cells[row, column], cells[row, column + 1]
     above_left, above_right = cells[row + 1, column], cells[row + 1, column + 1]

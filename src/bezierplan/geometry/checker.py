@@ -48,8 +48,8 @@ _WIDEST_RANGE = 12
 # An edge that keeps this distance from a hull cannot be passed within the tolerance of its ends, so it cannot matter to the hull.
 _APART = 4 * TOLERANCE
 
-# Radius of the disc around a pinch in which the rule `closed` looks where a path comes from and goes to, in cells.
-_PINCH_RADIUS = 1e-6
+# Radius of the disc around a contact in which the rule `closed` looks where a path comes from and goes to, in cells.
+_CONTACT_RADIUS = 1e-6
 
 _LARGEST_DEGREE = 60
 # Halving adds up as many roundings as the degree. Above this degree coordinates have to be smaller, so that their sum grows no further.
@@ -61,7 +61,7 @@ class Check(NamedTuple):
     """The verdict on a path.
 
     feasible: it does not enter the blocked region. collision_at: number of the piece plus parameter in it of the first collision; nan when
-    free. depth: largest depth in the blocked region, in units; 0 when free, and for a squeeze through a closed pinch. Depth is the distance
+    free. depth: largest depth in the blocked region, in units; 0 when free, and where a path cuts a closed corner. Depth is the distance
     to free space; where discs overlap or reach over the border it is the largest of their depths, a lower bound. clearance: least distance
     to the blocked region, in units; 0 when colliding. tolerance: proven error, in units, of `clearance` when free, of `depth` when
     colliding. intervals: how many parameter intervals the verdict needed.
@@ -75,28 +75,28 @@ class Check(NamedTuple):
     intervals: int
 
 
-def check(pieces: np.ndarray, region: Region, squeeze: Literal["open", "closed"] = "open") -> Check:
+def check(pieces: np.ndarray, region: Region, corner_cutting: Literal["open", "closed"] = "open") -> Check:
     """Check a path of Bezier pieces (pieces, degree + 1, 2), in the region's unit, each beginning where the last one ends.
 
-    squeeze: whether a path may pass between two occupied cells that meet only by a corner; touching the corner is always allowed. It
+    corner_cutting: whether a path may pass between two occupied cells that meet only by a corner; touching the corner is always allowed. It
     matters on grids only.
 
     A path deeper than 4e-9 is never called free, one no deeper than 1e-9 never colliding; between them either answer may come. In the tip
     of a notch between polygons that is sharper than 60 degrees, 2e-9 over the sine of half its angle stands for 4e-9.
 
     Raises ValueError for coordinates that are not finite or beyond 1e5, or 1e5 x 32 / degree for a degree above 32; for a degree above 60;
-    and for an unknown squeeze rule.
+    and for an unknown rule of corner cutting.
     """
     pieces = np.ascontiguousarray(pieces, dtype=float)
-    if squeeze not in ("open", "closed"):
-        raise ValueError(f"unknown squeeze rule {squeeze!r}; known: open, closed")
+    if corner_cutting not in ("open", "closed"):
+        raise ValueError(f"unknown rule of corner cutting {corner_cutting!r}; known: open, closed")
     refuse_unfit(pieces)
     pieces = from_origin(pieces, region)
     collision_at, intervals = first_collision(pieces, region)
-    if squeeze == "closed" and isinstance(region, GridRegion):
-        squeezed_at = _first_squeeze(pieces, region.pinches, _PINCH_RADIUS * region.cell)
-        if squeezed_at < collision_at:
-            return Check(False, squeezed_at, 0.0, 0.0, 0.0, intervals)
+    if corner_cutting == "closed" and isinstance(region, GridRegion):
+        cut_at = _first_corner_cut(pieces, region.contacts, _CONTACT_RADIUS * region.cell)
+        if cut_at < collision_at:
+            return Check(False, cut_at, 0.0, 0.0, 0.0, intervals)
     if collision_at < math.inf:
         depth = _largest_depth(pieces, region, collision_at)
         return Check(False, collision_at, depth, 0.0, max(DEPTH_TOLERANCE * depth, _ROUNDING), intervals)
@@ -672,21 +672,21 @@ def _distance_of_segments(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.nda
 
 
 @njit(cache=True)
-def _first_squeeze(pieces: np.ndarray, pinches: np.ndarray, radius: float) -> float:
-    """Piece number plus parameter at which a path first passes a closed pinch, infinite if it never does."""
+def _first_corner_cut(pieces: np.ndarray, contacts: np.ndarray, radius: float) -> float:
+    """Piece number plus parameter at which a path first passes a closed contact of two occupied cells, infinite if it never does."""
     first = math.inf
-    for k in range(len(pinches)):
-        first = min(first, _squeezes_through(pieces, pinches[k, 0], pinches[k, 1], pinches[k, 2], radius))
+    for k in range(len(contacts)):
+        first = min(first, _corner_cut_at(pieces, contacts[k, 0], contacts[k, 1], contacts[k, 2], radius))
     return first
 
 
 @njit(cache=True)
-def _squeezes_through(pieces: np.ndarray, x: float, y: float, slope: float, radius: float) -> float:
-    """Piece number plus parameter at which a path first passes one pinch, infinite if it never does.
+def _corner_cut_at(pieces: np.ndarray, x: float, y: float, slope: float, radius: float) -> float:
+    """Piece number plus parameter at which a path first passes one contact, infinite if it never does.
 
-    Around a pinch a free path stays in the two free quadrants, which meet in the pinch alone. So it passes the pinch if it leaves a small
-    disc around it on another side of the diagonal through the occupied cells than it came in. A path that begins in the disc may leave it
-    on either side.
+    Around a contact a free path stays in the two free quadrants, which meet in the contact alone. So it passes the contact if it leaves a
+    small disc around it on another side of the diagonal through the occupied cells than it came in. A path that begins in the disc may
+    leave it on either side.
     """
     stack = np.empty((_STACK, pieces.shape[1], 2))
     begin = np.empty(_STACK)

@@ -27,7 +27,7 @@ class GridRegion(NamedTuple):
     cell: side of a cell, in units. origin: (2,) x and y of the grid's lower left corner, in units; everything else is measured from it,
     paths as well (`from_origin`). blocked: bool (2 rows + 3, 2 columns + 3), whether all cells that touch an element are occupied.
     counts: (2 rows + 4, 2 columns + 4), prefix sums of `blocked`. edges: (n, 4) boundary of the region as x, y, x, y in units, collinear
-    edges joined. pinches: (m, 3) x and y in units of the inner vertices at which two occupied cells meet only by a corner, and the sign of
+    edges joined. contacts: (m, 3) x and y in units of the inner vertices at which two occupied cells meet only by a corner, and the sign of
     the slope of the diagonal through their two free cells.
     """
 
@@ -36,7 +36,7 @@ class GridRegion(NamedTuple):
     blocked: np.ndarray
     counts: np.ndarray
     edges: np.ndarray
-    pinches: np.ndarray
+    contacts: np.ndarray
 
 
 class CircleRegion(NamedTuple):
@@ -152,8 +152,8 @@ def _grid_region(grid: Grid) -> GridRegion:
     falling = below_left & above_right & ~below_right & ~above_left
     rising = ~below_left & ~above_right & below_right & above_left
     row, column = np.nonzero(rising | falling)
-    pinches = np.column_stack([column * grid.cell, row * grid.cell, np.where(rising[row, column], 1.0, -1.0)])
-    return GridRegion(float(grid.cell), np.array(grid.origin, dtype=float), blocked, counts, edges, pinches)
+    contacts = np.column_stack([column * grid.cell, row * grid.cell, np.where(rising[row, column], 1.0, -1.0)])
+    return GridRegion(float(grid.cell), np.array(grid.origin, dtype=float), blocked, counts, edges, contacts)
 
 
 def _runs(boundary: np.ndarray) -> np.ndarray:

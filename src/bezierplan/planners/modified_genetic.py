@@ -5,7 +5,7 @@ cell, which is never set. It is kept as the ascending list of the genes that are
 whose curve touches an occupied cell is deleted, and a random one drawn in its place (Section 3.2.2). Beside the plain algorithm the paper
 watches the Q statistic of the pool (Section 3.3). In the kernels coordinates and lengths are in cells.
 
-In a maze the algorithm as printed finds no path. So that it can, a first population can come from small road maps, control points can be
+In a maze the algorithm as printed finds no path. So that it can, a first population can come from small roadmaps, control points can be
 joined in the order in which a walk from the start reaches them, and a mutation can shift a control point; none of this is in the paper.
 """
 
@@ -145,7 +145,7 @@ def plan(
     changes by the factor eta_decay from one iteration to the next. gene_lattice: 21 x 21 points, or every cell; gene_order: genes are
     numbered column by column from the left, or row by row from below. point_order: control points are joined in the order of their
     projection on the line from start to target, ties from its left to its right, in the order of the genes, or in that of their distance
-    from the start over free cells (geodesic). first_population: random chromosomes, or the inner nodes of ways along random road maps
+    from the start over free cells (geodesic). first_population: random chromosomes, or the inner nodes of ways along random roadmaps
     (`prm`) of roadmap_nodes and roadmap_neighbours, of which there are at most most_roadmaps; random chromosomes stand in for those that
     are missing. first_points: the most control points of a random chromosome. first_draws: for each of the first population. replacements:
     draws for an invalid child. least_distance: between two control points, in cells. curve: a single Bezier curve, or quadratic pieces that
@@ -189,8 +189,10 @@ def plan(
     most_first = most_roadmaps if first_population == "roadmaps" else 0
     found = search(rng, field, rules, *_from_roadmaps(problem, rng, field, population, most_first, roadmap_nodes, roadmap_neighbours))
     solved = len(found.ones) > 0
+    points = grid.in_units(polygon(found.ones, field))
+    points[[0, -1]] = problem.start, problem.target
     return Plan(
-        path=Path(PATH_KINDS[curve], grid.in_units(polygon(found.ones, field))) if solved else None,
+        path=Path(PATH_KINDS[curve], points) if solved else None,
         objective=found.cost * grid.cell,
         claimed_feasible=solved,
         evaluations=found.evaluations,
@@ -208,7 +210,7 @@ def plan(
 def _from_roadmaps(
     problem: Problem, rng: np.random.Generator, field: Field, wanted: int, most: int, nodes: int, neighbours: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Chromosomes of the inner nodes of ways along road maps, at most as many as wanted, and their numbers of ones; straight ways and those
+    """Chromosomes of the inner nodes of ways along roadmaps, at most as many as wanted, and their numbers of ones; straight ways and those
     of too many nodes left out. The genes are all cells.
     """
     ones, counts = np.zeros((wanted, _ROOM), dtype=np.int64), []

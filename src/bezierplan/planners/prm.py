@@ -1,4 +1,4 @@
-"""Probabilistic road map: random free points, linked where they see each other, and the shortest way along the links.
+"""Probabilistic roadmap: random free points, linked where they see each other, and the shortest way along the links.
 
 The baseline PRM of tharwat2018's Figure 22 (its reference 48) and of elhoseny2017's Tables 2, 3 and 6, which give no parameters. Among
 circles a link is a segment that enters none; on a grid, one that touches no occupied cell.
@@ -37,7 +37,7 @@ def plan(
     neighbours: Annotated[int, Range(1)],
     d_min: Annotated[float, Range(0)],
 ) -> Plan:
-    """Shortest path along a random road map, a polyline; its objective is its length in units, infinite without a path.
+    """Shortest path along a random roadmap, a polyline; its objective is its length in units, infinite without a path.
 
     nodes: random points of the free part of the field, beside start and target. links: a node is linked with every node that it sees, or
     with those that it sees of its nearest `neighbours`. d_min: added to every radius, in units; on a grid it has to be 0.
@@ -54,7 +54,7 @@ def plan(
 def road_map(
     problem: Problem, rng: np.random.Generator, nodes: int, neighbours: int | None, d_min: float = 0.0
 ) -> tuple[float, np.ndarray, int]:
-    """Length and points (n, 2) of the shortest way along a random road map, infinite and none if there is no way, and the number of links.
+    """Length and points (n, 2) of the shortest way along a random roadmap, infinite and none if there is no way, and the number of links.
 
     neighbours: how many of a node's nearest it may be linked with, None for all.
     """
@@ -69,7 +69,7 @@ def road_map(
 
 
 class _Field(NamedTuple):
-    """What the road map asks of a workspace: (2,) corners between which nodes are drawn, and which points and segments (n,) are free."""
+    """What the roadmap asks of a workspace: (2,) corners between which nodes are drawn, and which points and segments (n,) are free."""
 
     low: np.ndarray
     high: np.ndarray

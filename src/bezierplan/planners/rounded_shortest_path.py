@@ -1,4 +1,4 @@
-"""A control: what a practitioner would drive, the exact shortest path with its corners rounded.
+"""A baseline: what a practitioner would drive, the exact shortest path with its corners rounded.
 
 At each obstacle that the shortest path turns round stands a circle of the turning radius, so that the obstacle's corner lies inside it; the
 path is the string pulled tight round these circles, of straight legs and arcs. Corners that are too near to each other for two circles, as

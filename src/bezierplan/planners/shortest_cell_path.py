@@ -1,4 +1,4 @@
-"""A control: the shortest path over free cells, 1 for a straight step and 1.5 for a diagonal one. No length that counts cells falls below
+"""A baseline: the shortest path over free cells, 1 for a straight step and 1.5 for a diagonal one. No length that counts cells falls below
 its own (`cell_length`).
 """
 

@@ -1,4 +1,4 @@
-"""A control: the exact shortest path, which no other planner can beat (`exact.bounds`)."""
+"""A baseline: the exact shortest path, which no other planner can beat (`exact.bounds`)."""
 
 import math
 

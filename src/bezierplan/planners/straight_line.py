@@ -1,4 +1,4 @@
-"""A control: the straight line from start to target, whatever lies between them."""
+"""A baseline: the straight line from start to target, whatever lies between them."""
 
 import math
 

@@ -5,8 +5,8 @@ A job is a mapping with these keys, all of them names and plain values (`study.j
     study, experiment, method    names
     planner, settings            the planner and its settings, by name
     problems                     problem name -> its workspace's name, and if it has them layout, obstacles, and settings that go with it
-    vary                         setting or level -> list of values; every combination of problems and values is a condition
-    levels                       level -> value, as text -> settings that go with it
+    vary                         setting or preset -> list of values; every combination of problems and values is a condition
+    presets                       preset -> value, as text -> settings that go with it
     seeds                        a run's seed comes from its id (`own`), from its id without the method (`shared`), or from study,
                                  experiment, layout and repeat alone (`common`: all methods and conditions share their random numbers)
     time_limit                   seconds after which a run ends its job, compiling included; no limit without this key
@@ -46,7 +46,7 @@ path_curve, path_points: the path, its control points flat as x0, y0, x1, y1, ..
 """
 
 
-JOINED = ("straight_line", "bound", "least_length", "bound_path", "bound8", "cpu_s", "wall_s")
+JOINED = ("straight_line", "bound", "least_length", "bound_path", "octile_bound", "cpu_s", "wall_s")
 """Columns that are joined to a runs table when it is read: of `problems.bounds_of`, and the times."""
 
 TAKEN = frozenset((*RUN_COLUMNS, *PLACE, *JOINED))
@@ -89,12 +89,12 @@ def run_id(job: dict, condition: Condition, repeat: int) -> str:
 
 
 def settings_in(job: dict, condition: Condition) -> dict[str, Any]:
-    """The settings of the job's method under a condition: what goes with its problem is put in, then what is varied. Levels stand for the
+    """The settings of the job's method under a condition: what goes with its problem is put in, then what is varied. Presets stand for the
     settings that go with them; what is varied and is no setting of the planner is left out.
     """
     settings = job["settings"] | job["problems"][condition.problem].get("settings", {})
     for name, value in condition.values.items():
-        settings |= job["levels"][name][str(value).lower()] if name in job["levels"] else {name: value}
+        settings |= job["presets"][name][str(value).lower()] if name in job["presets"] else {name: value}
     accepted = planner_settings(planner_module(job["planner"]))
     return {name: value for name, value in settings.items() if name in accepted}
 

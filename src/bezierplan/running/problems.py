@@ -2,8 +2,8 @@
 
 Columns of a problem file: problem, workspace (its name), start_x, start_y, target_x, target_y (units), drawn (the workspace itself, as
 JSON: `workspaces.files.to_json`). Columns of a file of bounds: problem, straight_line, bound (units; infinite without a free path),
-least_length (what the checker's tolerance leaves of it), bound_path (the shortest path, flat as x0, y0, x1, y1, ...), bound8 (on grids the
-least of all lengths that count cells, `cell_length`, in units; otherwise not a number).
+least_length (what the checker's tolerance leaves of it), bound_path (the shortest path, flat as x0, y0, x1, y1, ...),
+the least of all lengths that count cells, `cell_length`, in units; otherwise not a number).
 """
 
 import math
@@ -160,7 +160,7 @@ def bounds_of(problems: dict[str, Problem]) -> pa.Table:
                 "bound": bound.length,
                 "least_length": bounds.least_length(bound),
                 "bound_path": bound.points.ravel().tolist(),
-                "bound8": _cell_bound(problem),
+                "octile_bound": _cell_bound(problem),
             }
         )
     return pa.Table.from_pylist(rows)

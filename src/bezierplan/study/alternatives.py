@@ -30,8 +30,8 @@ def assumption_of(study: Study, identity: str) -> Assumption:
 
 
 def concerned(study: Study, assumption: Assumption) -> list[str]:
-    """Methods whose setting an assumption governs, controls and variants apart; those that its default names, if it names any."""
-    methods = [name for name, method in study.methods.items() if name not in study.controls and not method.variant_of]
+    """Methods whose setting an assumption governs, baselines and variants apart; those that its default names, if it names any."""
+    methods = [name for name, method in study.methods.items() if name not in study.baselines and not method.variant_of]
     if isinstance(assumption.default, dict):
         methods = [method for method in methods if method in assumption.default]
     return [method for method in methods if assumption.setting in study.resolved(method)]

@@ -67,7 +67,7 @@ class Pivot(Table):
         {},
         description="metric in the published file → the metric that the number is compared with, where the paper leaves open which it is",
     )
-    decides: Where = Field({}, description="column → the value whose rows count as the paper's reading in the summary; left out: all rows")
+    primary: Where = Field({}, description="column → the value whose rows count as the paper's reading in the summary; left out: all rows")
 
 
 class Transcribed(Table):

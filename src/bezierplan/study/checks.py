@@ -74,7 +74,7 @@ def _functions(study: Study) -> list[str]:
 
 def _check_experiments(study: Study, place: str) -> None:
     for name, method in study.methods.items():
-        where = f"{place}: {'controls' if name in study.controls else 'methods'}: {name}"
+        where = f"{place}: {'baselines' if name in study.baselines else 'methods'}: {name}"
         loaded(study, name, where)
         if method.variant_of:
             _known(method.variant_of, study.methods, f"{where}: variant_of")
@@ -98,7 +98,7 @@ def _check_experiments(study: Study, place: str) -> None:
 
 
 def _check_shared_settings(study: Study, used: set[str], place: str) -> None:
-    """Settings of all methods, of a planner's methods, and of levels are settings that a planner has."""
+    """Settings of all methods, of a planner's methods, and of presets are settings that a planner has."""
     for setting in study.settings:
         if setting not in used:
             raise Fault(f"{place}: settings: {setting}: no planner of this study has this setting{closest(setting, used)}")
@@ -108,10 +108,10 @@ def _check_shared_settings(study: Study, used: set[str], place: str) -> None:
             raise Fault(f"{place}: settings: {planner}: no method of this study has this planner{closest(planner, planners)}")
         for setting in settings:
             _known(setting, study.accepted(planners[planner]), f"{place}: settings: {planner}")
-    for level, values in study.levels.items():
+    for preset, values in study.presets.items():
         for value, settings in values.items():
             for setting in settings:
-                _known(setting, used, f"{place}: levels: {level}: {value}")
+                _known(setting, used, f"{place}: presets: {preset}: {value}")
 
 
 def _check_workspace(study: Study, name: str, place: str) -> None:
@@ -164,14 +164,14 @@ def _check_experiment(study: Study, built: Callable[[str], Problem], name: str, 
     for problem in experiment.problems:
         _known(problem, study.problems, f"{place}: problems")
     for method in experiment.methods:
-        if method in study.controls:
-            raise Fault(f"{place}: methods: {method}: a control; it joins by itself")
-        _known(method, study.methods.keys() - study.controls, f"{place}: methods")
+        if method in study.baselines:
+            raise Fault(f"{place}: methods: {method}: a baseline; it joins by itself")
+        _known(method, study.methods.keys() - study.baselines, f"{place}: methods")
     accepted = {setting for method in experiment.methods for setting in study.accepted(method)}
     for setting, values in experiment.vary.items():
-        _known(setting, accepted | set(study.levels), f"{place}: vary")
-        for value in values if setting in study.levels else []:
-            _known(str(value).lower(), study.levels[setting], f"{place}: vary: {setting}")
+        _known(setting, accepted | set(study.presets), f"{place}: vary")
+        for value in values if setting in study.presets else []:
+            _known(str(value).lower(), study.presets[setting], f"{place}: vary: {setting}")
     for method in experiment.methods:
         _check_method_in(study, built, name, method, place)
 
@@ -222,7 +222,7 @@ def _check_names(design: Design, functions: list[str], model: Model, place: str)
         if what in known:
             _known(name, known[what], where)
         elif what == "where" and experiments:
-            design.check_where(experiments, name, where, controls=not isinstance(model, Check))
+            design.check_where(experiments, name, where, baselines=not isinstance(model, Check))
         elif what == "published":
             inside(study.folder, f"published/{name}", f"{where}: {name}")
 
@@ -250,7 +250,7 @@ def _check_claim(design: Design, functions: list[str], claim: Claim, place: str)
         _check_names(design, functions, each, where)
         if not each.experiments or not hasattr(each, "every"):
             continue
-        rows = design.selectable(each.experiments, controls=False)
+        rows = design.selectable(each.experiments, baselines=False)
         values = design.values(each.experiments, each.cells, rows) if each.cells else []
         for group in each.groups_named if values else []:
             if group != "rest" and group not in values:

@@ -71,7 +71,7 @@ class Event(Model):
 
 
 # Descriptions of keys that several kinds of check have.
-REPORT = "true: shown, does not decide; left out otherwise"
+SECONDARY = "true: shown, does not decide; left out otherwise"
 EXPERIMENT = "the name of an experiment, or a list of at least two"
 PAIRED = "whether equal units are compared with each other, true or false; left out: as the experiment is drawn"
 SCALE = "absolute (left out: this), or relative to the value of the other group"
@@ -95,9 +95,9 @@ class Check(Model):
     """A check of any kind: what others ask of it, whether it has the keys or not."""
 
     @property
-    def decides(self) -> bool:
+    def primary(self) -> bool:
         """Does it count for the verdict?"""
-        return not getattr(self, "report", None)
+        return not getattr(self, "secondary", None)
 
     @property
     def experiments(self) -> list[str]:
@@ -124,7 +124,7 @@ class OfRuns(Check):
     metric: Metric = Field(description="the name of a metric")
     where: Where = Field({}, description="column of the runs table → value or list of values: the runs that are judged", min_length=1)
     every: Columns = Field([], description="a list of columns; one comparison for each combination of their values")
-    unit: Column = Field("repeat", description="the column that numbers independent replicates; left out: repeat")
+    replicate: Column = Field("repeat", description="the column that numbers independent replicates; left out: repeat")
 
 
 class Comparing(OfRuns):
@@ -139,7 +139,7 @@ class Lower(Comparing):
     """Groups are lower, or higher, than others."""
 
     test: Literal["lower"] = Field(description="lower")
-    report: Literal[True] = Field(None, description=REPORT)
+    secondary: Literal[True] = Field(None, description=SECONDARY)
     pool: Columns = Field([], description=POOL)
     paired: Flag = Field(None, description=PAIRED)
     groups: Groups = Field(None, description=GROUPS)
@@ -164,7 +164,7 @@ class Ordered(Comparing):
     """Tiers of groups, each lower, or higher, than the next."""
 
     test: Literal["ordered"] = Field(description="ordered")
-    report: Literal[True] = Field(None, description=REPORT)
+    secondary: Literal[True] = Field(None, description=SECONDARY)
     paired: Flag = Field(None, description=PAIRED)
     order: listed(listed(Group), least=2) = Field(description="tiers, the best first: a list of lists of groups")
     direction: Literal["lower", "higher"] = Field(description=SIDE)
@@ -193,7 +193,7 @@ class Share(OfRuns):
     """The share of runs in which something is so."""
 
     test: Literal["share"] = Field(description="share")
-    report: Literal[True] = Field(None, description=REPORT)
+    secondary: Literal[True] = Field(None, description=SECONDARY)
     pool: Columns = Field([], description=POOL)
     event: Event = Field(
         None, description="one of {below: number}, above, at_most, at_least, equals; left out for a metric that is true or false"
@@ -217,7 +217,7 @@ class EqualWithin(Comparing):
     """Two groups differ by no more than the margin."""
 
     test: Literal["equal_within"] = Field(description="equal_within")
-    report: Literal[True] = Field(None, description=REPORT)
+    secondary: Literal[True] = Field(None, description=SECONDARY)
     pool: Columns = Field([], description=POOL)
     groups: Groups = Field(description=GROUPS)
     than: Groups = Field(description=THAN)
@@ -229,7 +229,7 @@ class Difference(Comparing):
     """Groups differ at all."""
 
     test: Literal["difference"] = Field(description="difference")
-    report: Literal[True] = Field(None, description=REPORT)
+    secondary: Literal[True] = Field(None, description=SECONDARY)
     paired: Flag = Field(None, description=PAIRED)
     groups: listed(Group, least=2) = Field(description="a list of at least two values of the column `across`")
 
@@ -241,7 +241,7 @@ class PublishedArithmetic(Check):
     """The paper's own numbers against each other."""
 
     test: Literal["published_arithmetic"] = Field(description="published_arithmetic")
-    report: Literal[True] = Field(None, description=REPORT)
+    secondary: Literal[True] = Field(None, description=SECONDARY)
     form: Literal["difference", "increase_percent", "equal"] = Field(
         description="difference (second less first), increase_percent (of the second over the first) or equal (first alone)"
     )
@@ -304,8 +304,8 @@ class Claim(Model):
 
     @model_validator(mode="after")
     def _check_decides(self) -> "Claim":
-        if not any(check.decides for check in self.checks):
-            raise wrong("checks: every check has report: true; expected one that decides")
+        if not any(check.primary for check in self.checks):
+            raise wrong("checks: every check has secondary: true; expected one that decides")
         return self
 
     @property

@@ -20,17 +20,17 @@ class Study:
     """A study as its files say it: a paper of this project or a reader's own folder of the same form (config/README.md).
 
     key: its name; folder: where it lies; the others: experiments.yaml, artefacts.yaml, claims.yaml and assumptions.yaml. methods:
-    controls as well; controls: their names. settings: of all methods; planner_settings: planner -> settings of its methods alone.
+    baselines as well; baselines: their names. settings: of all methods; planner_settings: planner -> settings of its methods alone.
     """
 
     key: str
     folder: Path
     title: str
     methods: dict[str, Method]
-    controls: frozenset[str]
+    baselines: frozenset[str]
     settings: dict[str, Any]
     planner_settings: dict[str, dict[str, Any]]
-    levels: dict[str, dict[str, dict[str, Any]]]
+    presets: dict[str, dict[str, dict[str, Any]]]
     workspaces: dict[str, Workspace]
     problems: dict[str, Problem]
     experiments: dict[str, Experiment]
@@ -56,14 +56,14 @@ class Study:
         return relative(self.folder / planner) if planner.endswith(".py") else planner
 
     def methods_of(self, experiment: str) -> list[str]:
-        """Methods of an experiment, and behind them the controls that serve all its workspaces."""
+        """Methods of an experiment, and behind them the baselines that serve all its workspaces."""
         content = self.experiments[experiment]
         kinds = {self.kind_of(problem) for problem in content.problems}
-        return content.methods + [name for name in self.methods if name in self.controls and self._serves(name, kinds, content)]
+        return content.methods + [name for name in self.methods if name in self.baselines and self._serves(name, kinds, content)]
 
-    def _serves(self, control: str, kinds: set[str], experiment: Experiment) -> bool:
-        """Whether a control can join: its planner serves these kinds of workspace, and has no setting that the experiment varies."""
-        module = planner_module(self.planner(control))
+    def _serves(self, baseline: str, kinds: set[str], experiment: Experiment) -> bool:
+        """Whether a baseline can join: its planner serves these kinds of workspace, and has no setting that the experiment varies."""
+        module = planner_module(self.planner(baseline))
         varied = set(experiment.vary) & set(planner_settings(module))
         return kinds <= set(getattr(module, "workspaces", kinds)) and not varied
 

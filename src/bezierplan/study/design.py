@@ -53,7 +53,7 @@ class Design:
             {
                 "straight_line",
                 "bound",
-                "bound8",
+                "octile_bound",
                 "study",
                 "experiment",
                 *RUN_COLUMNS,
@@ -63,10 +63,10 @@ class Design:
             }
         )
 
-    def check_where(self, experiments: list[str], where: dict[str, Any], place: str, *, controls: bool = True) -> None:
+    def check_where(self, experiments: list[str], where: dict[str, Any], place: str, *, baselines: bool = True) -> None:
         """A selection names columns, values that runs have, and not a combination that no run has. Raises Fault, beginning with a place."""
         known = frozenset().union(*map(self.columns, experiments))
-        rows = self.selectable(experiments, controls)
+        rows = self.selectable(experiments, baselines)
         for column, wanted in where.items():
             # A condition may also be on an outcome, which some planners alone report.
             if column not in known and column not in METRICS:
@@ -80,10 +80,10 @@ class Design:
                 f"{place}: no run of {', '.join(experiments)} has all of {', '.join(f'{key} {value}' for key, value in where.items())}"
             )
 
-    def selectable(self, experiments: list[str], controls: bool) -> list[Row]:
-        """Rows of experiments; those of controls are no part of claims."""
+    def selectable(self, experiments: list[str], baselines: bool) -> list[Row]:
+        """Rows of experiments; those of baselines are no part of claims."""
         rows = [row for name in experiments for row in self.rows(name)]
-        return [row for row in rows if controls or row["method"] not in self.study.controls]
+        return [row for row in rows if baselines or row["method"] not in self.study.baselines]
 
     def values(self, experiments: list[str], column: str, rows: list[Row]) -> list[Any]:
         """All values that a column has in rows of experiments; none where a design does not hold them."""
@@ -94,15 +94,15 @@ class Design:
         return list({repr(row[column]): row[column] for row in rows if column in row}.values())
 
     def hint(self, value: Any, values: list[Any]) -> str:
-        """`; did you mean ...?` for a value of a column; a control that stands where methods are compared is named as such."""
-        if value in self.study.controls:
-            return f" here: a control; claims compare methods, known: {', '.join(map(str, values))}"
+        """`; did you mean ...?` for a value of a column; a baseline that stands where methods are compared is named as such."""
+        if value in self.study.baselines:
+            return f" here: a baseline; claims compare methods, known: {', '.join(map(str, values))}"
         return closest(value, values)
 
     def check_mixtures(self, check: Check, where: dict[str, Any], place: str) -> None:
         """What a unit of a comparison, told apart by the check's columns, has several of would be mixed. Raises Fault."""
-        keys = [*check.every, *getattr(check, "pool", ()), *([check.cells] if check.cells else []), check.unit]
-        rows = [row for row in self.selectable(check.experiments, controls=False) if _fits(row, where)]
+        keys = [*check.every, *getattr(check, "pool", ()), *([check.cells] if check.cells else []), check.replicate]
+        rows = [row for row in self.selectable(check.experiments, baselines=False) if _fits(row, where)]
         found: dict[tuple, Row] = {}
         for row in rows:
             first = found.setdefault(tuple(repr(row.get(key)) for key in keys), row)

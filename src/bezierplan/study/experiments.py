@@ -224,7 +224,7 @@ class Experiment(Model):
 
     problems: listed(ProblemName) = Field(description="a list of problems")
     methods: listed(Name) = Field(description="a list of methods")
-    vary: dict[Name, listed(Setting)] = Field({}, description="setting or level → list of values; every combination is run")
+    vary: dict[Name, listed(Setting)] = Field({}, description="setting or preset → list of values; every combination is run")
     seeds: Literal["own", "shared", "common"] = Field(
         "own", description="whether a run's seed is its `own`, `shared` by all methods, or `common` to all methods and conditions"
     )
@@ -254,18 +254,18 @@ class ExperimentsFile(Model):
 
     title: Line = Field(description="one line that names the study")
     methods: dict[Name, Method] = Field(description="name → planner and settings", min_length=1)
-    controls: dict[Name, Method] = Field(
+    baselines: dict[Name, Method] = Field(
         {},
         description="the same; each joins every experiment whose workspaces its planner serves, unless the experiment varies one of "
         "its settings. "
-        "Controls appear in comparisons, not in the tables laid out like the paper's",
+        "Baselines appear in comparisons, not in the tables laid out like the paper's",
     )
     settings: dict[Name, Annotated[Any, mapping_or(Settings, Setting)]] = Field(
         description="settings of all methods. A planner's settings are the keyword-only arguments of its function `plan`; each "
         "needs a value, there "
         "are no defaults. The name of a planner holds settings of its methods alone, stronger than the others: `prm: {samples: 50}`"
     )
-    levels: dict[Name, dict[str, Settings]] = Field(
+    presets: dict[Name, dict[str, Settings]] = Field(
         {},
         description="name → value → settings that go with it: a bundle that an experiment can vary like a setting, such as "
         "`profile: {default: {}, tuned: {...}}`",

@@ -36,7 +36,7 @@ def job(study: Study, experiment: str, method: str, scale: str, chunk: int) -> d
         "settings": {name: value for name, value in study.resolved(method).items() if name not in content.vary},
         "problems": _problems_met(study, experiment, method, scale),
         "vary": content.vary,
-        "levels": {name: level for name, level in study.levels.items() if name in content.vary},
+        "presets": {name: preset for name, preset in study.presets.items() if name in content.vary},
         "seeds": content.seeds,
         "time_limit": content.time_limit,
         "repeats": [chunk * size, (chunk + 1) * size],
@@ -68,14 +68,14 @@ def table_job(study: Study, table: str, scale: str) -> dict:
     """What a table depends on beside runs, problems, bounds and the file of published numbers."""
     spec = study.compared()[table]
     experiment = study.experiments[spec.experiment]
-    # The experiment's own methods unless the table chooses: controls stand in the comparison alone.
+    # The experiment's own methods unless the table chooses: baselines stand in the comparison alone.
     where = {"method": experiment.methods} | spec.where
     return {
         "name": f"{study.key}/{table}",
         "spec": spec.plain() | {"where": where},
         "labels": study.labels,
         "variants": {name: method for name, method in study.variants().items() if name in experiment.methods},
-        "controls": [name for name in study.methods_of(spec.experiment) if name in study.controls],
+        "baselines": [name for name in study.methods_of(spec.experiment) if name in study.baselines],
         "repeats": experiment.repeats[scale],
         "unit": _unit(study, spec.experiment),
     }
@@ -123,7 +123,7 @@ def experiments_of(study: Study, artefact: str) -> list[str]:
 
 def methods_of(study: Study, artefact: str, experiment: str) -> list[str]:
     """Methods of an experiment whose runs an artefact needs: of a table all (the comparison shows them), of a figure those it selects, by
-    name controls too.
+    name baselines too.
     """
     if artefact in study.tables:
         return study.methods_of(experiment)
@@ -185,7 +185,7 @@ def caption(study: Study, artefact: str, scale: str) -> str:
     sentences = [(study.tables.get(artefact) or study.figures[artefact]).title]
     for experiment in experiments_of(study, artefact):
         content = study.experiments[experiment]
-        methods = [method for method in methods_of(study, artefact, experiment) if method not in study.controls]
+        methods = [method for method in methods_of(study, artefact, experiment) if method not in study.baselines]
         settings = {method: study.resolved(method) for method in methods}
         first = settings[methods[0]] if methods else {}
         shared = {name: value for name, value in first.items() if all(own.get(name) == value for own in settings.values())}

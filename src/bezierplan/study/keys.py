@@ -17,7 +17,7 @@ README = PACKAGE.parents[1] / "config" / "README.md"
 GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
     "experiments": [
         ("The file", experiments.ExperimentsFile),
-        ("A method or control", experiments.Method),
+        ("A method or baseline", experiments.Method),
         ("A workspace has `unit`, the name of the unit of length, `kind`, and by kind", experiments.WORKSPACES),
         ("A problem", experiments.Problem),
         ("An experiment", experiments.Experiment),

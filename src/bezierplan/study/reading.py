@@ -56,18 +56,18 @@ def read_study(folder: Path) -> Study:
     experiments = _read(folder, "experiments", ExperimentsFile)
     artefacts = _read(folder, "artefacts", ArtefactsFile) or ArtefactsFile()
     claims, assumptions = _read(folder, "claims", ClaimsFile), _read(folder, "assumptions", AssumptionsFile)
-    for name in experiments.controls:
+    for name in experiments.baselines:
         if name in experiments.methods:
-            raise Fault(f"{relative(folder / 'experiments.yaml')}: controls: {name}: a method has this name already")
+            raise Fault(f"{relative(folder / 'experiments.yaml')}: baselines: {name}: a method has this name already")
     return Study(
         key=folder.resolve().name,
         folder=folder,
         title=experiments.title,
-        methods=experiments.methods | experiments.controls,
-        controls=frozenset(experiments.controls),
+        methods=experiments.methods | experiments.baselines,
+        baselines=frozenset(experiments.baselines),
         settings={name: value for name, value in experiments.settings.items() if not isinstance(value, dict)},
         planner_settings={name: value for name, value in experiments.settings.items() if isinstance(value, dict)},
-        levels=experiments.levels,
+        presets=experiments.presets,
         workspaces=experiments.workspaces,
         problems=experiments.problems,
         experiments=experiments.experiments,

@@ -250,7 +250,7 @@ def audit_params(given: Studies, scale: str, study: str) -> dict:
             "study": study,
             "module": own.module(),
             "tables": {name: table.experiment for name, table in _audited(own).items()},
-            "decides": {name: table.decides for name, table in _audited(own).items()},
+            "primary": {name: table.primary for name, table in _audited(own).items()},
             "experiments": _audited_experiments(own),
         },
         "published": content_digest(*own.published_files()),
@@ -294,7 +294,7 @@ def summary_params(given: Studies, scale: str) -> dict:
     tables = _published_tables(given)
     job = {
         "tables": [list(name) for name in tables],
-        "deciding": [table.decides for table in tables.values()],
+        "deciding": [table.primary for table in tables.values()],
         "variants": {key: list(study.variants()) for key, study in given.items()},
         "titles": {key: study.title for key, study in given.items()},
     }

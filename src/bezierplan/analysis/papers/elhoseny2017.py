@@ -74,7 +74,7 @@ def printed_over_bound(check: dict, results: dict[str, Results], published: dict
     for name, table in (("fields100", "table2"), ("fields200", "table3")):
         problems = select(results[name].runs, check.get("where", {})).drop_duplicates("problem")
         fields += len(problems)
-        least = problems.groupby(["route", "obstacles"])["bound8"].mean()
+        least = problems.groupby(["route", "obstacles"])["octile_bound"].mean()
         rivals = published[table][published[table]["method"] != "mga"]
         printed = rivals.set_index(["route", "obstacles"])["value"]
         ratios.append((printed / least.reindex(printed.index)).max())

@@ -2,7 +2,7 @@
 
 Three formulas are printed with slips. Eq. 9 prints 1 / (x mod 1) for the Gauss map and explains it as 1/x - floor(1/x), which is `gauss`;
 the printed form is `gauss_printed`, whose values exceed 1. In eq. 12 "mod 1" acts on the whole right side. Eq. 14 asks for a below 4, where
-the usual sine map has a = 4. `constant` is a control: it stays where it starts.
+the usual sine map has a = 4. `constant` is a baseline: it stays where it starts.
 """
 
 import math
