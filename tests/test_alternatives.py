@@ -11,11 +11,10 @@ ALTERNATIVES = [(key, name) for key, study in STUDIES.items() for name in altern
 @pytest.mark.parametrize(("key", "name"), ALTERNATIVES)
 def test_every_alternative_has_a_run_that_it_changes(key, name):
     study = STUDIES[key]
-    files = [file.split("/") for file in targets.claims_inputs(STUDIES, "full", key, name)["runs"] if "/sensitivity/" in file]
-    changed = alternatives.with_alternative(study, name)
-    changing = {(experiment, method) for *_, experiment, method, _ in files}
-    assert changing
-    assert any(jobs.job(study, *each, "full", 0) != jobs.job(changed, *each, "full", 0) for each in changing)
+    chunks = targets.alternative_params(STUDIES, "full", key, name)["chunks"]
+    assert any(
+        job != jobs.job(study, job["experiment"], job["method"], "full", 0) for file, job in chunks.items() if file.endswith("/0.parquet")
+    )
 
 
 def test_checks_of_several_experiments_need_the_methods_of_each():

@@ -24,7 +24,12 @@ def plan(problem: Problem, rng: np.random.Generator) -> Plan:
     bound = bounds.lattice_path(grid.occupied, start, target, DIAGONAL, "free")
     found = math.isfinite(bound.length)
     length = bound.length * grid.cell
-    path = Path("polyline", _without_straight_vertices(grid.in_units(bound.points))) if found else None
+    path = None
+    if found:
+        points = _without_straight_vertices(grid.in_units(bound.points))
+        # A centre of a cell that is computed can differ from the given one in the last bit.
+        points[[0, -1]] = problem.start, problem.target
+        path = Path("polyline", points)
     return Plan(path, length, claimed_feasible=found, evaluations=1, history=np.array([length]), stop="exact", extra={})
 
 
