@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from bezierplan.analysis.metrics import CURVATURE_SAMPLES
+from bezierplan.analysis.measures import CURVATURE_SAMPLES
 from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.planners import Plan, known_planners, planner_module, planner_settings, setting_fault
