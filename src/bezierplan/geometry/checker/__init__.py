@@ -55,6 +55,18 @@ def check(pieces: np.ndarray, region: Region, corner_cutting: Literal["open", "c
 
     Raises ValueError for coordinates that are not finite or beyond 1e5, or 1e5 x 32 / degree for a degree above 32; for a degree above 60;
     and for an unknown rule of corner cutting.
+
+    A straight line runs into an obstacle, a parabola goes around it:
+
+    >>> from bezierplan.geometry.region import region
+    >>> from bezierplan.workspaces.grid import from_lines
+    >>> room = region(from_lines(["....", ".##.", "...."], cell=1.0, unit="m"))
+    >>> straight = check(np.array([[[0.5, 0.5], [3.5, 2.5]]]), room)
+    >>> straight.feasible, round(straight.collision_at, 6), straight.depth
+    (False, 0.25, 0.5)
+    >>> parabola = check(np.array([[[0.5, 0.5], [4.0, -0.5], [3.5, 2.5]]]), room)
+    >>> parabola.feasible, parabola.clearance
+    (True, 0.25)
     """
     pieces = np.ascontiguousarray(pieces, dtype=float)
     if corner_cutting not in ("open", "closed"):

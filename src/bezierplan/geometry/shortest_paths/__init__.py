@@ -30,6 +30,16 @@ def shortest_path(problem: Problem, corner_cutting: Literal["open", "closed"] = 
     the length is a sum of closed forms, and the polyline is up to `circles.POLYLINE_EXCESS` longer.
 
     Raises ValueError for an unknown rule of corner cutting, and for the rule `closed` on a grid with more than `grid.MOST_NODES` corners.
+
+    Around two occupied cells, by their upper left corner:
+
+    >>> from bezierplan.workspaces.grid import from_lines
+    >>> room = from_lines(["....", ".##.", "...."], cell=1.0, unit="m")
+    >>> found = shortest_path(Problem("room", room, start=(0.5, 0.5), target=(3.5, 2.5)))
+    >>> round(found.length, 6)
+    4.130649
+    >>> found.points.tolist()
+    [[0.5, 0.5], [1.0, 2.0], [3.5, 2.5]]
     """
     blocked = region(problem.workspace)
     for point in (problem.start, problem.target):

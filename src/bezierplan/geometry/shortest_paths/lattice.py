@@ -21,6 +21,15 @@ def lattice_path(
     occupied: bool (rows, columns). start, target: row and column. diagonal_weight: length of a diagonal step; others count 1. corner_rule:
     how many of the two cells beside a diagonal step may be occupied.
     Raises ValueError for an unknown rule and for a start or target outside of the grid.
+
+    A diagonal step past an occupied cell is allowed with the rule `free`, and not with the rule `none`:
+
+    >>> from bezierplan.workspaces.grid import from_lines
+    >>> occupied = from_lines(["....", ".##.", "...."], cell=1.0, unit="m").occupied
+    >>> lattice_path(occupied, start=(0, 0), target=(2, 3), diagonal_weight=1.5, corner_rule="free").length
+    4.5
+    >>> lattice_path(occupied, start=(0, 0), target=(2, 3), diagonal_weight=1.5, corner_rule="none").length
+    5.0
     """
     if corner_rule not in CORNERS:
         raise ValueError(f"unknown corner rule {corner_rule!r}; known: {', '.join(CORNERS)}")
