@@ -11,7 +11,7 @@ import shapely
 
 from bezierplan.analysis.papers import meledje
 from bezierplan.figures.panels import drawing
-from bezierplan.geometry import bounds
+from bezierplan.geometry import shortest_paths
 from bezierplan.planners import node_genetic
 from bezierplan.running import execution, problems
 from bezierplan.study import checked, reading
@@ -60,7 +60,7 @@ def test_every_title_of_a_number_or_picture_on_the_maps_says_that_they_are_recon
 def test_optimum_is_the_shortest_path_over_centres_of_the_exact_geometry(name):
     where = problem(name)
     energy, path = cheapest(ground_of(where.workspace, 1.0), 0, 255)
-    exact = bounds.centre_path(where)
+    exact = shortest_paths.centre_path(where)
     assert energy == pytest.approx(exact.length, rel=1e-12)
     points = centres(where.workspace, path)
     assert np.hypot(*np.diff(points, axis=0).T).sum() == pytest.approx(exact.length, rel=1e-12)

@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy
 
-from bezierplan.geometry import bounds, cell_length
+from bezierplan.geometry import cell_length, shortest_paths
 from bezierplan.geometry.checker import check as certified
 from bezierplan.geometry.curves import bezier_pieces
 from bezierplan.geometry.region import region
@@ -265,7 +265,7 @@ def test_plans_are_free_valid_and_above_the_bounds(diversity_rule, changed):
         assert certified(bezier_pieces(found.path), region(task.workspace)).feasible
         cells = cell_length.touched_cells(*cell_length.samples(found.path, task.workspace))
         assert cell_length.occupied_cells(*cells, task.workspace.occupied) == 0
-        least = bounds.lattice_path(
+        least = shortest_paths.lattice_path(
             task.workspace.occupied, *(task.workspace.cell_of(*end) for end in (task.start, task.target)), 1.5, "free"
         )
         assert cell_length.length4(found.path, task.workspace) >= cell_length.length8(found.path, task.workspace) >= least.length

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from bezierplan.geometry import bounds
+from bezierplan.geometry import shortest_paths
 from bezierplan.geometry.cell_length import DIAGONAL
 from bezierplan.planners import Plan
 from bezierplan.workspaces.problem import Path, Problem
@@ -21,7 +21,7 @@ def plan(problem: Problem, rng: np.random.Generator) -> Plan:
     """
     grid = problem.workspace
     start, target = (grid.cell_of(*end) for end in (problem.start, problem.target))
-    bound = bounds.lattice_path(grid.occupied, start, target, DIAGONAL, "free")
+    bound = shortest_paths.lattice_path(grid.occupied, start, target, DIAGONAL, "free")
     found = math.isfinite(bound.length)
     length = bound.length * grid.cell
     path = None

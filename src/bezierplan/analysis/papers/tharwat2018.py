@@ -13,7 +13,7 @@ from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.claim_effects import LEAST_WITHOUT_EXAMPLE
 from bezierplan.analysis.claim_tests import SURE
 from bezierplan.analysis.results import Results, select
-from bezierplan.geometry import bounds, curves
+from bezierplan.geometry import curves, shortest_paths
 from bezierplan.planners.parts import chaotic_maps
 from bezierplan.workspaces.problem import Problem, Workspace
 
@@ -225,7 +225,7 @@ def best_curves(workspace: Workspace) -> pd.DataFrame:
     problem = Problem("", workspace, START, TARGET)
     numbers = range(1, MOST_POINTS + 1)
     rows = [("best Bezier curve found", n, best_curve(problem, n, SAMPLES)[0]) for n in numbers]
-    rows += [("shortest path possible", n, bounds.shortest_path(problem).length) for n in numbers]
+    rows += [("shortest path possible", n, shortest_paths.shortest_path(problem).length) for n in numbers]
     return pd.DataFrame(rows, columns=["path", "control_points", "length"])
 
 
