@@ -221,10 +221,11 @@ def claims_params(given: Studies, scale: str, study: str, alternative: str | Non
     job = jobs.claims_job(own, _claims(own, alternative))
     artefacts = {name: {key: value for key, value in spec.items() if key != "title"} for name, spec in job["artefacts"].items()}
     repeats = {name: own.experiments[name].repeats[scale] for name in job["paired"]}
+    kinds = {f"bezierplan.analysis.claims.kinds.{check['test']}" for claim in job["claims"] for check in claim["checks"]}
     return {
         "job": job | {"artefacts": artefacts, "repeats": repeats},
         "published": content_digest(*own.published_files()),
-        "code": _code("claims", own.module()),
+        "code": _code("claims", own.module(), *sorted(kinds)),
     }
 
 

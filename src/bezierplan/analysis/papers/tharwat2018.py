@@ -10,8 +10,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics, statistics
-from bezierplan.analysis.claim_effects import LEAST_WITHOUT_EXAMPLE
-from bezierplan.analysis.claim_tests import SURE
+from bezierplan.analysis.claims.effects import LEAST_WITHOUT_EXAMPLE, SURE
 from bezierplan.analysis.results import Results, select
 from bezierplan.geometry import bounds, curves
 from bezierplan.planners.parts import chaotic_maps
