@@ -2,7 +2,7 @@
 
 import pytest
 
-from bezierplan.study import alternatives, reading, targets
+from bezierplan.study import alternatives, jobs, reading, targets
 
 STUDIES = reading.load(reading.read_config({}))
 ALTERNATIVES = [(key, name) for key, study in STUDIES.items() for name in alternatives.tried(study)]

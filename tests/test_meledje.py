@@ -26,11 +26,11 @@ PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glo
 
 
 def workspace(name):
-    return files.load(STUDY.workspaces[name], FOLDER)
+    return files.load(STUDY.workspaces[name].plain(), FOLDER)
 
 
 def problem(name):
-    return problems.build(name, STUDY.problems[name], workspace(STUDY.problems[name]["workspace"]))
+    return problems.build(name, STUDY.problems[name].plain(), workspace(STUDY.problems[name].workspace))
 
 
 # The study's files
@@ -49,7 +49,8 @@ def test_repeats_are_the_trials_of_the_paper():
 
 
 def test_every_title_of_a_number_or_picture_on_the_maps_says_that_they_are_reconstructed():
-    for artefact in (STUDY.tables | STUDY.figures).values():
+    for each in (STUDY.tables | STUDY.figures).values():
+        artefact = each.plain()
         shown = {artefact.get("experiment"), *(panel.get("experiment") for panel in artefact.get("panels", []))}
         if "operators" in shown:
             assert "reconstructed" in artefact["title"]

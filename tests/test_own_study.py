@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[1]
 PLANNER = """
 import numpy as np
 import nearby
-from bezierplan import curves
+from bezierplan.geometry import curves
 from bezierplan.planners import Path, Plan
 
 workspaces = ("circles",)
