@@ -19,6 +19,7 @@ from bezierplan.analysis.results import Results
 from bezierplan.study.checked import Fault
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.seeds import generator
 
 GRID = from_lines(["..", ".."], 1.0, "m")
 PROBLEMS = {name: Problem(name, GRID, (0.5, 0.5), (1.5, 1.5)) for name in ("first", "second")}
@@ -34,7 +35,7 @@ def few_draws(monkeypatch):
 
 def sample(name: str, mean: float = 0.0, n: int = UNITS, std: float = 1.0) -> np.ndarray:
     """Normal values (n,) of exactly this mean and standard deviation, the same for a name."""
-    values = statistics.generator(name).normal(size=n)
+    values = generator(name).normal(size=n)
     return mean + std * (values - values.mean()) / values.std(ddof=1)
 
 
@@ -370,7 +371,7 @@ def test_at_most_one_sentence_in_twenty_is_judged_wrongly(apart, wrong):
     """Of sentences of twenty comparisons without an effect few get another verdict than undecided; true ones are never refused."""
     given = []
     for number in range(100):
-        rng = statistics.generator(f"sentence {number}")
+        rng = generator(f"sentence {number}")
         found = []
         for p, mean in ((stats_of(rng.normal(apart, 1, 20))) for _ in range(20)):
             found.append(Finding(effect=mean, p=p, toward=int(np.sign(mean)), margin=0.3))

@@ -23,6 +23,7 @@ from bezierplan.study import reading
 from bezierplan.study.model import one_or_list
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.seeds import generator
 
 STUDIES = Path(__file__).parents[1] / "config" / "studies"
 KEYS = ("song2016", "elhoseny2017", "tharwat2018", "ma2020", "meledje")
@@ -184,7 +185,7 @@ def made(key, claim, truth) -> dict[str, Results]:
         columns = factors(key, claim, checks, name)
         repeats = range(1 if columns.get("layout", [0])[-1] == UNITS - 1 else 12 if "layout" in columns else UNITS)
         rows = pd.DataFrame(itertools.product(*columns.values(), repeats), columns=[*columns, "repeat"]).assign(experiment=name)
-        rng = statistics.generator(f"{key}/{claim['id']}/{name}/{truth}")
+        rng = generator(f"{key}/{claim['id']}/{name}/{truth}")
         rows["feasible"] = True
         for check in own:
             for column, wanted in check.get("where", {}).items():

@@ -6,14 +6,12 @@ with log.job(snakemake) as output:
     import importlib
     from pathlib import Path
 
-    import pandas as pd
-
     from bezierplan.analysis import results
     from bezierplan.analysis.claims.judge import judge
 
     job, files = snakemake.params.job, snakemake.input
     found = results.read_all(files.runs, job["repeats"], files.problems, files.bounds)
-    published = {Path(file).stem: pd.read_csv(file) for file in files.published}
+    published = {Path(file).stem: results.published_table(file) for file in files.published}
     functions = vars(importlib.import_module(job["module"])) if job["module"] else {}
     material = {"variant_of": job["variant_of"], "paired": job["paired"], "repeats": job["paper_repeats"], "labels": job["labels"]}
     judged, checks = judge(job["claims"], found, published, job["artefacts"], job["study"], functions, **material)

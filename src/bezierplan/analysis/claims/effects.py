@@ -15,7 +15,8 @@ import numpy as np
 
 from bezierplan.analysis import statistics
 from bezierplan.analysis.claims.kinds import kind_of
-from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED, TAIL, generator
+from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED, TAIL
+from bezierplan.workspaces.seeds import generator
 
 ALPHA = 0.05
 # Share of draws in which a sentence about extremes has to hold.

@@ -34,8 +34,9 @@ from bezierplan.analysis.claims.effects import (
 )
 from bezierplan.analysis.claims.kinds import MARGIN, PAIRED, SCALE, WORK, Margin, OfRuns
 from bezierplan.analysis.claims.ranks import signed_rank_test
-from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED, generator
+from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED
 from bezierplan.study.model import Column, Flag, Metric
+from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
     import pandas as pd
