@@ -7,7 +7,7 @@ with log.job(snakemake) as output:
 
     import pyarrow.parquet as parquet
 
-    from bezierplan.analysis import claim_job
+    from bezierplan.analysis.claims import job as claims_job
     from bezierplan.running import execution, problems
 
     files = {name: list(snakemake.input[name]) for name in ("problems", "bounds", "published")}
@@ -19,4 +19,4 @@ with log.job(snakemake) as output:
         for table, path in zip(execution.run_chunk(made[job["experiment"]], job), (file, file.with_suffix(".times.parquet")), strict=True):
             parquet.write_table(table, path)
         runs.append(str(file))
-    claim_job.judge(snakemake.params.job, runs, files, output.claims, output.checks)
+    claims_job.run(snakemake.params.job, runs, files, output.claims, output.checks)

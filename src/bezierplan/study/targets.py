@@ -213,8 +213,13 @@ def claims_params(given: Studies, scale: str, study: str) -> dict:
     return {
         "job": _claims_job(own, scale, own.claims),
         "published": content_digest(*own.published_files()),
-        "code": _code("claims", own.module()),
+        "code": _code("claims", own.module(), *_kinds(own.claims)),
     }
+
+
+def _kinds(claims: list[Claim]) -> list[str]:
+    """Modules of the kinds of check in claims, which are imported by name."""
+    return sorted({f"bezierplan.analysis.claims.kinds.{check.test}" for claim in claims for check in claim.checks})
 
 
 def _claims_job(study: Study, scale: str, claims: list[Claim]) -> dict:
@@ -251,7 +256,7 @@ def alternative_params(given: Studies, scale: str, study: str, alternative: str)
         "chunks": chunks,
         "job": _claims_job(own, scale, claims),
         "published": content_digest(*own.published_files()),
-        "code": _code("alternative", own.module(), *planners),
+        "code": _code("alternative", own.module(), *_kinds(claims), *planners),
     }
 
 
