@@ -271,6 +271,36 @@ def test_convergence_of_groups_holds_last_values():
     np.testing.assert_allclose(median.loc[median["points"] == 3, "objective"].iloc[-1], 33 + 3.5)
 
 
+def test_convergence_goes_on_to_the_end_that_is_asked_for():
+    frame = convergence.data(comparison(), hue="method", until=5)
+    coarse = frame[frame["method"] == "coarse"]
+    assert list(coarse["generation"]) == [0, 1, 2, 3, 4, 5]
+    assert coarse["objective"].iloc[2:].nunique() == 1
+    assert list(convergence.data(results(), pick=LOWEST, until=4)["objective"]) == [90, 70, 59, 59, 59]
+    assert list(convergence.data(results(), pick=LOWEST, until=1)["generation"]) == [0, 1, 2], "no run is cut"
+
+
+def test_convergence_of_groups_has_the_interval_of_its_statistic():
+    frame = convergence.data(comparison(), hue="method", until=5)
+    assert (frame["low95"] < frame["objective"]).all()
+    assert (frame["objective"] < frame["high95"]).all()
+    assert frame[frame["generation"] > 2].groupby("method")[["low95", "high95"]].nunique().eq(1).all(axis=None)
+    # Histories differ by a constant from generation 0 to the last one, so do intervals from the same draws.
+    width = (frame["high95"] - frame["low95"]).groupby(frame["method"]).agg(["first", "last"])
+    np.testing.assert_allclose(width["first"], width["last"])
+
+
+def test_convergence_marks_the_printed_means_of_one_table(tmp_path):
+    published = pd.concat([printed_means().assign(table="table3"), printed_means().assign(table="table4", value=1.0)], ignore_index=True)
+    found = comparison(published[published["points"].isna()])
+    frame = convergence.data(found, hue="method", until=5, printed="table3")
+    marked = frame[frame["printed"].notna()]
+    assert marked[["method", "generation", "printed"]].to_numpy().tolist() == [["smooth", 5, 36.5]]
+    panel = {"kind": "convergence", "experiment": "routes", "hue": "method", "printed": "table3"}
+    assert "published final mean, in the mark of its line" in words(drawn(found, [panel], 1, tmp_path))
+    assert "printed" not in convergence.data(comparison(), hue="method", printed="table3")
+
+
 def test_names_beside_lines_are_in_the_order_of_the_last_values(tmp_path):
     figure = drawn(comparison(), comparing_panels()[:2], 2, tmp_path)
     figure.draw_without_rendering()
@@ -546,7 +576,7 @@ def test_axes_have_units(tmp_path):
     figure = drawn(results(), panels(), 2, tmp_path)
     labels = [label for axes in figure.axes for label in (axes.get_xlabel(), axes.get_ylabel()) if label]
     assert len(labels) == 8, "four panels with scales"
-    assert all(label.endswith(("(unit)", "(1/unit)", "(m)", "(-)")) for label in labels)
+    assert all(label.endswith(("(unit)", "(1/unit)", "(m)")) or label in ("generation", "curve parameter t") for label in labels)
 
 
 def test_panels_have_letters_and_the_reading_of_the_curve(tmp_path):
@@ -584,7 +614,7 @@ def test_equal_data_gives_equal_bytes_in_another_process(tmp_path):
     subprocess.run([sys.executable, "-c", command, str(there)], check=True, cwd=File(__file__).parent)
     for name in ("figure.svg", "figure.png", "figure.csv"):
         assert (here / name).read_bytes() == (there / name).read_bytes(), name
-    assert "generation (-)" in (here / "figure.svg").read_text(), "words of a figure stay words"
+    assert "generation" in (here / "figure.svg").read_text(), "words of a figure stay words"
 
 
 @pytest.mark.parametrize("kind", kinds_of_panel.kinds())

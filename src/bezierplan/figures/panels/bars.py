@@ -75,7 +75,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     axes.set_xlim(-0.5, len(groups) - 0.5)
     axes.set_xticks(range(len(groups)), [scene.labels.get(group, group) if isinstance(group, str) else f"{group:g}" for group in groups])
     axes.tick_params(axis="x", length=0, pad=32)  # below the shares
-    axes.set_xlabel(f"{style.column_name(x, scene.labels)} (-)")
+    axes.set_xlabel(style.column_name(x, scene.labels))
     axes.set_ylabel(axis_label(panel["metric"], scene, panel.get("statistic", "mean")))
     axes.grid(visible=True, axis="y")
     return f"below each bar: {panel.get('below', 'share')} of feasible runs"

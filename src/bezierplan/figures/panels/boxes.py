@@ -10,7 +10,7 @@ from pydantic import Field
 from bezierplan.analysis import metrics
 from bezierplan.figures import style
 from bezierplan.figures.panels import RunsPanel
-from bezierplan.figures.panels.lines import LIMITS, axis_label, constants, runs_note, shared_limits
+from bezierplan.figures.panels.lines import LIMITS, axis_label, constants, published_means, runs_note, shared_limits
 from bezierplan.study.model import Column, Flag, Metric
 
 if TYPE_CHECKING:
@@ -26,9 +26,6 @@ _REACH = 1.5
 # How a box is called here and in `Axes.bxp`.
 _PARTS = {"low": "whislo", "quartile1": "q1", "median": "med", "quartile3": "q3", "high": "whishi"}
 
-
-# Columns of published numbers that tell no runs apart.
-_PRINTED = ["table", "metric", "statistic", "n", "unit", "value"]
 
 # Published means farther away than so many times the range of all that is found here stand at the edge, with their value.
 _FAR = 0.25
@@ -59,7 +56,7 @@ def data(results: Results, *, metric: str, by: str = "method", limits: bool = Fa
     rows = []
     for group, own in runs.groupby(by):
         named = constants(runs) | {by: group, "runs": len(own), "feasible_runs": int(own["feasible"].sum())}
-        parts = _box(np.sort(own["value"].dropna().to_numpy())) + [("published", mean) for mean in _published_means(results, own, metric)]
+        parts = _box(np.sort(own["value"].dropna().to_numpy())) + [("published", mean) for mean in published_means(results, own, metric)]
         rows += [named | {"part": part, "value": value} for part, value in parts]
     if limits:
         rows += [constants(runs) | {"part": name, "value": value} for name, value in shared_limits(runs).items()]
@@ -76,21 +73,6 @@ def _box(values: np.ndarray) -> list[tuple[str, float]]:
     low, high = values[inside][[0, -1]]
     box = [("low", low), ("quartile1", first), ("median", median), ("quartile3", third), ("high", high), ("mean", values.mean())]
     return box + [("beyond", value) for value in values[~inside]]
-
-
-def _published_means(results: Results, runs: pd.DataFrame, metric: str) -> list[float]:
-    """Means of a metric that the paper prints for the problem, method and settings of runs; a row's empty keys fit all runs.
-
-    A number that stands in several tables is one number.
-    """
-    found = results.published
-    if found is None:
-        return []
-    found = found[(found["metric"] == metric) & (found["statistic"] == "mean")]
-    for column in found.columns.difference(_PRINTED):
-        fits = found[column].isin(runs[column]) if column in runs else False
-        found = found[found[column].isna() | fits]
-    return sorted(found["value"].unique())
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:

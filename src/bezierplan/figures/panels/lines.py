@@ -115,7 +115,31 @@ def axis_label(column: str, scene: Any, statistic: str = "") -> str:
     if column not in metrics.METRICS and style.column_name(column, scene.labels).endswith(")"):
         return f"{statistic} {style.column_name(column, scene.labels)}".lstrip()
     unit = metrics.unit(column, scene.unit) if column in metrics.METRICS else "-"
-    return f"{statistic} {style.column_name(column, scene.labels)} ({unit})".lstrip()
+    return f"{statistic} {style.column_name(column, scene.labels)}{'' if unit == '-' else f' ({unit})'}".lstrip()
+
+
+# Columns of published numbers that tell no runs apart.
+_PRINTED = ["table", "metric", "statistic", "n", "unit", "value"]
+
+
+def published_means(results: Results, runs: pd.DataFrame, metric: str) -> list[float]:
+    """Means of a metric that the paper prints for the problem, method and settings of runs; a row's empty keys fit all runs.
+
+    A number that stands in several tables is one number.
+    """
+    found = results.published
+    if found is None:
+        return []
+    found = found[(found["metric"] == metric) & (found["statistic"] == "mean")]
+    for column in found.columns.difference(_PRINTED):
+        fits = found[column].isin(runs[column]) if column in runs else False
+        found = found[found[column].isna() | fits]
+    return sorted(found["value"].unique())
+
+
+def interval_band(axes: Axes, x: pd.Series, low: pd.Series, high: pd.Series, colour: str, label: str) -> None:
+    """The interval of a line as a band in the line's colour."""
+    axes.fill_between(x, low, high, label=label, zorder=1.5, **style.interval_band(colour))
 
 
 def runs_note(frame: pd.DataFrame, statistic: str, where: str) -> str:
@@ -151,7 +175,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 
 def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict) -> None:
     """A line with marks in a band, the interval of its points."""
-    axes.fill_between(frame[x], frame["low95"], frame["high95"], label="95 % interval", zorder=1.5, **style.INTERVAL_BAND)
+    interval_band(axes, frame[x], frame["low95"], frame["high95"], look["color"], "95 % interval")
     axes.plot(frame[x], frame["value"], zorder=3, **look)
 
 
