@@ -42,7 +42,7 @@ SETTINGS = {
     "svg.hashsalt": "bezierplan",  # equal drawings get equal identifiers
 }
 
-RED, BLUE, BLACK = "#DD3322", "#004488", "#000000"
+RED, BLUE, BLACK, AMBER = "#DD3322", "#004488", "#000000", "#E69F00"
 LIGHT_BLUE = "#B7CDE6"
 
 # What a paper prints, and what is found here: the same in all figures of all papers.

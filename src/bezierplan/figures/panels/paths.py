@@ -11,12 +11,14 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
+from bezierplan.analysis import metrics
 from bezierplan.figures import style
 from bezierplan.figures.panels import PICK, Pick, RunsPanel, exactly_one
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.geometry import curves
 from bezierplan.study.checked import closest
 from bezierplan.study.model import Column, Experiment, Line, Model, Number, wrong
+from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path
 
 if TYPE_CHECKING:
@@ -39,6 +41,15 @@ _LOOK = {
     "path": {**style.RUN_SHOWN, "label": "path", "zorder": 3},
     "control": {**_CONTROL_POINT, "linewidth": 0.7, "linestyle": (0, (4, 2)), "label": "control points and polygon"},
     "points": {**_CONTROL_POINT, "linestyle": "", "label": "control points"},
+    "occupied": {
+        **_CONTROL_POINT,
+        "linestyle": "",
+        "markersize": 7,
+        "markerfacecolor": style.AMBER,
+        "marker": "D",
+        "label": "control point in an occupied cell",
+        "zorder": 5.5,
+    },
     "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull of the control points", "zorder": 2},
     "bound": {**style.BOUND, "label": "shortest path possible", "zorder": 4},
     "collision": {"color": style.BLACK, "linestyle": "", "marker": "X", "markersize": 8, "label": "first collision", "zorder": 6},
@@ -60,7 +71,9 @@ def picked(results: Results, pick: dict[str, Any]) -> tuple[pd.Series | None, di
         found = list(runs[column].unique())
         if len(found) != 1:
             raise ValueError(f"a panel that shows one run needs runs of exactly one {column}, not of {len(found)} {found}; see its `where`")
-    run = pick_run(runs, pick)
+    way = {name: value for name, value in pick.items() if name != "having"}
+    having = metrics.values(runs, pick["having"], results.problems) > 0 if "having" in pick else slice(None)
+    run = pick_run(runs[having], way)
     names = {"problem": runs["problem"].iloc[0], "method": runs["method"].iloc[0]}
     names |= {"runs": len(runs), "feasible_runs": int(runs["feasible"].sum())}
     if run is None:
@@ -128,9 +141,9 @@ def data(
 ) -> pd.DataFrame:
     """What is drawn of a path: one row a point, in the order in which points are joined.
 
-    Columns: those of `picked`, for a run; part (start, target, bound, hull, control or points, path, and collision, the first one of a path
-    that has one), x, y (in the workspace's unit). Without a run to show, start and target only. Only curves that lie within it have a hull,
-    and control points are left out where some are tangents.
+    Columns: those of `picked`, for a run; part (start, target, bound, hull, control or points, occupied: those of them in occupied cells,
+    path, and collision, the first one of a path that has one), x, y (in the workspace's unit). Without a run to show, start and target
+    only. Only curves that lie within it have a hull, and control points are left out where some are tangents.
 
     pick: the run, as in `analysis.results.pick`. explicit: {curve, points}, a path without a run. hue: a column; a run is picked for each
     of its values, which the rows name, and drawn without control points. control: whether control points are drawn with their polygon and
@@ -159,6 +172,8 @@ def data(
     if path is not None:
         drawn["bound"] = np.reshape(results.bounds.loc[problem.name, "bound_path"], (-1, 2))
         drawn |= _drawn(path, control)
+        if control != "none" and isinstance(problem.workspace, Grid):
+            drawn["occupied"] = _in_occupied_cells(path.points, problem.workspace)
         if not run["feasible"]:
             drawn["collision"] = [curves.point_at(path, run["collision_at"])]
     frame = table(drawn).assign(**names)
@@ -175,6 +190,13 @@ def _drawn(path: Path, control: str) -> dict[str, np.ndarray]:
     if path.curve != "ferguson" and control != "none":
         drawn["control" if control == "all" else "points"] = path.points
     return drawn | {"path": steps(path)}
+
+
+def _in_occupied_cells(points: np.ndarray, grid: Grid) -> np.ndarray:
+    """Those of points (n, 2), in units, that lie in occupied cells: (k, 2)."""
+    cells = [grid.cell_of(*point) for point in points]
+    inside = [cell is not None and bool(grid.occupied[cell]) for cell in cells]
+    return np.reshape(points[inside], (-1, 2))
 
 
 def table(drawn: dict[str, Sequence]) -> pd.DataFrame:
