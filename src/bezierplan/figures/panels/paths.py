@@ -15,9 +15,10 @@ from bezierplan.analysis import metrics
 from bezierplan.figures import style
 from bezierplan.figures.panels import PICK, Pick, RunsPanel, exactly_one
 from bezierplan.figures.panels import workspace as workspaces
+from bezierplan.figures.panels.lines import axis_label
 from bezierplan.geometry import curves
 from bezierplan.study.checked import closest
-from bezierplan.study.model import Column, Experiment, Line, Model, Number, wrong
+from bezierplan.study.model import Column, Experiment, Flag, Line, Metric, Model, Number, wrong
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path
 
@@ -30,6 +31,9 @@ if TYPE_CHECKING:
 
 # About as many straight steps are drawn for a curve; the ends of its pieces are always among them.
 _STEPS = 600
+
+# Widths of the first and of the last of several paths.
+_WIDEST, _NARROWEST = 2.8, 1.3
 
 # Marks in a narrow panel are so much smaller.
 _NARROW_MARK = 0.6
@@ -115,6 +119,8 @@ class Options(RunsPanel):
         "all",
         description="whether control points are drawn with their polygon and hull (all; left out: this), alone (points), or not (none)",
     )
+    measure: Metric = Field("length", description="with hue, the metric that is given of each path; left out: length")
+    bare: Flag = Field(False, description="whether only the workspace with start and target is drawn, true or false")
     view: list[Number] = Field(None, description="what is seen: [lowest x, highest x, lowest y, highest y]", min_length=4, max_length=4)
 
     @model_validator(mode="after")
@@ -123,6 +129,10 @@ class Options(RunsPanel):
         exactly_one(self, "experiment", "explicit")
         if self.explicit and self.hue:
             raise wrong("hue: needs experiment")
+        if "measure" in self.model_fields_set and self.hue is None:
+            raise wrong("measure: needs hue")
+        if self.bare and (self.explicit or self.hue):
+            raise wrong(f"bare: not together with {'explicit' if self.explicit else 'hue'}")
         if self.explicit and any(len(point) != 2 for point in self.explicit.points):
             raise wrong("explicit: points: expected a list of at least two [x, y]")
         if self.explicit and self.explicit.curve not in curves.CURVES:
@@ -137,6 +147,8 @@ def data(
     explicit: dict[str, Any] | None = None,
     hue: str | None = None,
     control: Literal["all", "points", "none"] = "all",
+    measure: str = "length",
+    bare: bool = False,
     view: Sequence[float] | None = None,
 ) -> pd.DataFrame:
     """What is drawn of a path: one row a point, in the order in which points are joined.
@@ -146,7 +158,8 @@ def data(
     only. Only curves that lie within it have a hull, and control points are left out where some are tangents.
 
     pick: the run, as in `analysis.results.pick`. explicit: {curve, points}, a path without a run. hue: a column; a run is picked for each
-    of its values, which the rows name, and drawn without control points. control: whether control points are drawn with their polygon and
+    of its values, which the rows name, and drawn without control points; the column `measure` has this metric of it. bare: start and target
+    alone, whatever the run. control: whether control points are drawn with their polygon and
     hull, alone, or not at all. view: what is seen of the workspace, as its bounds; all rows are here nevertheless.
     Raises ValueError unless either pick or explicit is given and all runs, of one value of hue, are of one problem and one method, and if a
     curve cannot have such points.
@@ -164,10 +177,13 @@ def data(
     if hue is not None:
         own = results.runs.groupby(hue)
         frames = [data(results._replace(runs=runs), pick=pick, control="none").assign(**{hue: value}) for value, runs in own]
-        return pd.concat(frames, ignore_index=True)
+        numbers = metrics.values(results.runs, measure, results.problems).groupby(results.runs["id"]).first()
+        return pd.concat(frames, ignore_index=True).assign(measure=lambda frame: frame["run"].map(numbers))
     run, names = picked(results, pick)
     problem = results.problems[names["problem"]]
     drawn = {"start": [problem.start], "target": [problem.target]}
+    if bare:
+        return table(drawn).assign(problem=problem.name)
     path = None if run is None else path_of(run)
     if path is not None:
         drawn["bound"] = np.reshape(results.bounds.loc[problem.name, "bound_path"], (-1, 2))
@@ -227,7 +243,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     if "hue" in panel:
         note = _draw_side_by_side(axes, frame, scene, panel)
     else:
-        note = "" if "explicit" in panel else _note(frame, workspace.unit, scene.narrow)
+        note = "" if "explicit" in panel or panel.get("bare") else _note(frame, workspace.unit, scene.narrow)
         draw_parts(axes, frame, narrow=scene.narrow, clip="view" in panel)
     if "view" in panel:
         axes.axis(panel["view"])
@@ -237,20 +253,23 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 
 
 def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the paths of all values of hue, each in a look of its own, and what belongs to their problem once; returns their lengths."""
+    """Draw the paths of all values of hue, each in a look of its own, and what belongs to their problem once; returns their measures."""
     hue = panel["hue"]
     values = style.in_order(frame[hue], panel)
-    lengths = []
-    for value, look in zip(values, style.lines(values)):
+    measure = panel.get("measure", "length")
+    given = []
+    # The first path is the widest, so that those on top of it hide nothing.
+    widths = np.linspace(_WIDEST, _NARROWEST, len(values))
+    for value, look, width in zip(values, style.lines(values), widths):
         own = frame[frame[hue] == value]
         draw_parts(axes, own[own["part"] == "collision"], narrow=scene.narrow, clip="view" in panel)
         path = own[own["part"] == "path"]
         name = style.printed(value, hue, scene.labels)
-        axes.plot(path["x"], path["y"], zorder=3, **look | {"marker": "", "label": name})
-        lengths.append(f"{name} {own['length'].iloc[0]:.1f}" if len(path) else f"{name} no path")
+        axes.plot(path["x"], path["y"], zorder=3, **look | {"marker": "", "label": name, "linewidth": width})
+        given.append(f"{name} {own['measure'].iloc[0]:.1f}" if len(path) else f"{name} no path")
     once = frame[frame["part"].isin(["start", "target", "bound"])].drop_duplicates(["part", "x", "y"])
     draw_parts(axes, once, narrow=scene.narrow, clip="view" in panel)
-    return f"lengths ({scene.unit}): {', '.join(lengths)}"
+    return f"{axis_label(measure, scene)}: {', '.join(given)}"
 
 
 def draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> None:
