@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 from bezierplan.analysis import statistics
 from bezierplan.figures import style
 from bezierplan.figures.panels import PICK, Pick, RunsPanel, exactly_one
-from bezierplan.figures.panels.lines import LIMITS, constants, interval_band, published_means, runs_note, shared_limits
+from bezierplan.figures.panels.lines import LIMITS, constants, interval_band, published, runs_note, shared_limits
 from bezierplan.figures.panels.paths import feasible_note, picked, run_note
 from bezierplan.study.model import Column, Flag, Line, Whole, wrong
 
@@ -135,7 +135,7 @@ def _published_ends(results: Results, frame: pd.DataFrame, hue: str) -> np.ndarr
     printed = np.full(len(frame), np.nan)
     last = frame["generation"] == frame["generation"].max()
     for value, own in results.runs.groupby(hue):
-        printed[last & (frame[hue] == value)] = next(iter(published_means(results, own, "objective")), np.nan)
+        printed[last & (frame[hue] == value)] = next(iter(published(results, own, "objective")), np.nan)
     return printed
 
 
