@@ -340,7 +340,7 @@ def _write_letter(axes: Axes, place: np.ndarray, letter: str) -> None:
 
     inwards = np.where(place <= [np.mean(axes.get_xlim()), np.mean(axes.get_ylim())], 1, -1)
     halo = [patheffects.withStroke(linewidth=2, foreground=style.FREE)]
-    beside = {"xytext": (13, 3) * inwards, "textcoords": "offset points", "ha": "center", "va": "center"}
+    beside = {"xytext": (13, 5) * inwards, "textcoords": "offset points", "ha": "center", "va": "center"}
     axes.annotate(letter, place, weight="bold", zorder=7, path_effects=halo, **beside)
 
 
@@ -387,10 +387,10 @@ def _note(frame: pd.DataFrame, unit: str, narrow: bool) -> str:
         words.append(f"{len(control.drop_duplicates())} of {len(control)} control points distinct")
     lines = [", ".join(words), feasible_note(frame)]
     if "printed" in frame and np.isfinite(row["printed"]):
-        lines.append(f"shortest one printed {row['printed']:.2f} {unit}")
+        lines.append(f"shortest printed {row['printed']:.2f} {unit}")
     if (frame["part"] == "optimum").any():
         cells, bound = (_joined(frame[frame["part"] == part]) for part in ("optimum", "bound"))
-        lines.append(f"shortest from cell to cell {cells:.2f} {unit}, at any angle {bound:.2f} {unit}")
+        lines.append(f"shortest from cell to cell {cells:.2f}, at any angle {bound:.2f}")
     return run_note(frame, *lines)
 
 
