@@ -89,7 +89,7 @@ def test_figures_may_show_controls_by_name():
     own = reading.load(reading.read_config({"studies": ["elhoseny2017"]}))["elhoseny2017"]
     assert jobs.methods_of(own, "figure7", "fields100") == ["straight_line"]
     assert jobs.methods_of(own, "figure10", "fields100") == ["prm", "abc_ep", "ga", "mga"]
-    assert jobs.caption(own, "figure7", "full").startswith(own.figures["figure7"]["title"])
+    assert jobs.caption(own, "figure7", "full").startswith(own.figures["figure7"].title)
 
 
 def curve_of(marks):

@@ -307,10 +307,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
         workspace = scene.problems[panel["experiment"]][frame["problem"].iloc[0]].workspace
         workspaces.shade(axes, workspaces.parts(workspace))
         workspaces.scale(axes, workspace.unit)
+        _draw_changes(axes, frame, workspace)
     if "hue" in panel:
         note = _draw_side_by_side(axes, frame, scene, panel)
     else:
-        _draw_changes(axes, frame, workspace)
         note = "" if "explicit" in panel or panel.get("bare") else _note(frame, workspace.unit, scene.narrow)
         draw_parts(axes, frame, narrow=scene.narrow, clip="view" in panel)
     for part, letter in zip(("start", "target"), panel.get("letters", ())):
