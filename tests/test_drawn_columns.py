@@ -58,6 +58,7 @@ def test_each_line_is_that_of_its_group():
 
 def history():
     columns = {"objective": [9.0, 7.0, 6.0], "median": [19.0, 17.0, 16.0], "quantile10": [4.0, 3.0, 2.0], "quantile90": [29.0, 28.0, 27.0]}
+    columns |= {"low95": [8.0, 6.5, 5.5], "high95": [10.0, 7.5, 6.5]}
     run = {"problem": "across", "method": "a", "id": "s/first/across/a/3", "repeat": 3, "curve": "bezier", "length": 6.0}
     return pd.DataFrame({"generation": [0, 1, 2], **columns, "bound": 1.5, "reference": 1.75, **run, **COUNTS, "feasible": True})
 
@@ -78,6 +79,7 @@ def test_convergence_of_groups_shows_their_objectives():
     axes = drawn(convergence, pd.concat([history(), other]), hue="method")
     curves = [line.get_ydata().tolist() for line in axes.lines if len(line.get_xdata()) == 3 and line.get_transform() == axes.transData]
     assert curves == [[9, 7, 6], [49, 48, 44]]
+    assert band(axes) == ([0, 1, 2], [8, 6.5, 5.5], [10, 7.5, 6.5])
 
 
 def test_a_box_has_its_parts_where_they_lie():

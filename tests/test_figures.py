@@ -19,7 +19,7 @@ from bezierplan.figures import panels as kinds_of_panel
 from bezierplan.figures import sheet, style
 from bezierplan.figures.panels import along_path, bars, boxes, convergence, drawing, lines, paths, workspace
 from bezierplan.geometry import curves
-from bezierplan.workspaces import random_field
+from bezierplan.workspaces import ground, random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.polygons import Polygons
@@ -216,7 +216,7 @@ def test_paths_side_by_side(tmp_path):
     expected = ["other", "smooth (quadratic pieces)", "shortest path possible", "start", "target"]
     assert [text for text in legend if "cell" not in text] == expected
     length = found.runs["length"].iloc[1]
-    wanted = f"other {length + 1:.1f}, smooth (quadratic pieces) {length:.1f}"
+    wanted = f"length (unit): other {length + 1:.2f}, smooth (quadratic pieces) {length:.2f}"
     assert any(wanted in " ".join(text.split()) for text in words(figure))
 
 
@@ -224,6 +224,72 @@ def test_paths_side_by_side_say_who_has_none(tmp_path):
     found = results(feasible=(False, False, False))
     panel = {"kind": "paths", "experiment": "routes", "pick": LOWEST, "hue": "method"}
     assert any("(quadratic pieces) no path" in " ".join(text.split()) for text in words(drawn(found, [panel], 1, tmp_path)))
+
+
+def test_paths_side_by_side_give_the_measure_that_is_asked_for(tmp_path):
+    found = results()
+    found.runs["clearance"] = [1.25, 2.5, 3.75]
+    panel = {"kind": "paths", "experiment": "routes", "pick": LOWEST, "hue": "method", "measure": "clearance"}
+    assert any(
+        "clearance (unit): smooth (quadratic pieces) 2.5" in " ".join(text.split()) for text in words(drawn(found, [panel], 1, tmp_path))
+    )
+
+
+def test_a_bare_field_shows_no_path(tmp_path):
+    panel = panels()[0] | {"bare": True, "letters": ["S", "T"]}
+    assert set(paths.data(results(), pick=LOWEST, bare=True)["part"]) == {"start", "target"}
+    figure = drawn(results(), [panel], 1, tmp_path)
+    assert {"S", "T", "start", "target"} <= set(words(figure))
+    assert not any("run" in text or "path" in text for text in words(figure))
+
+
+def test_only_runs_that_have_some_of_a_metric_are_picked():
+    found = results((True, True, True))
+    inside = [5.0, 5.0, 25.0, 15.0, 5.0, 35.0, 5.0, 35.0, 35.0, 35.0]  # the second one is the centre of an occupied cell
+    found.runs.at[0, "path_points"] = inside
+    best, having = (paths.data(found, pick=LOWEST | more) for more in ({}, {"having": "occupied_points"}))
+    assert best["run"].iloc[0].endswith("/2")
+    assert having["run"].iloc[0].endswith("/0")
+    assert having.loc[having["part"] == "occupied", ["x", "y"]].to_numpy().tolist() == [[25, 15]]
+    assert "occupied" not in set(best["part"])
+
+
+def test_cells_that_changed_are_marked(tmp_path):
+    found = results()
+    other = found.problems["0_15"]._replace(name="before", workspace=from_lines(["....", ".#..", "..##", "...."], 10.0, "unit"))
+    found = found._replace(problems=found.problems | {"before": other})
+    frame = paths.data(found, pick=LOWEST, changed_from="before")
+    changed = {part: own[["x", "y"]].to_numpy().tolist() for part, own in frame.groupby("part") if part in ("appeared", "vanished")}
+    now, before = found.problems["0_15"].workspace.occupied, other.workspace.occupied
+    assert {part: len(cells) for part, cells in changed.items()} == {"appeared": (now & ~before).sum(), "vanished": (before & ~now).sum()}
+    for part, cells in changed.items():
+        for cell in cells:
+            at = other.workspace.cell_of(*cell)
+            assert now[at] == (part == "appeared") != before[at]
+    figure = drawn(found, [panels()[0] | {"changed_from": "before"}], 1, tmp_path)
+    assert {"occupied since the change", "free since the change"} <= set(words(figure))
+    with pytest.raises(ValueError, match="changed_from: gone: not a problem of the experiment"):
+        paths.data(found, pick=LOWEST, changed_from="gone")
+
+
+def test_the_shortest_path_from_cell_to_cell_has_the_length_of_the_optimum(tmp_path):
+    found = results()
+    frame = paths.data(found, pick=LOWEST, cell_optimum=True)
+    way = frame.loc[frame["part"] == "optimum", ["x", "y"]].to_numpy()
+    np.testing.assert_array_equal(way[[0, -1]], [[5, 5], [35, 35]])
+    least = ground.least_energy(grid(), 1.0, False, 0, 15)
+    assert np.hypot(*np.diff(way, axis=0).T).sum() == pytest.approx(10 * least), "cells of 10 units"
+    note = f"shortest from cell to cell {10 * least:.2f}, at any angle"
+    panel = panels()[0] | {"cell_optimum": True}
+    assert any(note in " ".join(text.split()) for text in words(drawn(found, [panel], 1, tmp_path)))
+
+
+def test_a_path_stands_beside_the_shortest_one_printed(tmp_path):
+    numbers = {"table": ["table1", "table1", "table2"], "method": "smooth", "metric": "length", "statistic": ["min", "max", "min"]}
+    found = results()._replace(published=pd.DataFrame({**numbers, "value": [44.125, 70.0, 1.0]}))
+    panel = panels()[0] | {"printed": "table1"}
+    assert set(paths.data(found, pick=LOWEST, printed="table1")["printed"]) == {44.125}
+    assert any("shortest printed 44.12 unit" in text for text in words(drawn(found, [panel], 1, tmp_path)))
 
 
 def test_large_fields_are_drawn_by_their_circles():
@@ -269,6 +335,36 @@ def test_convergence_of_groups_holds_last_values():
     np.testing.assert_allclose(coarse, [middle + 9, middle, middle])
     median = convergence.data(comparison(), hue="points", statistic="median")
     np.testing.assert_allclose(median.loc[median["points"] == 3, "objective"].iloc[-1], 33 + 3.5)
+
+
+def test_convergence_goes_on_to_the_end_that_is_asked_for():
+    frame = convergence.data(comparison(), hue="method", until=5)
+    coarse = frame[frame["method"] == "coarse"]
+    assert list(coarse["generation"]) == [0, 1, 2, 3, 4, 5]
+    assert coarse["objective"].iloc[2:].nunique() == 1
+    assert list(convergence.data(results(), pick=LOWEST, until=4)["objective"]) == [90, 70, 59, 59, 59]
+    assert list(convergence.data(results(), pick=LOWEST, until=1)["generation"]) == [0, 1, 2], "no run is cut"
+
+
+def test_convergence_of_groups_has_the_interval_of_its_statistic():
+    frame = convergence.data(comparison(), hue="method", until=5)
+    assert (frame["low95"] < frame["objective"]).all()
+    assert (frame["objective"] < frame["high95"]).all()
+    assert frame[frame["generation"] > 2].groupby("method")[["low95", "high95"]].nunique().eq(1).all(axis=None)
+    # Histories differ by a constant from generation 0 to the last one, so do intervals from the same draws.
+    width = (frame["high95"] - frame["low95"]).groupby(frame["method"]).agg(["first", "last"])
+    np.testing.assert_allclose(width["first"], width["last"])
+
+
+def test_convergence_marks_the_printed_means_of_one_table(tmp_path):
+    published = pd.concat([printed_means().assign(table="table3"), printed_means().assign(table="table4", value=1.0)], ignore_index=True)
+    found = comparison(published[published["points"].isna()])
+    frame = convergence.data(found, hue="method", until=5, printed="table3")
+    marked = frame[frame["printed"].notna()]
+    assert marked[["method", "generation", "printed"]].to_numpy().tolist() == [["smooth", 5, 36.5]]
+    panel = {"kind": "convergence", "experiment": "routes", "hue": "method", "printed": "table3"}
+    assert "published final mean, in the mark of its line" in words(drawn(found, [panel], 1, tmp_path))
+    assert "printed" not in convergence.data(comparison(), hue="method", printed="table3")
 
 
 def test_names_beside_lines_are_in_the_order_of_the_last_values(tmp_path):
@@ -320,6 +416,27 @@ def test_lines_draw_the_table_of_a_function(tmp_path):
     joined = [axes.lines[0].get_linestyle() for axes in figure.axes]
     assert [len(axes.lines[0].get_xdata()) for axes in figure.axes] == [9, 300]
     assert joined == ["-", "None"], "many points are not joined"
+
+
+def test_what_has_no_order_is_not_joined(tmp_path):
+    panel = {"kind": "lines", "experiment": "routes", "x": "points", "metric": "length", "hue": "method", "joined": False}
+    axes = drawn(comparison(), [panel], 1, tmp_path).axes[0]
+    marks = [line for line in axes.lines if len(line.get_xdata()) == 3]
+    assert [line.get_linestyle() for line in marks] == ["None"] * 3
+    places = np.array([line.get_xdata() for line in marks])
+    np.testing.assert_allclose(places.mean(axis=0), [2, 3, 5])
+    assert (np.diff(places, axis=0) > 0.1).all(), "groups stand beside each other"
+    assert list(axes.get_xticks()) == [2, 3, 5]
+
+
+def test_boxes_show_published_ends_and_a_limit(tmp_path):
+    ends = pd.DataFrame({"method": "smooth", "metric": "objective", "statistic": ["min", "max"], "value": [31.0, 44.0]})
+    frame = boxes.data(comparison(ends), metric="objective", limit=33.5)
+    assert frame.loc[frame["part"] == "published_end", ["method", "value"]].to_numpy().tolist() == [["smooth", 31.0], ["smooth", 44.0]]
+    assert frame.loc[frame["part"] == "limit", "value"].tolist() == [33.5]
+    panel = {"kind": "boxes", "experiment": "routes", "metric": "objective", "limit": 33.5}
+    figure = drawn(comparison(ends), [panel], 1, tmp_path)
+    assert {"published least and largest value", "published limit: 33.5 unit"} <= set(words(figure))
 
 
 def test_boxes_end_at_the_last_value_within_reach():
@@ -546,7 +663,7 @@ def test_axes_have_units(tmp_path):
     figure = drawn(results(), panels(), 2, tmp_path)
     labels = [label for axes in figure.axes for label in (axes.get_xlabel(), axes.get_ylabel()) if label]
     assert len(labels) == 8, "four panels with scales"
-    assert all(label.endswith(("(unit)", "(1/unit)", "(m)", "(-)")) for label in labels)
+    assert all(label.endswith(("(unit)", "(1/unit)", "(m)")) or label in ("generation", "curve parameter t") for label in labels)
 
 
 def test_panels_have_letters_and_the_reading_of_the_curve(tmp_path):
@@ -584,7 +701,7 @@ def test_equal_data_gives_equal_bytes_in_another_process(tmp_path):
     subprocess.run([sys.executable, "-c", command, str(there)], check=True, cwd=File(__file__).parent)
     for name in ("figure.svg", "figure.png", "figure.csv"):
         assert (here / name).read_bytes() == (there / name).read_bytes(), name
-    assert "generation (-)" in (here / "figure.svg").read_text(), "words of a figure stay words"
+    assert "generation" in (here / "figure.svg").read_text(), "words of a figure stay words"
 
 
 @pytest.mark.parametrize("kind", kinds_of_panel.kinds())

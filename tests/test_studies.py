@@ -131,6 +131,17 @@ def test_local_minima():
     assert np.argwhere(tharwat2018.local_minima(bowl)).tolist() == [[4, 3]]
     assert tharwat2018.local_minima(-np.outer([0, 1, 0, 1, 0], [0, 1, 0, 1, 0]).astype(float)).sum() == 4
     assert not tharwat2018.local_minima(np.zeros((5, 5))).any(), "not strict"
+
+
+def test_nodes_of_one_valley_are_one_minimum():
+    """A narrow valley oblique to the grid has many local minima, two wells that a ridge parts are two."""
+    x, y = np.meshgrid(np.linspace(-1, 1, 81), np.linspace(-1, 1, 81), indexing="ij")
+    valley = 10 + np.abs(y - 0.37 * x) + 0.01 * x**2
+    assert tharwat2018.local_minima(valley).sum() > 1
+    assert np.abs(np.argwhere(tharwat2018.valleys(valley)) - 40).max() <= 1
+    assert tharwat2018.valleys(valley).sum() == 1
+    wells = 10 + np.minimum((x - 0.5) ** 2, 0.1 + (x + 0.5) ** 2) + y**2
+    assert np.argwhere(tharwat2018.valleys(wells)).tolist() == [[20, 40], [60, 40]]
     assert not tharwat2018.local_minima(np.add.outer(np.arange(5), np.arange(5))).any(), "at the edge"
 
 

@@ -42,7 +42,7 @@ SETTINGS = {
     "svg.hashsalt": "bezierplan",  # equal drawings get equal identifiers
 }
 
-RED, BLUE, BLACK = "#DD3322", "#004488", "#000000"
+RED, BLUE, BLACK, AMBER = "#DD3322", "#004488", "#000000", "#E69F00"
 LIGHT_BLUE = "#B7CDE6"
 
 # What a paper prints, and what is found here: the same in all figures of all papers.
@@ -64,7 +64,6 @@ _HATCHES = ("", "////", "", "\\\\\\\\", "", "....", "", "xxxx")
 # Numbers take their colours from a scale, the higher the lighter, without its lightest end, which paper swallows.
 SCALE, _LIGHTEST = "viridis", 0.8
 
-INTERVAL_BAND = {"color": "0.5", "alpha": 0.3, "linewidth": 0}
 BOX = {"facecolor": LIGHT_BLUE, "edgecolor": BLUE, "linewidth": 0.7}
 PUBLISHED_MARK = {"color": BLACK, "linestyle": "", "marker": "D", "markersize": 4.5, "markerfacecolor": "#FFFFFF", "markeredgewidth": 0.9}
 
@@ -87,6 +86,11 @@ def ground(share: float) -> str:
     import matplotlib as mpl
 
     return mpl.colors.to_hex(mpl.colormaps["Purples"](0.6 * share))
+
+
+def interval_band(colour: str) -> dict[str, Any]:
+    """The look of the interval of a line: pale in the line's colour, with an edge that stays visible where bands overlap."""
+    return {"facecolor": (colour, 0.12), "edgecolor": (colour, 0.5), "linewidth": 0.4}
 
 
 def lines(values: list[Any]) -> list[dict[str, Any]]:

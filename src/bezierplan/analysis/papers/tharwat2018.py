@@ -33,6 +33,7 @@ MOST_POINTS = 4  # control points of the best curves that are sought
 
 MOVED = 1  # which of them moves in Figures 10 and 11: the middle one
 GRID = 201  # places along each side of the field
+RIM = 0.01  # how far a valley's edge lies at least above its lowest node, as a share of its value
 
 START, TARGET = (0.0, 0.0), (4.0, 6.0)  # Section 5.1, in units
 
@@ -181,7 +182,7 @@ def bowl_with_local_minima(
     """Claim C16: is the fitness over one control point a bowl, and are there several local minima in it?
 
     The effect is Spearman's correlation, over the nodes of `landscape`, of the fitness with the distance to the best node. A bowl has more
-    than 0.5, and a second strict minimum makes several: + if both hold, - if either fails.
+    than 0.5, and a second valley makes several: + if both hold, - if either fails.
     """
     from scipy import stats
 
@@ -190,17 +191,17 @@ def bowl_with_local_minima(
     best = surface.loc[surface["fitness"].idxmin()]
     distance = np.hypot(surface["x"] - best["x"], surface["y"] - best["y"])
     correlation = float(stats.spearmanr(surface["fitness"], distance).statistic)
-    minima = int(local_minima(surface["fitness"].to_numpy().reshape(GRID, GRID)).sum())
+    minima = int(valleys(surface["fitness"].to_numpy().reshape(GRID, GRID)).sum())
     return "+" if correlation > 0.5 and minima > 1 else "-", correlation, None, len(surface)
 
 
 def fitness_landscape(results: Results) -> pd.DataFrame:
     """Figures 10 to 12: `landscape` of the problem of runs, with the settings in force.
 
-    Columns: part, x, y, objective; parts: node, minimum (a strict local one), lowest (the lowest node), fixed (control points that stay).
+    Columns: part, x, y, objective; parts: node, minimum (of a valley), lowest (the lowest node), fixed (control points that stay).
     """
     surface = _landscape(results).rename(columns={"fitness": "objective"})
-    minima = surface[local_minima(surface["objective"].to_numpy().reshape(GRID, GRID)).ravel()]
+    minima = surface[valleys(surface["objective"].to_numpy().reshape(GRID, GRID)).ravel()]
     stay = np.delete(BEST_KNOWN[results.runs["workspace"].iloc[0]], MOVED, axis=0)
     parts = {
         "node": surface,
@@ -319,6 +320,21 @@ def local_minima(values: np.ndarray) -> np.ndarray:
             if (i, j) != (1, 1):
                 lower &= inner < values[i : i + rows, j : j + columns]
     return np.pad(lower, 1)
+
+
+def valleys(values: np.ndarray) -> np.ndarray:
+    """Which values of a grid (n, m) are the lowest of a valley of their own: (n, m).
+
+    A local minimum is of another's valley if a way over neighbouring nodes leads from it to a lower node and climbs by no more than `RIM`.
+    Along a narrow valley that is oblique to the grid there are many such.
+    """
+    from scipy import ndimage
+
+    lowest = local_minima(values)
+    for node in zip(*np.nonzero(lowest)):
+        valley, _ = ndimage.label(values <= values[node] * (1 + RIM), structure=np.ones((3, 3)))
+        lowest[node] = values[valley == valley[node]].min() == values[node]
+    return lowest
 
 
 def several_homotopy_classes(

@@ -11,7 +11,7 @@ from typing import ClassVar
 
 from pydantic import Field, model_validator
 
-from bezierplan.study.model import Column, Experiment, Flag, Function, Line, Model, Where, Whole, Workspace, wrong
+from bezierplan.study.model import Column, Experiment, Flag, Function, Line, Metric, Model, Where, Whole, Workspace, wrong
 
 
 class Panel(Model):
@@ -52,15 +52,20 @@ class Pick(Model):
     lowest: Column = Field(None, description="a column of the runs table: the feasible run with its lowest value")
     median: Column = Field(None, description="a column of the runs table: the feasible run with its median value")
     repeat: Whole = Field(None, description="a whole number: the run of that repeat")
+    having: Metric = Field(None, description="beside one of these, the name of a metric: only runs that have more than 0 of it count")
 
     @model_validator(mode="after")
     def _check_one(self) -> "Pick":
-        if len(self.model_fields_set) != 1:
-            raise wrong(f"{len(self.model_fields_set)} keys; expected {{lowest: column}}, {{median: column}} or {{repeat: number}}")
+        ways = self.model_fields_set - {"having"}
+        if len(ways) != 1:
+            raise wrong(f"{len(ways)} keys; expected {{lowest: column}}, {{median: column}} or {{repeat: number}}")
         return self
 
 
-PICK = "which run: {lowest: column} or {median: column} of the feasible ones, or {repeat: number}"
+PICK = (
+    "which run: {lowest: column} or {median: column} of the feasible ones, or {repeat: number}; with having: metric, only of those that "
+    "have more than 0 of it"
+)
 
 
 def exactly_one(panel: Model, *keys: str) -> None:

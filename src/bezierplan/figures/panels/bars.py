@@ -81,7 +81,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
         names = [name.replace(" ", "\n") for name in names]
     axes.set_xticks(range(len(groups)), names)
     axes.tick_params(axis="x", length=0, pad=32 if panel.get("below") != "count" else 14)  # below what stands under the bars
-    axes.set_xlabel(f"{style.column_name(x, scene.labels)} (-)")
+    axes.set_xlabel(style.column_name(x, scene.labels))
     axes.set_ylabel(axis_label(panel["metric"], scene, panel.get("statistic", "mean")))
     axes.grid(visible=True, axis="y")
     return f"below each bar: {panel.get('below', 'share')} of feasible runs"

@@ -10,8 +10,8 @@ from pydantic import Field
 from bezierplan.analysis import metrics
 from bezierplan.figures import style
 from bezierplan.figures.panels import RunsPanel
-from bezierplan.figures.panels.lines import LIMITS, axis_label, constants, runs_note, shared_limits
-from bezierplan.study.model import Column, Flag, Metric
+from bezierplan.figures.panels.lines import LIMITS, axis_label, constants, published, runs_note, shared_limits
+from bezierplan.study.model import Column, Flag, Metric, Number
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -27,9 +27,6 @@ _REACH = 1.5
 _PARTS = {"low": "whislo", "quartile1": "q1", "median": "med", "quartile3": "q3", "high": "whishi"}
 
 
-# Columns of published numbers that tell no runs apart.
-_PRINTED = ["table", "metric", "statistic", "n", "unit", "value"]
-
 # Published means farther away than so many times the range of all that is found here stand at the edge, with their value.
 _FAR = 0.25
 
@@ -42,16 +39,18 @@ class Options(RunsPanel):
     metric: Metric = Field(description="the name of a metric")
     by: Column = Field("method", description="a column of the runs table: a box for each of its values; left out: method")
     limits: Flag = Field(False, description="whether the exact bound and the reference are drawn, true or false")
+    limit: Number = Field(None, description="the published limit of the metric, a number")
 
 
-def data(results: Results, *, metric: str, by: str = "method", limits: bool = False) -> pd.DataFrame:
+def data(results: Results, *, metric: str, by: str = "method", limits: bool = False, limit: float | None = None) -> pd.DataFrame:
     """One row a part of a box; columns: those of `lines.constants`, `by` by its own name, runs and feasible_runs (counts), part, value.
 
     Parts: low and high (where the whiskers end), quartile1, median, quartile3; beyond, a value beyond the whiskers; mean; published, the
-    mean that the paper prints. Values are in the metric's unit, of the runs that have the metric. A group without any has no rows. With
-    limits, of no group: reference (the best known path of the kind) and bound (the exact shortest length), each where all runs share it.
+    mean that the paper prints, and published_end, the least and the largest value that it prints. Values are in the metric's unit, of the
+    runs that have the metric. A group without any has no rows. Of no group: limit; and with limits reference (the best known path of the
+    kind) and bound (the exact shortest length), each where all runs share it.
 
-    by: a column of the runs table. Raises KeyError for an unknown metric or column.
+    by: a column of the runs table. limit: the published one. Raises KeyError for an unknown metric or column.
     """
     import pandas as pd
 
@@ -59,10 +58,14 @@ def data(results: Results, *, metric: str, by: str = "method", limits: bool = Fa
     rows = []
     for group, own in runs.groupby(by):
         named = constants(runs) | {by: group, "runs": len(own), "feasible_runs": int(own["feasible"].sum())}
-        parts = _box(np.sort(own["value"].dropna().to_numpy())) + [("published", mean) for mean in _published_means(results, own, metric)]
+        parts = _box(np.sort(own["value"].dropna().to_numpy()))
+        for part, statistic in (("published", "mean"), ("published_end", "min"), ("published_end", "max")):
+            parts += [(part, value) for value in published(results, own, metric, statistic)]
         rows += [named | {"part": part, "value": value} for part, value in parts]
     if limits:
         rows += [constants(runs) | {"part": name, "value": value} for name, value in shared_limits(runs).items()]
+    if limit is not None:
+        rows.append(constants(runs) | {"part": "limit", "value": limit})
     return pd.DataFrame(rows)
 
 
@@ -78,21 +81,6 @@ def _box(values: np.ndarray) -> list[tuple[str, float]]:
     return box + [("beyond", value) for value in values[~inside]]
 
 
-def _published_means(results: Results, runs: pd.DataFrame, metric: str) -> list[float]:
-    """Means of a metric that the paper prints for the problem, method and settings of runs; a row's empty keys fit all runs.
-
-    A number that stands in several tables is one number.
-    """
-    found = results.published
-    if found is None:
-        return []
-    found = found[(found["metric"] == metric) & (found["statistic"] == "mean")]
-    for column in found.columns.difference(_PRINTED):
-        fits = found[column].isin(runs[column]) if column in runs else False
-        found = found[found[column].isna() | fits]
-    return sorted(found["value"].unique())
-
-
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     """Draw the rows of `data`, the first box on top; returns the note below the panel's title."""
     by = panel.get("by", "method")
@@ -102,10 +90,13 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     for name, look in LIMITS.items():
         for value in frame.loc[frame["part"] == name, "value"]:
             axes.axvline(value, zorder=1.5, **look)
+    for value in frame.loc[frame["part"] == "limit", "value"]:
+        axes.axvline(value, zorder=1.5, label=f"published limit: {value:g} {scene.unit}", **style.PUBLISHED)
     far = _draw_far(axes, own, frame.loc[frame["part"].isin(list(LIMITS)), "value"].to_list())
     marks = {
         "beyond": {"color": style.BLUE, "marker": ".", "markersize": 1.6, "label": f"beyond {_REACH} interquartile ranges", "zorder": 1},
         "mean": {"color": style.RED, "marker": "x", "markersize": 4, "label": "mean", "zorder": 4},
+        "published_end": {"color": style.BLACK, "marker": "|", "markersize": 9, "label": "published least and largest value", "zorder": 5},
         "published": {**style.PUBLISHED_MARK, "label": "published mean", "zorder": 5},
     }
     for part, look in marks.items():

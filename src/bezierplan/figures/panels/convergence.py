@@ -1,4 +1,7 @@
-"""The best objective of each generation: one picked run with median and spread of all runs, or a line a method or value of a factor."""
+"""The best objective of each generation: one picked run with median and spread of all runs, or a line a method or value of a factor.
+
+A study's label of `generation` names the axis, such as `iteration` for a swarm.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +13,9 @@ from pydantic import Field, model_validator
 from bezierplan.analysis import statistics
 from bezierplan.figures import style
 from bezierplan.figures.panels import PICK, Pick, RunsPanel, exactly_one
-from bezierplan.figures.panels.lines import LIMITS, constants, runs_note, shared_limits
+from bezierplan.figures.panels.lines import LIMITS, constants, interval_band, published, runs_note, shared_limits
 from bezierplan.figures.panels.paths import feasible_note, picked, run_note
-from bezierplan.study.model import Column, Flag, wrong
+from bezierplan.study.model import Column, Flag, Line, Whole, wrong
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -27,6 +30,9 @@ _NAME_GAP = 0.08
 # Marks on a line of a group, at other generations than those of the other lines.
 _MARKS = 5
 
+# Published means stand side by side at the end of the axis, so far apart, as a share of it: at one place they would hide each other.
+_MARK_STEP = 0.03
+
 
 class Options(RunsPanel):
     """Keys of a panel."""
@@ -35,12 +41,21 @@ class Options(RunsPanel):
     hue: Column = Field(None, description="in place of pick, a column of the runs table: a line for each of its values")
     statistic: Literal["mean", "median"] = Field("mean", description="with hue, of its runs: mean (left out: this) or median")
     reference: Flag = Field(False, description="whether the reference of the problem is drawn, true or false")
+    until: Whole = Field(None, description="the generation at which the axis ends; left out: the last one of the longest run")
+    printed: Line = Field(None, description="with hue, the name of a published table whose means are marked beside the last values")
+
+    @property
+    def published_drawn(self) -> bool:
+        """Whether published numbers are drawn."""
+        return self.printed is not None
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
         exactly_one(self, "pick", "hue")
         if "statistic" in self.model_fields_set and self.hue is None:
             raise wrong("statistic: needs hue")
+        if self.printed is not None and self.hue is None:
+            raise wrong("printed: needs hue")
         return self
 
 
@@ -51,6 +66,8 @@ def data(
     hue: str | None = None,
     statistic: Literal["mean", "median"] = "mean",
     reference: bool = False,
+    until: int | None = None,
+    printed: str | None = None,
 ) -> pd.DataFrame:
     """One row a generation, and with `hue` one for each of its values as well. A run that stopped early keeps its last objective.
 
@@ -58,23 +75,27 @@ def data(
 
     With `pick`, columns: those of `paths.picked`, generation, objective (of the picked run; empty without one), median, quantile10 and
     quantile90, bound. With `hue`, columns: those of `lines.constants`, the hue's own name, runs and feasible_runs (counts), generation,
-    objective (the statistic), bound (empty where problems differ in it). With `reference` a column of that name, the length of the best
-    known path of the methods' own kind, empty where problems differ in it.
+    objective (the statistic), low95 and high95 (its 95 % bootstrap interval), bound (empty where problems differ in it). With `reference` a
+    column of that name, the length of the best known path of the methods' own kind, empty where problems differ in it. With `printed` a
+    column of that name, the mean that this published table has for a group, in the row of the last generation.
 
-    pick: the run, as in `analysis.results.pick`. hue: a column of the runs table. Raises ValueError unless either is given, and with `pick`
-    unless all runs are of one problem and one method.
+    pick: the run, as in `analysis.results.pick`. hue: a column of the runs table. until: the generation at which rows end, if no run is
+    longer. Raises ValueError unless either pick or hue is given, and with `pick` unless all runs are of one problem and one method.
     """
     if (pick is None) == (hue is None):
         raise ValueError("a panel of kind convergence needs either pick or hue")
-    frame = _of_one_run(results, pick) if hue is None else _of_groups(results, hue, statistic)
+    generations = max(results.runs["history"].map(len).max(), 0 if until is None else until + 1)
+    frame = _of_one_run(results, pick, generations) if hue is None else _of_groups(results, hue, statistic, generations)
+    if printed is not None and results.published is not None:
+        table = results.published[results.published["table"] == printed]
+        frame["printed"] = _published_ends(results._replace(published=table), frame, hue)
     return frame.assign(reference=shared_limits(results.runs).get("reference", np.nan)) if reference else frame
 
 
-def _of_one_run(results: Results, pick: dict[str, Any]) -> pd.DataFrame:
+def _of_one_run(results: Results, pick: dict[str, Any], generations: int) -> pd.DataFrame:
     import pandas as pd
 
     run, names = picked(results, pick)
-    generations = max(len(history) for history in results.runs["history"])
     histories = np.array([_lengthened(history, generations) for history in results.runs["history"]])
     low, median, high = np.quantile(histories, [0.1, 0.5, 0.9], axis=0)
     shown = np.full(generations, np.nan) if run is None else _lengthened(run["history"], generations)
@@ -83,20 +104,39 @@ def _of_one_run(results: Results, pick: dict[str, Any]) -> pd.DataFrame:
     return frame[[*names, "generation", "objective", "median", "quantile10", "quantile90", "bound"]]
 
 
-def _of_groups(results: Results, hue: str, statistic: str) -> pd.DataFrame:
+def _of_groups(results: Results, hue: str, statistic: str, generations: int) -> pd.DataFrame:
     # Sorted, so that no sum depends on the order in which chunks were read.
     import pandas as pd
 
     runs = results.runs.sort_values("id")
-    generations = max(len(history) for history in runs["history"])
     frames = []
     for value, own in runs.groupby(hue):
         histories = np.array([_lengthened(history, generations) for history in own["history"]])
         named = constants(runs) | {hue: value, "runs": len(own), "feasible_runs": int(own["feasible"].sum())}
         objective = statistics.STATISTICS[statistic](histories.T)
-        frames.append(pd.DataFrame(named | {"generation": range(generations), "objective": objective}))
+        low, high = _intervals(histories, statistic, f"convergence/{hue}={value}")
+        frames.append(pd.DataFrame(named | {"generation": range(generations), "objective": objective, "low95": low, "high95": high}))
     bound = runs["bound"].iloc[0] if runs["bound"].nunique() == 1 else np.nan
     return pd.concat(frames, ignore_index=True).assign(bound=bound)
+
+
+def _intervals(histories: np.ndarray, statistic: str, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Ends of the 95 % interval of a statistic of histories (n, generations): (generations,) each, all from the same draws of runs."""
+    ends = []
+    for generation, values in enumerate(histories.T):
+        held = generation > 0 and np.array_equal(values, histories[:, generation - 1])
+        ends.append(ends[-1] if held else statistics.interval(statistic, values, statistics.generator(name)))
+    low, high = np.transpose(ends)
+    return low, high
+
+
+def _published_ends(results: Results, frame: pd.DataFrame, hue: str) -> np.ndarray:
+    """For each row of `data` the published mean of its group, at the last generation only."""
+    printed = np.full(len(frame), np.nan)
+    last = frame["generation"] == frame["generation"].max()
+    for value, own in results.runs.groupby(hue):
+        printed[last & (frame[hue] == value)] = next(iter(published(results, own, "objective")), np.nan)
+    return printed
 
 
 def _lengthened(history: list[float], generations: int) -> np.ndarray:
@@ -108,7 +148,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     """Draw the rows of `data`; returns the note below the panel's title."""
     axes.set_xlim(0, max(1, frame["generation"].max()))
     axes.xaxis.get_major_locator().set_params(integer=True)
-    axes.set_xlabel("generation (-)")
+    axes.set_xlabel(style.column_name("generation", scene.labels))
     axes.grid(visible=True)
     for name, look in LIMITS.items():
         if name in frame and np.isfinite(frame[name].iloc[0]):
@@ -136,7 +176,12 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> st
     lines = [frame.loc[frame[hue] == group] for group in groups]
     for number, (own, look) in enumerate(zip(lines, looks)):
         step = max(1, len(own) // _MARKS)
+        interval_band(axes, own["generation"], own["low95"], own["high95"], look["color"], f"95 % interval of the {statistic}")
         axes.plot(own["generation"], own["objective"], markevery=(number * step // len(groups), step), **look)
+        if "printed" in own and np.isfinite(own["printed"].iloc[-1]):
+            place = own["generation"].iloc[-1] * (1 - _MARK_STEP * (len(groups) - 1 - number))
+            mark = {"marker": look["marker"], "markerfacecolor": look["color"], "label": "published final mean, in the mark of its line"}
+            axes.plot(place, own["printed"].iloc[-1], clip_on=False, zorder=5, **(style.PUBLISHED_MARK | mark))
     axes.set_ylabel(f"{statistic} objective ({scene.unit})")
     axes.set_box_aspect(style.HIGH_PANEL_HEIGHT)
     _name_lines(axes, [own["objective"].iloc[-1] for own in lines], [style.printed(group, hue, scene.labels) for group in groups], looks)

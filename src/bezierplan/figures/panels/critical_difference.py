@@ -112,6 +112,6 @@ def _draw_scale(axes: Axes, count: int, difference: float) -> None:
     for rank in range(1, count + 1):
         axes.plot([rank, rank], [0, 0.25], **thin)
         axes.text(rank, 0.35, str(rank), ha="center", va="bottom")
-    axes.text((1 + count) / 2, 1.25, "mean rank (-)", ha="center", va="bottom")
+    axes.text((1 + count) / 2, 1.25, "mean rank", ha="center", va="bottom")
     axes.plot([1, 1 + difference], [2.35, 2.35], marker="|", markersize=4, **thin)
     axes.text(1 + difference, 2.35, f" critical difference {difference:.2f}", ha="left", va="center")

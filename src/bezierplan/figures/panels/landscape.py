@@ -26,7 +26,7 @@ _STEPS = 16
 _NUMBERS = (1, 2, 5)
 
 _LOOK = {
-    "minimum": {"color": style.BLACK, "marker": ".", "markersize": 4.5, "markerfacecolor": "#FFFFFF", "label": "local minimum"},
+    "minimum": {"color": style.BLACK, "marker": "o", "markersize": 3.5, "markerfacecolor": "#FFFFFF", "label": "local minimum"},
     "lowest": {"color": style.RED, "marker": "X", "markersize": 7, "markeredgecolor": "#FFFFFF", "label": "lowest value"},
     "fixed": {"color": style.BLUE, "marker": "o", "markersize": 4.5, "markerfacecolor": "#FFFFFF", "label": "control point that stays"},
     "start": workspaces.START,
@@ -43,7 +43,7 @@ class Options(RunsPanel):
 def data(source: tuple[Results, pd.DataFrame]) -> pd.DataFrame:
     """What is drawn, one row a place; columns: problem, part, x, y (in the workspace's unit), objective (of nodes, in units).
 
-    Parts: node (of a grid, y changing fastest), minimum (a node below its neighbours), lowest (the lowest of the nodes), fixed (what stays
+    Parts: node (of a grid, y changing fastest), minimum (the lowest node of a valley), lowest (the lowest of the nodes), fixed (what stays
     where it is), start, target. source: runs of one problem, and the table of a function with the columns part, x, y and objective. Raises
     ValueError for runs of several problems.
     """
@@ -102,7 +102,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 
 
 def minima_note(frame: pd.DataFrame, unit: str) -> str:
-    """How many local minima there are, and the range of the objective."""
+    """The range of the objective, and how many local minima it has."""
     values = frame.loc[frame["part"] == "node", "objective"]
     count = int((frame["part"] == "minimum").sum())
-    return f"{values.min():.2f} to {values.max():.0f} {unit}; {count} local minim{'um' if count == 1 else 'a'} of {len(values)} nodes"
+    return f"{values.min():.2f} to {values.max():.0f} {unit}; {count} local minim{'um' if count == 1 else 'a'}, {len(values)} nodes"

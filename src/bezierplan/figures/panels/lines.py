@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from bezierplan.analysis import metrics, statistics
 from bezierplan.figures import style
 from bezierplan.figures.panels import TablePanel, exactly_one
-from bezierplan.study.model import Column, Experiment, Function, Metric, Where, Whole, listed
+from bezierplan.study.model import Column, Experiment, Flag, Function, Metric, Where, Whole, listed
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
     from bezierplan.analysis.results import Results
 
+
+# Where lines do not join points, the groups of one x take so much of the way to the next.
+_SPREAD = 0.7
 
 # Of more points than this only the points are drawn: lines between values that jump would cover the panel.
 _MOST_JOINED = 100
@@ -36,6 +39,7 @@ class Options(TablePanel):
     hue: Column = Field(None, description="a column of the runs table or of the data: a line for each of its values")
     statistic: Literal["mean", "median", "share"] = Field("mean", description="of runs: mean (left out: this), median or share")
     repeats: listed(Whole) = Field((), description="a list of whole numbers: single runs that are drawn besides")
+    joined: Flag = Field(True, description="whether lines join points, true or false: false where x is a name in numbers, without order")
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
@@ -51,13 +55,14 @@ def data(
     statistic: Literal["mean", "median", "share"] = "mean",
     hue: str | None = None,
     repeats: Sequence[int] = (),
+    joined: bool = True,
 ) -> pd.DataFrame:
     """One row a point; columns: hue (if one is given) and x, both by their own names; part (statistic, repeat or value), value.
 
     Of runs: the columns of `summary` for the statistic, and repeat, the number of a single run. Of a table: the column `metric` as it is.
 
-    x: a numeric column. hue: a column, a line for each of its values. repeats: which single runs are drawn besides. Raises ValueError if a
-    single repeat has several runs at one place, and KeyError for an unknown metric or column.
+    x: a numeric column. hue: a column, a line for each of its values. repeats: which single runs are drawn besides. joined: whether lines
+    join points. Raises ValueError if a single repeat has several runs at one place, and KeyError for an unknown metric or column.
     """
     import pandas as pd
 
@@ -116,7 +121,31 @@ def axis_label(column: str, scene: Any, statistic: str = "") -> str:
     if column not in metrics.METRICS and style.column_name(column, scene.labels).endswith(")"):
         return f"{statistic} {style.column_name(column, scene.labels)}".lstrip()
     unit = metrics.unit(column, scene.unit) if column in metrics.METRICS else "-"
-    return f"{statistic} {style.column_name(column, scene.labels)} ({unit})".lstrip()
+    return f"{statistic} {style.column_name(column, scene.labels)}{'' if unit == '-' else f' ({unit})'}".lstrip()
+
+
+# Columns of published numbers that tell no runs apart.
+_PRINTED = ["table", "metric", "statistic", "n", "unit", "value"]
+
+
+def published(results: Results, runs: pd.DataFrame, metric: str, statistic: str = "mean") -> list[float]:
+    """Values of a metric's statistic that the paper prints for the problem, method and settings of runs; a row's empty keys fit all runs.
+
+    A number that stands in several tables is one number.
+    """
+    found = results.published
+    if found is None:
+        return []
+    found = found[(found["metric"] == metric) & (found["statistic"] == statistic)]
+    for column in found.columns.difference(_PRINTED):
+        fits = found[column].isin(runs[column]) if column in runs else False
+        found = found[found[column].isna() | fits]
+    return sorted(found["value"].unique())
+
+
+def interval_band(axes: Axes, x: pd.Series, low: pd.Series, high: pd.Series, colour: str, label: str) -> None:
+    """The interval of a line as a band in the line's colour."""
+    axes.fill_between(x, low, high, label=label, zorder=1.5, **style.interval_band(colour))
 
 
 def runs_note(frame: pd.DataFrame, statistic: str, where: str) -> str:
@@ -134,15 +163,20 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     of_runs = "experiment" in panel
     statistic = panel.get("statistic", "mean") if of_runs else ""
     groups = [None] if hue is None else style.in_order(frame[hue], panel)
-    for group, look in zip(groups, style.lines(groups)):
+    for number, (group, look) in enumerate(zip(groups, style.lines(groups))):
         own = frame if hue is None else frame[frame[hue] == group]
         label = statistic if hue is None else style.printed(group, hue, scene.labels)
-        if of_runs:
+        if of_runs and not panel.get("joined", True):
+            aside = _SPREAD * ((number + 0.5) / len(groups) - 0.5)
+            _draw_apart(axes, own[own["part"] == "statistic"], x, aside, look | {"label": label})
+        elif of_runs:
             _draw_statistic(axes, own[own["part"] == "statistic"], x, look | {"label": label})
             _draw_repeats(axes, own[own["part"] == "repeat"], x, None if hue is None else look["color"])
         else:
             axes.plot(own[x], own["value"], label=label or None, **_joined(look, len(own)))
-    if (frame[x] % 1 == 0).all():
+    if not panel.get("joined", True):
+        axes.set_xticks(sorted(frame[x].unique()))
+    elif (frame[x] % 1 == 0).all():
         axes.xaxis.get_major_locator().set_params(integer=True)
     axes.set_xlabel(axis_label(x, scene))
     axes.set_ylabel(axis_label(panel["metric"], scene, statistic))
@@ -152,8 +186,15 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 
 def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict) -> None:
     """A line with marks in a band, the interval of its points."""
-    axes.fill_between(frame[x], frame["low95"], frame["high95"], label="95 % interval", zorder=1.5, **style.INTERVAL_BAND)
+    interval_band(axes, frame[x], frame["low95"], frame["high95"], look["color"], "95 % interval")
     axes.plot(frame[x], frame["value"], zorder=3, **look)
+
+
+def _draw_apart(axes: Axes, frame: pd.DataFrame, x: str, aside: float, look: dict) -> None:
+    """Marks that no line joins, each with its interval, moved aside so that groups stand beside each other."""
+    places = frame[x] + aside
+    axes.vlines(places, frame["low95"], frame["high95"], color=look["color"], linewidth=0.8, zorder=2, label="95 % interval")
+    axes.plot(places, frame["value"], zorder=3, **look | {"linestyle": ""})
 
 
 def _draw_repeats(axes: Axes, frame: pd.DataFrame, x: str, colour: str | None) -> None:

@@ -11,13 +11,17 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from pydantic import Field, model_validator
 
+from bezierplan.analysis import metrics
 from bezierplan.figures import style
 from bezierplan.figures.panels import PICK, Pick, RunsPanel, exactly_one
 from bezierplan.figures.panels import workspace as workspaces
+from bezierplan.figures.panels.lines import axis_label, published
 from bezierplan.geometry import curves
 from bezierplan.study.checked import closest
-from bezierplan.study.model import Column, Experiment, Line, Model, Number, wrong
-from bezierplan.workspaces.problem import Path
+from bezierplan.study.model import Column, Experiment, Flag, Line, Metric, Model, Number, wrong
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.ground import ground_of
+from bezierplan.workspaces.problem import Path, Problem, Workspace
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -29,6 +33,9 @@ if TYPE_CHECKING:
 # About as many straight steps are drawn for a curve; the ends of its pieces are always among them.
 _STEPS = 600
 
+# Widths of the first and of the last of several paths.
+_WIDEST, _NARROWEST = 2.8, 1.3
+
 # Marks in a narrow panel are so much smaller.
 _NARROW_MARK = 0.6
 
@@ -39,11 +46,28 @@ _LOOK = {
     "path": {**style.RUN_SHOWN, "label": "path", "zorder": 3},
     "control": {**_CONTROL_POINT, "linewidth": 0.7, "linestyle": (0, (4, 2)), "label": "control points and polygon"},
     "points": {**_CONTROL_POINT, "linestyle": "", "label": "control points"},
+    "occupied": {
+        **_CONTROL_POINT,
+        "linestyle": "",
+        "markersize": 7,
+        "markerfacecolor": style.AMBER,
+        "marker": "D",
+        "label": "control point in an occupied cell",
+        "zorder": 5.5,
+    },
     "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull of the control points", "zorder": 2},
     "bound": {**style.BOUND, "label": "shortest path possible", "zorder": 4},
+    "optimum": {"color": style.BLACK, "linestyle": (0, (5, 1.5)), "linewidth": 0.9, "label": "shortest from cell to cell", "zorder": 4},
     "collision": {"color": style.BLACK, "linestyle": "", "marker": "X", "markersize": 8, "label": "first collision", "zorder": 6},
     "start": workspaces.START,
     "target": workspaces.TARGET,
+}
+
+
+# Cells that differ from those of another problem.
+_CHANGED = {
+    "appeared": {"facecolor": "none", "edgecolor": style.AMBER, "hatch": "////", "label": "occupied since the change"},
+    "vanished": {"facecolor": "none", "edgecolor": style.BLUE, "linestyle": (0, (2, 1)), "hatch": "....", "label": "free since the change"},
 }
 
 
@@ -60,7 +84,9 @@ def picked(results: Results, pick: dict[str, Any]) -> tuple[pd.Series | None, di
         found = list(runs[column].unique())
         if len(found) != 1:
             raise ValueError(f"a panel that shows one run needs runs of exactly one {column}, not of {len(found)} {found}; see its `where`")
-    run = pick_run(runs, pick)
+    way = {name: value for name, value in pick.items() if name != "having"}
+    having = metrics.values(runs, pick["having"], results.problems) > 0 if "having" in pick else slice(None)
+    run = pick_run(runs[having], way)
     names = {"problem": runs["problem"].iloc[0], "method": runs["method"].iloc[0]}
     names |= {"runs": len(runs), "feasible_runs": int(runs["feasible"].sum())}
     if run is None:
@@ -102,7 +128,20 @@ class Options(RunsPanel):
         "all",
         description="whether control points are drawn with their polygon and hull (all; left out: this), alone (points), or not (none)",
     )
+    measure: Metric = Field("length", description="with hue, the metric that is given of each path; left out: length")
+    bare: Flag = Field(False, description="whether only the workspace with start and target is drawn, true or false")
+    letters: list[Line] = Field(None, description="what is written beside start and target: a list of two", min_length=2, max_length=2)
+    changed_from: Line = Field(
+        None, description="the name of another problem of the experiment, on cells as many: those that differ from it are marked"
+    )
+    cell_optimum: Flag = Field(False, description="whether the least path from cell centre to cell centre is drawn, true or false")
+    printed: Line = Field(None, description="the name of a published table whose shortest length is given beside the run's")
     view: list[Number] = Field(None, description="what is seen: [lowest x, highest x, lowest y, highest y]", min_length=4, max_length=4)
+
+    @property
+    def published_drawn(self) -> bool:
+        """Whether published numbers are drawn."""
+        return self.printed is not None
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
@@ -110,6 +149,10 @@ class Options(RunsPanel):
         exactly_one(self, "experiment", "explicit")
         if self.explicit and self.hue:
             raise wrong("hue: needs experiment")
+        if "measure" in self.model_fields_set and self.hue is None:
+            raise wrong("measure: needs hue")
+        if self.bare and (self.explicit or self.hue):
+            raise wrong(f"bare: not together with {'explicit' if self.explicit else 'hue'}")
         if self.explicit and any(len(point) != 2 for point in self.explicit.points):
             raise wrong("explicit: points: expected a list of at least two [x, y]")
         if self.explicit and self.explicit.curve not in curves.CURVES:
@@ -124,17 +167,27 @@ def data(
     explicit: dict[str, Any] | None = None,
     hue: str | None = None,
     control: Literal["all", "points", "none"] = "all",
+    measure: str = "length",
+    bare: bool = False,
+    letters: Sequence[str] | None = None,
+    changed_from: str | None = None,
+    cell_optimum: bool = False,
+    printed: str | None = None,
     view: Sequence[float] | None = None,
 ) -> pd.DataFrame:
     """What is drawn of a path: one row a point, in the order in which points are joined.
 
-    Columns: those of `picked`, for a run; part (start, target, bound, hull, control or points, path, and collision, the first one of a path
-    that has one), x, y (in the workspace's unit). Without a run to show, start and target only. Only curves that lie within it have a hull,
-    and control points are left out where some are tangents.
+    Columns: those of `picked`, for a run; part (start, target, bound, hull, control or points, occupied: those of them in occupied cells,
+    path, collision: the first one of a path that has one, optimum, and appeared and vanished: centres of changed cells), x, y (in the
+    workspace's unit). Without a run to show, what belongs to the problem only. Only curves that lie within it have a hull, and control
+    points are left out where some are tangents.
 
     pick: the run, as in `analysis.results.pick`. explicit: {curve, points}, a path without a run. hue: a column; a run is picked for each
-    of its values, which the rows name, and drawn without control points. control: whether control points are drawn with their polygon and
-    hull, alone, or not at all. view: what is seen of the workspace, as its bounds; all rows are here nevertheless.
+    of its values, which the rows name, and drawn without control points; the column `measure` has this metric of it. bare: start and target
+    alone, whatever the run. control: whether control points are drawn with their polygon and hull, alone, or not at all. letters: what is
+    written beside start and target. changed_from: the problem whose occupied cells were others. cell_optimum: whether the least path along
+    cell centres is drawn. printed: a published table; the column of this name has its shortest length for the runs. view: what is seen of
+    the workspace, as its bounds; all rows are here nevertheless.
     Raises ValueError unless either pick or explicit is given and all runs, of one value of hue, are of one problem and one method, and if a
     curve cannot have such points.
     """
@@ -151,14 +204,25 @@ def data(
     if hue is not None:
         own = results.runs.groupby(hue)
         frames = [data(results._replace(runs=runs), pick=pick, control="none").assign(**{hue: value}) for value, runs in own]
-        return pd.concat(frames, ignore_index=True)
+        numbers = metrics.values(results.runs, measure, results.problems).groupby(results.runs["id"]).first()
+        return pd.concat(frames, ignore_index=True).assign(measure=lambda frame: frame["run"].map(numbers))
     run, names = picked(results, pick)
     problem = results.problems[names["problem"]]
     drawn = {"start": [problem.start], "target": [problem.target]}
+    if changed_from is not None:
+        drawn |= _changed_cells(problem.workspace, _other(results, changed_from).workspace)
+    if bare:
+        return table(drawn).assign(problem=problem.name)
+    if printed is not None and results.published is not None:
+        names["printed"] = _shortest_printed(results, printed)
+    if cell_optimum:
+        drawn["optimum"] = _cell_optimum(problem, results.runs.iloc[0])
     path = None if run is None else path_of(run)
     if path is not None:
         drawn["bound"] = np.reshape(results.bounds.loc[problem.name, "bound_path"], (-1, 2))
         drawn |= _drawn(path, control)
+        if control != "none" and isinstance(problem.workspace, Grid):
+            drawn["occupied"] = _in_occupied_cells(path.points, problem.workspace)
         if not run["feasible"]:
             drawn["collision"] = [curves.point_at(path, run["collision_at"])]
     frame = table(drawn).assign(**names)
@@ -175,6 +239,47 @@ def _drawn(path: Path, control: str) -> dict[str, np.ndarray]:
     if path.curve != "ferguson" and control != "none":
         drawn["control" if control == "all" else "points"] = path.points
     return drawn | {"path": steps(path)}
+
+
+def _other(results: Results, name: str) -> Problem:
+    """Another problem of an experiment. Raises ValueError if it has none of this name."""
+    if name not in results.problems:
+        raise ValueError(f"changed_from: {name}: not a problem of the experiment, which has {', '.join(results.problems)}")
+    return results.problems[name]
+
+
+def _changed_cells(grid: Grid, before: Grid) -> dict[str, np.ndarray]:
+    """Centres (n, 2), in units, of cells that are occupied now alone (appeared) and that were before (vanished)."""
+    changes = {"appeared": grid.occupied & ~before.occupied, "vanished": before.occupied & ~grid.occupied}
+    return {part: np.reshape([grid.centre(int(number)) for number in np.flatnonzero(cells)], (-1, 2)) for part, cells in changes.items()}
+
+
+def _cell_optimum(problem: Problem, run: pd.Series) -> np.ndarray:
+    """Points (n, 2) of the least path from cell centre to cell centre, under the rules of a run of meledje's planner."""
+    from scipy.sparse import csgraph
+
+    grid = problem.workspace
+    ground = ground_of(grid, float(run.get("friction", 1.0)), run.get("corners") == "closed")
+    edges = np.where(ground.met == 0, ground.energy, np.inf)
+    start, cell = (int(np.ravel_multi_index(grid.cell_of(*end), grid.occupied.shape)) for end in (problem.start, problem.target))
+    before = csgraph.dijkstra(edges, indices=start, return_predecessors=True)[1]
+    way = [cell]
+    while way[-1] != start:
+        way.append(int(before[way[-1]]))
+    return np.array([grid.centre(number) for number in way[::-1]])
+
+
+def _shortest_printed(results: Results, name: str) -> float:
+    """The shortest length that a published table has for runs; not a number without one."""
+    table = results.published[results.published["table"] == name]
+    return next(iter(published(results._replace(published=table), results.runs, "length", "min")), np.nan)
+
+
+def _in_occupied_cells(points: np.ndarray, grid: Grid) -> np.ndarray:
+    """Those of points (n, 2), in units, that lie in occupied cells: (k, 2)."""
+    cells = [grid.cell_of(*point) for point in points]
+    inside = [cell is not None and bool(grid.occupied[cell]) for cell in cells]
+    return np.reshape(points[inside], (-1, 2))
 
 
 def table(drawn: dict[str, Sequence]) -> pd.DataFrame:
@@ -202,11 +307,14 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
         workspace = scene.problems[panel["experiment"]][frame["problem"].iloc[0]].workspace
         workspaces.shade(axes, workspaces.parts(workspace))
         workspaces.scale(axes, workspace.unit)
+        _draw_changes(axes, frame, workspace)
     if "hue" in panel:
         note = _draw_side_by_side(axes, frame, scene, panel)
     else:
-        note = "" if "explicit" in panel else _note(frame, workspace.unit, scene.narrow)
+        note = "" if "explicit" in panel or panel.get("bare") else _note(frame, workspace.unit, scene.narrow)
         draw_parts(axes, frame, narrow=scene.narrow, clip="view" in panel)
+    for part, letter in zip(("start", "target"), panel.get("letters", ())):
+        _write_letter(axes, frame.loc[frame["part"] == part, ["x", "y"]].iloc[0].to_numpy(dtype=float), letter)
     if "view" in panel:
         axes.axis(panel["view"])
     if scene.narrow:
@@ -214,21 +322,46 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     return note
 
 
+def _draw_changes(axes: Axes, frame: pd.DataFrame, workspace: Workspace) -> None:
+    """Mark cells that differ from those of another problem."""
+    from matplotlib.collections import PatchCollection
+    from matplotlib.patches import Rectangle
+
+    for part, look in _CHANGED.items():
+        centres = frame.loc[frame["part"] == part, ["x", "y"]].to_numpy(dtype=float)
+        cells = [Rectangle(centre - workspace.cell / 2, workspace.cell, workspace.cell) for centre in centres]
+        if cells:
+            axes.add_collection(PatchCollection(cells, zorder=1, linewidth=0.9, **look), autolim=False)
+
+
+def _write_letter(axes: Axes, place: np.ndarray, letter: str) -> None:
+    """Write a letter beside a place, on the side of the panel's middle."""
+    from matplotlib import patheffects
+
+    inwards = np.where(place <= [np.mean(axes.get_xlim()), np.mean(axes.get_ylim())], 1, -1)
+    halo = [patheffects.withStroke(linewidth=2, foreground=style.FREE)]
+    beside = {"xytext": (13, 5) * inwards, "textcoords": "offset points", "ha": "center", "va": "center"}
+    axes.annotate(letter, place, weight="bold", zorder=7, path_effects=halo, **beside)
+
+
 def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the paths of all values of hue, each in a look of its own, and what belongs to their problem once; returns their lengths."""
+    """Draw the paths of all values of hue, each in a look of its own, and what belongs to their problem once; returns their measures."""
     hue = panel["hue"]
     values = style.in_order(frame[hue], panel)
-    lengths = []
-    for value, look in zip(values, style.lines(values)):
+    measure = panel.get("measure", "length")
+    given = []
+    # The first path is the widest, so that those on top of it hide nothing.
+    widths = np.linspace(_WIDEST, _NARROWEST, len(values))
+    for value, look, width in zip(values, style.lines(values), widths):
         own = frame[frame[hue] == value]
         draw_parts(axes, own[own["part"] == "collision"], narrow=scene.narrow, clip="view" in panel)
         path = own[own["part"] == "path"]
         name = style.printed(value, hue, scene.labels)
-        axes.plot(path["x"], path["y"], zorder=3, **look | {"marker": "", "label": name})
-        lengths.append(f"{name} {own['length'].iloc[0]:.1f}" if len(path) else f"{name} no path")
+        axes.plot(path["x"], path["y"], zorder=3, **look | {"marker": "", "label": name, "linewidth": width})
+        given.append(f"{name} {_decimal(own['measure'].iloc[0])}" if len(path) else f"{name} no path")
     once = frame[frame["part"].isin(["start", "target", "bound"])].drop_duplicates(["part", "x", "y"])
     draw_parts(axes, once, narrow=scene.narrow, clip="view" in panel)
-    return f"lengths ({scene.unit}): {', '.join(lengths)}"
+    return f"{axis_label(measure, scene)}: {', '.join(given)}"
 
 
 def draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> None:
@@ -249,7 +382,23 @@ def _note(frame: pd.DataFrame, unit: str, narrow: bool) -> str:
         repeat = row["run"].rpartition("/")[2]
         return f"repeat {repeat}{'' if row['feasible'] else ' (not feasible)'}\nlength {row['length']:.2f} {unit}"
     control = frame.loc[frame["part"].isin(["control", "points"]), ["x", "y"]]
-    words = [f"length {row['length']:.1f} {unit}"]
+    words = [f"length {row['length']:.2f} {unit}"]
     if not control.empty:
         words.append(f"{len(control.drop_duplicates())} of {len(control)} control points distinct")
-    return run_note(frame, ", ".join(words), feasible_note(frame))
+    lines = [", ".join(words), feasible_note(frame)]
+    if "printed" in frame and np.isfinite(row["printed"]):
+        lines.append(f"shortest printed {row['printed']:.2f} {unit}")
+    if (frame["part"] == "optimum").any():
+        cells, bound = (_joined(frame[frame["part"] == part]) for part in ("optimum", "bound"))
+        lines.append(f"shortest from cell to cell {cells:.2f}, at any angle {bound:.2f}")
+    return run_note(frame, *lines)
+
+
+def _joined(points: pd.DataFrame) -> float:
+    """Length of straight edges through points."""
+    return float(np.hypot(points["x"].diff(), points["y"].diff()).sum())
+
+
+def _decimal(number: float) -> str:
+    """A number to two decimals, as far as they are not 0."""
+    return f"{number:.2f}".rstrip("0").rstrip(".")

@@ -145,7 +145,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 
 
 def scale(axes: Axes, unit: str) -> None:
-    """Name the two coordinates of a workspace."""
+    """Name the two coordinates of a workspace, with ticks at edges of cells of side 1."""
+    axes.locator_params(nbins=8, steps=[1, 2, 4, 5, 10])
     axes.set_xlabel(f"x ({unit})")
     axes.set_ylabel(f"y ({unit})")
 
