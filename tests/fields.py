@@ -2,7 +2,7 @@
 
 from pathlib import Path as File
 
-from bezierplan.geometry import bounds, cell_length, curves
+from bezierplan.geometry import cell_length, curves, shortest_paths
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
 from bezierplan.planners import Plan
@@ -30,5 +30,7 @@ def assert_path_fits(problem: Problem, found: Plan) -> None:
     assert found.path.points[[0, -1]].tolist() == [list(problem.start), list(problem.target)]
     assert cell_length.occupied_cells(*cell_length.touched_cells(*cell_length.samples(found.path, grid)), grid.occupied) == 0
     assert check(curves.bezier_pieces(found.path), region(grid)).feasible
-    octile_bound = bounds.lattice_path(grid.occupied, grid.cell_of(*problem.start), grid.cell_of(*problem.target), 1.5, "free").length
+    octile_bound = shortest_paths.lattice_path(
+        grid.occupied, grid.cell_of(*problem.start), grid.cell_of(*problem.target), 1.5, "free"
+    ).length
     assert octile_bound <= cell_length.length8(found.path, grid) <= cell_length.length4(found.path, grid)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from fields import assert_path_fits, drawn
 
-from bezierplan.geometry import bounds, cell_length, curves
+from bezierplan.geometry import cell_length, curves, shortest_paths
 from bezierplan.planners import abc_ep, planner_settings, setting_fault
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
@@ -68,7 +68,7 @@ def test_an_empty_field_gives_the_straight_line(ends):
 
 def test_evolution_comes_near_the_shortest_path():
     problem = field((50, 50, 20))
-    shortest = bounds.shortest_path(problem).length
+    shortest = shortest_paths.shortest_path(problem).length
     found = [plan(problem, seed) for seed in range(10)]
     first = np.array([each.extra["first_length"] for each in found]) / shortest - 1
     final = np.array([each.objective for each in found]) / shortest - 1

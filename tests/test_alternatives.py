@@ -2,7 +2,7 @@
 
 import pytest
 
-from bezierplan.study import alternatives, reading, targets
+from bezierplan.study import alternatives, jobs, reading, targets
 
 STUDIES = reading.load(reading.read_config({}))
 ALTERNATIVES = [(key, name) for key, study in STUDIES.items() for name in alternatives.tried(study)]
@@ -11,17 +11,16 @@ ALTERNATIVES = [(key, name) for key, study in STUDIES.items() for name in altern
 @pytest.mark.parametrize(("key", "name"), ALTERNATIVES)
 def test_every_alternative_has_a_run_that_it_changes(key, name):
     study = STUDIES[key]
-    files = [file.split("/") for file in targets.claims_inputs(STUDIES, "full", key, name)["runs"] if "/sensitivity/" in file]
-    changed = alternatives.with_alternative(study, name)
-    jobs = {(experiment, method) for *_, experiment, method, _ in files}
-    assert jobs
-    assert any(jobs.job(study, *each, "full", 0) != jobs.job(changed, *each, "full", 0) for each in jobs)
+    chunks = targets.alternative_params(STUDIES, "full", key, name)["chunks"]
+    assert any(
+        job != jobs.job(study, job["experiment"], job["method"], "full", 0) for file, job in chunks.items() if file.endswith("/0.parquet")
+    )
 
 
 def test_checks_of_several_experiments_need_the_methods_of_each():
     study = STUDIES["elhoseny2017"]
-    checks = [check for claim in study.claims for check in claim["checks"] if isinstance(check.get("experiment"), list)]
-    assert checks
-    for check in checks:
-        for experiment in check["experiment"]:
-            assert alternatives.methods_of_claims(study, [{"checks": [check]}], experiment)
+    claims = [claim.but(checks=[check]) for claim in study.claims for check in claim.checks if len(check.experiments) > 1]
+    assert claims
+    for claim in claims:
+        for experiment in claim.checks[0].experiments:
+            assert alternatives.methods_of_claims(study, [claim], experiment)

@@ -13,9 +13,9 @@ import scipy
 import shapely
 from fields import BENCHMARK_MAPS
 
-from bezierplan.geometry.bounds import Bound, centre_path, lattice_path, least_length, shortest_path
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
+from bezierplan.geometry.shortest_paths import Bound, centre_path, lattice_path, least_length, shortest_path
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid, from_lines
@@ -410,7 +410,7 @@ def test_the_search_of_large_grids_gives_the_path_of_the_whole_graph(monkeypatch
         problem = Problem("", grid, (1.25, -1.75), (15.75, 12.75))
         whole = shortest_path(problem)
         with monkeypatch.context() as patched:
-            patched.setattr("bezierplan.geometry.bounds.MOST_NODES", 0)
+            patched.setattr("bezierplan.geometry.shortest_paths.grid.MOST_NODES", 0)
             found = shortest_path(problem)
         assert found.length == whole.length
         if math.isfinite(whole.length):
@@ -418,7 +418,7 @@ def test_the_search_of_large_grids_gives_the_path_of_the_whole_graph(monkeypatch
 
 
 def test_the_search_among_many_polygons_gives_the_path_of_the_whole_graph(monkeypatch):
-    monkeypatch.setattr("bezierplan.geometry.bounds.MOST_POLYGON_NODES", 0)
+    monkeypatch.setattr("bezierplan.geometry.shortest_paths.polygons.MOST_POLYGON_NODES", 0)
     for row in reference("shortest_path"):
         assert shortest_path(imr_problem(row["map"])).length == pytest.approx(float(row["value"]), abs=1e-5)
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from bezierplan.geometry import bounds, cell_length, curves
+from bezierplan.geometry import cell_length, curves, shortest_paths
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path
 
@@ -148,7 +148,7 @@ def test_no_free_path_counts_less_than_the_shortest_path_of_cells():
         columns, rows = cell_length.touched_cells(*cell_length.samples(path, grid))
         if cell_length.occupied_cells(columns, rows, occupied) == 0:
             found += 1
-            least = bounds.lattice_path(occupied, (0, 0), (11, 11), 1.5, "free").length
+            least = shortest_paths.lattice_path(occupied, (0, 0), (11, 11), 1.5, "free").length
             assert cell_length.length4(path, grid) >= cell_length.length8(path, grid) >= least
     assert found > 20
 

@@ -366,7 +366,7 @@ def test_unfit_shapes_and_rules_are_refused():
         check(np.zeros((3, 2)), UNIT_DISC)
     with pytest.raises(ValueError, match="degree"):
         check(np.zeros((1, 62, 2)), UNIT_DISC)
-    with pytest.raises(ValueError, match="corner_cutting"):
+    with pytest.raises(ValueError, match="corner cutting"):
         check(np.zeros((1, 2, 2)), PINCH, corner_cutting="shut")
 
 

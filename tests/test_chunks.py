@@ -12,19 +12,24 @@ import pytest
 from bezierplan.analysis import results
 from bezierplan.running import problems
 from bezierplan.study import definition, jobs
+from bezierplan.study.experiments import Experiment
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 
 
-def study_of(**experiment):
-    """A study of one experiment, and of nothing else."""
-    empty = {field.name: {} for field in fields(definition.Study)} | {"key": "s", "folder": Path(), "title": "A study", "claims": []}
-    return definition.Study(**empty | {"experiments": {"first": experiment}})
+def experiment(repeats, chunk, **others):
+    return Experiment(
+        problems=["across"],
+        methods=["mine"],
+        **{key: dict.fromkeys(("smoke", "full", "extended"), number) for key, number in (("repeats", repeats), ("chunk", chunk))},
+        **others,
+    )
 
 
 @pytest.mark.parametrize(("repeats", "chunk", "count"), [(10, 4, 3), (8, 4, 2), (1, 4, 1), (9, 3, 3), (100, 1, 100), (4, 5, 1)])
 def test_chunks_hold_all_repeats_and_no_chunk_more(repeats, chunk, count):
-    own = study_of(repeats={"full": repeats}, chunk={"full": chunk})
+    empty = {field.name: {} for field in fields(definition.Study)} | {"key": "s", "folder": Path(), "title": "A study", "claims": []}
+    own = definition.Study(**empty | {"experiments": {"first": experiment(repeats, chunk)}})
     assert list(jobs.chunks(own, "first", "full")) == list(range(count))
 
 
@@ -33,9 +38,7 @@ def test_chunks_hold_all_repeats_and_no_chunk_more(repeats, chunk, count):
 )
 def test_runs_are_pairs_where_methods_share_their_random_numbers(seeds, paired):
     """Runs of two methods with seeds of their own have nothing to do with each other."""
-    own = study_of(repeats={"full": 10}, **seeds)
-    claims = [{"id": "C1", "checks": [{"test": "lower", "experiment": "first"}]}]
-    assert jobs.claims_job(own, claims)["paired"] == {"first": paired}
+    assert experiment(10, 5, **seeds).paired == paired
 
 
 def test_results_are_cut_at_the_number_of_repeats(tmp_path):

@@ -8,14 +8,18 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import claim_tests, claim_verdicts, claims, metrics, statistics
-from bezierplan.analysis.claim_effects import Finding
-from bezierplan.analysis.claim_verdicts import Marked
+from bezierplan.analysis import metrics, statistics
+from bezierplan.analysis.claims import judge as judging
+from bezierplan.analysis.claims import variants, verdicts
+from bezierplan.analysis.claims.effects import Finding
+from bezierplan.analysis.claims.ranks import signed_rank_test
+from bezierplan.analysis.claims.verdicts import Marked
 from bezierplan.analysis.metrics import Metric
 from bezierplan.analysis.results import Results
 from bezierplan.study.checked import Fault
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.seeds import generator
 
 GRID = from_lines(["..", ".."], 1.0, "m")
 PROBLEMS = {name: Problem(name, GRID, (0.5, 0.5), (1.5, 1.5)) for name in ("first", "second")}
@@ -31,7 +35,7 @@ def few_draws(monkeypatch):
 
 def sample(name: str, mean: float = 0.0, n: int = UNITS, std: float = 1.0) -> np.ndarray:
     """Normal values (n,) of exactly this mean and standard deviation, the same for a name."""
-    values = statistics.generator(name).normal(size=n)
+    values = generator(name).normal(size=n)
     return mean + std * (values - values.mean()) / values.std(ddof=1)
 
 
@@ -51,7 +55,7 @@ def judge(claim: dict, *runs: pd.DataFrame, **material) -> tuple[pd.DataFrame, p
     given = {"published": {}, "artefacts": {}, "functions": {}, "variant_of": {}, "paired": {}, "repeats": {"tried": 10}} | material
     results = {"tried": Results(pd.concat(runs, ignore_index=True), PROBLEMS, pd.DataFrame())} if runs else {}
     described = {"id": "C1", "place": "1", "statement": "It is so."} | claim
-    return claims.judge([described], results, given.pop("published"), given.pop("artefacts"), "study", given.pop("functions"), **given)
+    return judging.judge([described], results, given.pop("published"), given.pop("artefacts"), "study", given.pop("functions"), **given)
 
 
 def judged(check: dict, *runs: pd.DataFrame, **material) -> pd.Series:
@@ -204,7 +208,7 @@ def test_signed_ranks_are_exact_with_ties_and_zeros(units):
     ranks = stats.rankdata(np.abs(difference)) * (difference != 0)
     sums = np.array(list(itertools.product([0, 1], repeat=units))) @ ranks
     least = min(np.mean(sums <= ranks[difference > 0].sum()), np.mean(sums >= ranks[difference > 0].sum()))
-    assert claim_tests.signed_rank_test(difference) == pytest.approx(min(1.0, 2 * least), rel=1e-12)
+    assert signed_rank_test(difference) == pytest.approx(min(1.0, 2 * least), rel=1e-12)
 
 
 def test_pairs_need_both_runs():
@@ -274,7 +278,7 @@ def test_many_units_by_normal_approximation(statistic, paired, monkeypatch):
     runs = table({"a": sample("a", 0, n=300), "b": sample("b", 0.4, n=300, std=1.5)})
     check = LOWER | {"statistic": statistic, "paired": paired}
     approximate = judged(check, runs)
-    monkeypatch.setattr("bezierplan.analysis.claim_tests.MOST_RESAMPLED", 1000)
+    monkeypatch.setattr("bezierplan.analysis.claims.effects.MOST_RESAMPLED", 1000)
     resampled = judged(check, runs)
     width = resampled["high95"] - resampled["low95"]
     assert approximate[["low95", "high95"]].to_list() == pytest.approx(resampled[["low95", "high95"]].to_list(), abs=0.12 * width)
@@ -327,7 +331,7 @@ VERDICTS = [
 @pytest.mark.parametrize(("found", "all_hold", "any_holds"), VERDICTS)
 def test_verdict(found, all_hold, any_holds):
     for order in {found, found[::-1], found[1:] + found[:1]}:
-        assert (claim_verdicts.verdict(order, order, "all"), claim_verdicts.verdict(order, order, "any")) == (all_hold, any_holds)
+        assert (verdicts.verdict(order, order, "all"), verdicts.verdict(order, order, "any")) == (all_hold, any_holds)
 
 
 @pytest.mark.parametrize(
@@ -341,15 +345,15 @@ def test_verdict(found, all_hold, any_holds):
     ],
 )
 def test_verdict_by_marks_alone_and_in_the_family(alone, together, all_hold, any_holds):
-    assert (claim_verdicts.verdict(alone, together, "all"), claim_verdicts.verdict(alone, together, "any")) == (all_hold, any_holds)
+    assert (verdicts.verdict(alone, together, "all"), verdicts.verdict(alone, together, "any")) == (all_hold, any_holds)
 
 
 def test_family_against_a_worked_example():
     """The fifteen p of Benjamini and Hochberg (1995, Section 3.2): four are rejected at 0.05, by Holm three."""
     p = np.array([0.0001, 0.0004, 0.0019, 0.0095, 0.0201, 0.0278, 0.0298, 0.0344, 0.0459, 0.3240, 0.4262, 0.5719, 0.6528, 0.7590, 1.0])
-    assert (claim_verdicts.family(p) < 0.05).sum() == 4
+    assert (verdicts.family(p) < 0.05).sum() == 4
     assert (statistics.holm(p) < 0.05).sum() == 3
-    assert len(claim_verdicts.family(np.array([]))) == 0
+    assert len(verdicts.family(np.array([]))) == 0
 
 
 def test_a_large_family_of_ten_fields_can_be_contradicted():
@@ -365,16 +369,16 @@ def test_a_large_family_of_ten_fields_can_be_contradicted():
 )
 def test_at_most_one_sentence_in_twenty_is_judged_wrongly(apart, wrong):
     """Of sentences of twenty comparisons without an effect few get another verdict than undecided; true ones are never refused."""
-    verdicts = []
+    given = []
     for number in range(100):
-        rng = statistics.generator(f"sentence {number}")
+        rng = generator(f"sentence {number}")
         found = []
         for p, mean in ((stats_of(rng.normal(apart, 1, 20))) for _ in range(20)):
             found.append(Finding(effect=mean, p=p, toward=int(np.sign(mean)), margin=0.3))
-        together = claim_verdicts.family(np.array([each.p for each in found]))
-        alone = [claim_verdicts.mark(each, each.p) for each in found]
-        verdicts.append(claim_verdicts.verdict(alone, [claim_verdicts.mark(each, p) for each, p in zip(found, together)], "all"))
-    assert sum(verdict in wrong for verdict in verdicts) <= 10
+        together = verdicts.family(np.array([each.p for each in found]))
+        alone = [verdicts.mark(each, each.p) for each in found]
+        given.append(verdicts.verdict(alone, [verdicts.mark(each, p) for each, p in zip(found, together)], "all"))
+    assert sum(verdict in wrong for verdict in given) <= 10
 
 
 def stats_of(values: np.ndarray) -> tuple[float, float]:
@@ -397,8 +401,8 @@ def stats_of(values: np.ndarray) -> tuple[float, float]:
     ],
 )
 def test_mark(toward, p, negligible, expected):
-    assert claim_verdicts.mark(Finding(p=p, toward=toward, negligible=negligible), p) == expected
-    assert claim_verdicts.mark(Finding(p=p, toward=toward, mark="-"), p) == "-"
+    assert verdicts.mark(Finding(p=p, toward=toward, negligible=negligible), p) == expected
+    assert verdicts.mark(Finding(p=p, toward=toward, mark="-"), p) == "-"
 
 
 def test_an_effect_below_the_margin_is_no_support():
@@ -433,15 +437,15 @@ def marked(holds) -> list[Marked]:
     ],
 )
 def test_words_for_where_a_claim_holds(holds, words):
-    assert claim_verdicts.where_it_holds(marked(holds), {"prm": "roadmap"}) == words
+    assert verdicts.where_it_holds(marked(holds), {"prm": "roadmap"}) == words
 
 
 def test_words_for_columns_and_for_what_stays_mixed():
     found = [Marked({"obstacles": count}, "-" if count == 5 else "+") for count in (5, 10, 15, 20, 25)]
-    assert claim_verdicts.where_it_holds(found, {}) == "at obstacles other than 5"
+    assert verdicts.where_it_holds(found, {}) == "at obstacles other than 5"
     mixed = [Marked({"method": name}, mark) for name, marks in (("a", "++"), ("b", "+-")) for mark in marks]
-    assert claim_verdicts.where_it_holds(mixed, {}) == "for a; for b (1 of 2)"
-    assert claim_verdicts.where_it_holds([Marked({}, "+"), Marked({"against": 1}, "-")], {}) == "(1 of 2)"
+    assert verdicts.where_it_holds(mixed, {}) == "for a; for b (1 of 2)"
+    assert verdicts.where_it_holds([Marked({}, "+"), Marked({"against": 1}, "-")], {}) == "(1 of 2)"
 
 
 def test_words_for_many_rivals_name_the_exceptions():
@@ -450,11 +454,11 @@ def test_words_for_many_rivals_name_the_exceptions():
         for name in ("gauss", "tent", "circle", "logistic", "sine", "piecewise", "sinusoidal")
     ]
     labels = {"circle": "Circle", "sinusoidal": "Sinusoidal"}
-    assert claim_verdicts.where_it_holds(maps, labels) == "against 5 of 7: all but Circle and Sinusoidal"
+    assert verdicts.where_it_holds(maps, labels) == "against 5 of 7: all but Circle and Sinusoidal"
     unknown = [each._replace(mark="?") if each.mark == "-" else each for each in maps]
-    assert claim_verdicts.where_it_holds(unknown, labels).endswith("; undecided in 2 of 7")
+    assert verdicts.where_it_holds(unknown, labels).endswith("; undecided in 2 of 7")
     contrary = [each._replace(mark="0" if each.mark == "+" else "-") for each in maps]
-    assert claim_verdicts.where_it_holds(contrary, labels) == "the contrary against Circle and Sinusoidal"
+    assert verdicts.where_it_holds(contrary, labels) == "the contrary against Circle and Sinusoidal"
 
 
 def test_precise_and_nothing_there_is_no_effect():
@@ -564,9 +568,9 @@ def test_variants_take_the_place_of_what_the_checks_name():
 
 def test_variant_that_is_a_list_is_exchanged_member_by_member():
     check = LOWER | {"than": ["b", "c"], "where": {"method": ["a", "b", "c"]}}
-    (changed,) = claims.in_variant([check], {"method": ["b", "c"]}, {"method": ["e", "f"]})
+    (changed,) = variants.in_variant([check], {"method": ["b", "c"]}, {"method": ["e", "f"]})
     assert (changed["than"], changed["where"]) == (["e", "f"], {"method": ["a", "e", "f"]})
-    assert claims.in_variant([check], {"method": ["b", "c"]}, {"method": ["b", "c"]}) == [check]
+    assert variants.in_variant([check], {"method": ["b", "c"]}, {"method": ["b", "c"]}) == [check]
 
 
 def test_rest_is_the_same_in_every_variant():
@@ -858,7 +862,7 @@ def test_degenerate_values_give_no_fault(n, value):
     }
     together = [{"id": kind, "place": "", "statement": "", "checks": [check]} for kind, check in (ANY_KIND | one_size).items()]
     results = {"tried": Results(runs.reset_index(drop=True), PROBLEMS, pd.DataFrame())}
-    found = claims.judge(together, results, {}, {}, "study", {}, variant_of={}, paired={}, repeats={"tried": 10})[0].set_index("id")
+    found = judging.judge(together, results, {}, {}, "study", {}, variant_of={}, paired={}, repeats={"tried": 10})[0].set_index("id")
     assert set(found["verdict"]) <= {"no effect", "undecided", "contradicted", "supported"}
     if math.isnan(value) or n < 6:
         # One counterexample decides `all`.
@@ -937,8 +941,8 @@ def test_exchanging_the_direction_contradicts_what_was_supported(name):
 
 def test_columns():
     summary, details = judge({"checks": [LOWER]}, APART)
-    assert summary.columns.to_list() == claims.CLAIM_COLUMNS
-    assert details.columns.to_list() == claims.CHECK_COLUMNS
-    described = set(re.findall(r"\w+", claims.__doc__))
-    assert described.issuperset(claims.CLAIM_COLUMNS + claims.CHECK_COLUMNS)
-    assert set(summary["verdict"]) <= set(claim_verdicts.VERDICTS)
+    assert summary.columns.to_list() == judging.CLAIM_COLUMNS
+    assert details.columns.to_list() == judging.CHECK_COLUMNS
+    described = set(re.findall(r"\w+", judging.__doc__))
+    assert described.issuperset(judging.CLAIM_COLUMNS + judging.CHECK_COLUMNS)
+    assert set(summary["verdict"]) <= set(verdicts.VERDICTS)

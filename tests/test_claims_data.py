@@ -9,10 +9,11 @@ from pathlib import Path
 
 import pytest
 
+from bezierplan.analysis.claims import kinds
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.study import checked
 from bezierplan.study import claims as study_claims
-from bezierplan.study.model import Model, keys, parsed
+from bezierplan.study.model import Model, keys, one_or_list, parsed
 
 STUDIES = Path(__file__).parents[1] / "config" / "studies"
 CLAIMS = {"song2016": 10, "tharwat2018": 41, "ma2020": 21, "meledje": 10, "elhoseny2017": 24}
@@ -46,22 +47,18 @@ def all_checks(keys=CLAIMS):
     return [check for key in keys for claim in claims(key) for check in claim["checks"]]
 
 
-def as_list(value):
-    return value if isinstance(value, list) else [value]
-
-
 def names_by_column(claim):
     """(column, value) of every value that the checks of a claim name, `rest` left out, and of its variants."""
     for check in claim["checks"]:
         across = check.get("across", "method")
         tiers = [check.get("groups", []), check.get("than", []), *check.get("pairs", []), *check.get("order", [])]
         yield from ((across, group) for group in chain(*tiers) if group != "rest")
-        yield from ((column, value) for column, given in check.get("where", {}).items() for value in as_list(given))
-        yield from ((key, value) for key in ("metric", "experiment") if key in check for value in as_list(check[key]))
+        yield from ((column, value) for column, given in check.get("where", {}).items() for value in one_or_list(given))
+        yield from ((key, value) for key in ("metric", "experiment") if key in check for value in one_or_list(check[key]))
         if "pick" in check:
             yield "metric", check["pick"]["lowest"]
     for column, values in claim.get("variants", {}).items():
-        yield from ((column, name) for value in values for name in as_list(value))
+        yield from ((column, name) for value in values for name in one_or_list(value))
 
 
 @pytest.mark.parametrize("key", CLAIMS)
@@ -94,8 +91,8 @@ def test_first_value_of_a_variant_is_what_the_checks_name(key):
         named = {(column, name) for column, name in names_by_column(claim | {"variants": {}})}
         for column, values in claim.get("variants", {}).items():
             free = all(column != other for other, _ in named)
-            assert free or any((column, name) in named for name in as_list(values[0])), claim["id"]
-            assert len({len(as_list(value)) for value in values}) == 1, claim["id"]
+            assert free or any((column, name) in named for name in one_or_list(values[0])), claim["id"]
+            assert len({len(one_or_list(value)) for value in values}) == 1, claim["id"]
 
 
 def test_names_of_song2016():
@@ -105,7 +102,7 @@ def test_names_of_song2016():
     known["feasible"] = [True, False]
     for claim in claims("song2016"):
         assert {(column, name) for column, name in names_by_column(claim) if name not in known[column]} == set(), claim["id"]
-        assert set(as_list(claim["artefact"])) <= artefacts["tables"].keys() | artefacts["figures"].keys()
+        assert set(one_or_list(claim["artefact"])) <= artefacts["tables"].keys() | artefacts["figures"].keys()
 
 
 @pytest.mark.parametrize("key", CLAIMS)
@@ -149,11 +146,11 @@ def test_no_key_of_a_file_is_unused(name, model):
     assert keys_of(model) - used == set()
 
 
-@pytest.mark.parametrize("name", study_claims.CHECKS)
+@pytest.mark.parametrize("name", kinds.kinds())
 def test_no_key_of_a_kind_of_test_is_unused(name):
     """A key may be used by one kind and idle in another."""
     used = set().union(*(check.keys() for check in all_checks() if check["test"] == name))
-    assert set(keys(study_claims.CHECKS[name])) - used <= IDLE_KEYS
+    assert set(keys(kinds.kinds()[name])) - used <= IDLE_KEYS
 
 
 FAULTS = {

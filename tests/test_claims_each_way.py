@@ -13,14 +13,17 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import claim_comparisons, claims, metrics, statistics
-from bezierplan.analysis.claim_comparisons import Material
-from bezierplan.analysis.claim_published import listed
+from bezierplan.analysis import metrics, statistics
+from bezierplan.analysis.claims import comparisons, judge, variants
+from bezierplan.analysis.claims.kinds import OfRuns, kinds
+from bezierplan.analysis.claims.material import Material
 from bezierplan.analysis.papers import elhoseny2017, ma2020, song2016, tharwat2018
 from bezierplan.analysis.results import Results
 from bezierplan.study import reading
+from bezierplan.study.model import one_or_list
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.seeds import generator
 
 STUDIES = Path(__file__).parents[1] / "config" / "studies"
 KEYS = ("song2016", "elhoseny2017", "tharwat2018", "ma2020", "meledje")
@@ -54,14 +57,14 @@ def claims_of(key) -> list[dict]:
 
 def deciding(key, claim) -> list[dict]:
     """The deciding checks of the deciding variant, `rest` filled in, seconds replaced by the work that counts."""
-    material = Material({}, published(key), artefacts(key), {}, {}, {}, {})
-    first, *_ = claims.variants(claim)
-    checks = [claim_comparisons.with_rest(check, claim, material) for check in claim["checks"]]
-    return [claims.with_work(check)[0] for check in claims.in_variant(checks, first, first) if "secondary" not in check]
+    material = Material({}, published(key), artefacts(key), {}, {}, {}, {}, {})
+    first, *_ = variants.variants(claim)
+    checks = [comparisons.with_rest(check, claim, material) for check in claim["checks"]]
+    return [variants.with_work(check)[0] for check in variants.in_variant(checks, first, first) if "secondary" not in check]
 
 
 def is_generated(claim) -> bool:
-    return all(check["test"] not in ("function", "published_arithmetic") for check in claim["checks"] if "secondary" not in check)
+    return all(issubclass(kinds()[check["test"]], OfRuns) for check in claim["checks"] if "secondary" not in check)
 
 
 CASES = [(key, claim["id"]) for key in KEYS for claim in claims_of(key)]
@@ -87,16 +90,16 @@ def groups_of(check) -> list:
 def factors(key, claim, checks, experiment) -> dict[str, list]:
     """Columns of the runs of an experiment, and the values that the claim's checks ask for."""
     found: dict[str, list] = defaultdict(list)
-    own = [check for check in checks if experiment in listed(check["experiment"])]
+    own = [check for check in checks if experiment in one_or_list(check["experiment"])]
     for check in own:
         for column, wanted in check.get("where", {}).items():
             if column not in metrics.METRICS:
-                found[column] += listed(wanted)
+                found[column] += one_or_list(wanted)
         found[column_of(check)] += groups_of(check)
     if any(check["metric"] == "rank" for check in own):
-        part = artefacts(key)[listed(claim["artefact"])[0]]
+        part = artefacts(key)[one_or_list(claim["artefact"])[0]]
         for column, wanted in part.get("where", {}).items():
-            found[column] += listed(wanted)
+            found[column] += one_or_list(wanted)
     for check in own:
         for column in [*check.get("every", []), *check.get("pool", [])]:
             if not found[column]:
@@ -175,14 +178,14 @@ def of_event(check, happens) -> np.ndarray:
 def made(key, claim, truth) -> dict[str, Results]:
     """Results by experiment on which the claim's sentence is true, or its contrary."""
     checks = deciding(key, claim)
-    names = list(dict.fromkeys(name for check in checks for name in listed(check["experiment"])))
+    names = list(dict.fromkeys(name for check in checks for name in one_or_list(check["experiment"])))
     results = {}
     for name in names:
-        own = [check for check in checks if name in listed(check["experiment"])]
+        own = [check for check in checks if name in one_or_list(check["experiment"])]
         columns = factors(key, claim, checks, name)
         repeats = range(1 if columns.get("layout", [0])[-1] == UNITS - 1 else 12 if "layout" in columns else UNITS)
         rows = pd.DataFrame(itertools.product(*columns.values(), repeats), columns=[*columns, "repeat"]).assign(experiment=name)
-        rng = statistics.generator(f"{key}/{claim['id']}/{name}/{truth}")
+        rng = generator(f"{key}/{claim['id']}/{name}/{truth}")
         rows["feasible"] = True
         for check in own:
             for column, wanted in check.get("where", {}).items():
@@ -228,7 +231,7 @@ def made(key, claim, truth) -> dict[str, Results]:
 def verdict(key, claim, results, printed=None) -> pd.Series:
     own = study(key)
     functions = {"song2016": song2016, "elhoseny2017": elhoseny2017, "tharwat2018": tharwat2018, "ma2020": ma2020}
-    judged, _ = claims.judge(
+    judged, _ = judge.judge(
         [claim | {"variants": {column: values[:1] for column, values in claim.get("variants", {}).items()}}],
         *(results, printed or published(key), artefacts(key), key, vars(functions[key]) if key in functions else {}),
         variant_of=own.variants(),

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bezierplan.geometry import bounds, checker
+from bezierplan.geometry import checker, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.planners import known_planners
 from bezierplan.running import contract, execution
@@ -41,7 +41,7 @@ from typing import Annotated, Literal
 import numpy as np
 from numba import njit
 
-from bezierplan.geometry import bounds
+from bezierplan.geometry import shortest_paths
 from bezierplan.planners import Path, Plan, Range
 
 KEPT = np.random.default_rng(0)
@@ -148,7 +148,7 @@ def test_bad_planner_fails_for_its_fault_alone(fault, tmp_path):
 def test_planner_that_raises_without_a_way_fails_there_alone(tmp_path):
     source = changed(
         "    start, target",
-        '    if math.isinf(bounds.shortest_path(problem).length):\n        raise RuntimeError("no\\nway")\n    start, target',
+        '    if math.isinf(shortest_paths.shortest_path(problem).length):\n        raise RuntimeError("no\\nway")\n    start, target',
     )
     assert failed(written(tmp_path, source), {"evaluations": 20}) == [
         contract.Finding("circles: sealed target", "plan", False, "raises RuntimeError: no way")
@@ -183,7 +183,7 @@ def test_problems_are_legal_and_only_the_sealed_one_has_no_way(kind):
         blocked = region(problem.workspace)
         for point in (problem.start, problem.target):
             assert checker.check(np.array([[point, point]]), blocked).feasible
-        assert np.isinf(bounds.shortest_path(problem).length) == problem.name.endswith("sealed target")
+        assert np.isinf(shortest_paths.shortest_path(problem).length) == problem.name.endswith("sealed target")
 
 
 CHECK = 'def check(settings):\n    raise ValueError("evaluations: 20; an odd number is needed")\n\n\ndef plan('

@@ -85,7 +85,7 @@ def test_mutation_changes_one_digit():
         assert np.abs(places.loc[child] - places.loc["0011"]).sum() == 1, "drawn beside its parent"
 
 
-def test_figures_may_show_controls_by_name():
+def test_figures_may_show_baselines_by_name():
     own = reading.load(reading.read_config({"studies": ["elhoseny2017"]}))["elhoseny2017"]
     assert jobs.methods_of(own, "figure7", "fields100") == ["straight_line"]
     assert jobs.methods_of(own, "figure10", "fields100") == ["prm", "abc_ep", "ga", "mga"]

@@ -12,10 +12,10 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from bezierplan.geometry.bounds import centre_path, lattice_path, least_length, shortest_path
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.curves import bernstein, bezier_pieces, least_points
 from bezierplan.geometry.region import region
+from bezierplan.geometry.shortest_paths import centre_path, lattice_path, least_length, shortest_path
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid, from_lines

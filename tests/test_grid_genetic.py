@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from fields import assert_path_fits, drawn
 
-from bezierplan.geometry import bounds, cell_length, curves
+from bezierplan.geometry import cell_length, curves, shortest_paths
 from bezierplan.planners import grid_genetic, planner_settings, setting_fault
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.problem import Problem
@@ -38,7 +38,10 @@ def plan(problem, seed=0, **changes):
 
 def least(problem):
     grid = problem.workspace
-    return bounds.lattice_path(grid.occupied, grid.cell_of(*problem.start), grid.cell_of(*problem.target), 1.5, "free").length * grid.cell
+    return (
+        shortest_paths.lattice_path(grid.occupied, grid.cell_of(*problem.start), grid.cell_of(*problem.target), 1.5, "free").length
+        * grid.cell
+    )
 
 
 @pytest.mark.parametrize("number", range(12))

@@ -55,9 +55,9 @@ TEXTS = {
     "NUL": (E, "title: a\0b\n", "experiments.yaml: not YAML"),
     "another control character": (E, "title: a\x07b\n", "experiments.yaml: not YAML"),
     "bytes that are no text": (E, b"title: \xff\xfe\n", "experiments.yaml: cannot be read (UnicodeDecodeError)"),
-    "deep nesting of lists": (E, "title: " + "[" * 100_000, "experiments.yaml: line 1: nested more than 20 presets deep"),
-    "deep nesting of mappings": (E, "{a: " * 5000, "experiments.yaml: line 1: nested more than 20 presets deep"),
-    "deep nesting by indentation": (E, "".join(" " * n + "a:\n" for n in range(500)), "nested more than 20 presets deep"),
+    "deep nesting of lists": (E, "title: " + "[" * 100_000, "experiments.yaml: line 1: nested more than 20 levels deep"),
+    "deep nesting of mappings": (E, "{a: " * 5000, "experiments.yaml: line 1: nested more than 20 levels deep"),
+    "deep nesting by indentation": (E, "".join(" " * n + "a:\n" for n in range(500)), "nested more than 20 levels deep"),
     "aliases of aliases": (E, bomb(), "more than 200000 values, aliases counted as what they stand for"),
     "aliases of aliases in claims": (C, bomb(), "claims.yaml: line 6: more than 200000 values"),
     "an alias of itself": (E, "a: &a [*a]\n", "experiments.yaml: line 1: *a: stands for nothing before it, or for itself"),
@@ -97,8 +97,8 @@ TEXTS = {
         "table1.csv: line 1: not csv (field larger than field limit",
     ),
     "an empty map": (M, "", "figure2.txt: the map is empty"),
-    "a map of bytes": (M, b"\xff\xff", "workspaces/figure2.txt: cannot be read (UnicodeDecodeError)"),
-    "a map with NUL": (M, "..\0.\n", "figure2.txt: line 1: unknown character '\\x00'"),
+    "a map of bytes": (M, b"\xff\xff", "workspaces/figure2.txt: cannot be read: byte 0 is not UTF-8"),
+    "a map with NUL": (M, "..\0.\n", "figure2.txt: has a NUL character in line 1"),
 }
 
 # A file, words in it, what stands in their place, and what is told of it.
@@ -271,13 +271,13 @@ WORDS = {
     "a misspelt setting of a preset": (
         E,
         "\nworkspaces:",
-        "\nlevels: {profile: {tuned: {gene: 7}}}\nworkspaces:",
+        "\npresets: {profile: {tuned: {gene: 7}}}\nworkspaces:",
         "presets: profile: tuned: gene: unknown; did you mean genes?",
     ),
     "a preset that is a list": (
         E,
         "\nworkspaces:",
-        "\nlevels: {profile: {tuned: [7]}}\nworkspaces:",
+        "\npresets: {profile: {tuned: [7]}}\nworkspaces:",
         "presets: profile: tuned: [7]: expected",
     ),
     "an unknown value of a preset": (
@@ -596,13 +596,13 @@ WORDS = {
     ),
     "a selection of a claim that is empty": (
         C,
-        "where: {method: smooth, problem: 0_255}",
+        "where: {method: smooth, problem: [0_255, 15_240]}",
         "where: {}",
         "where: {}: expected column of the runs table",
     ),
     "a selection of a claim by no value": (
         C,
-        "where: {method: smooth, problem: 0_255}",
+        "where: {method: smooth, problem: [0_255, 15_240]}",
         "where: {method: smooth, curve: polyline}",
         "where: no run of routes has all of",
     ),
@@ -621,8 +621,8 @@ WORDS = {
     ),
     "an unknown metric of a variant": (
         C,
-        "metric: [length, objective]}",
-        "metric: [length, objectiv]}",
+        "metric: [objective, length]}",
+        "metric: [objectiv, length]}",
         "variants: metric: objectiv: unknown; did you mean objective?",
     ),
     "a report of no": (C, "secondary: true}", "secondary: false}", "secondary: False: expected true: shown, does not decide"),

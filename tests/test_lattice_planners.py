@@ -6,7 +6,7 @@ from pathlib import Path as File
 import numpy as np
 import pytest
 
-from bezierplan.geometry import bounds, checker, curves
+from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.planners import ant_colony, planner_module
 from bezierplan.workspaces.grid import from_lines
@@ -98,7 +98,7 @@ def test_a_path_is_a_lattice_path_of_its_own_length_and_free(name, corners, numb
     assert found.claimed_feasible
     assert checker.check(curves.bezier_pieces(found.path), region(problem.workspace)).feasible
     assert found.objective == pytest.approx(curves.length(found.path), rel=1e-13)
-    least = bounds.lattice_path(problem.workspace.occupied, (0, 0), (19, 19), math.sqrt(2), corners).length + math.sqrt(2)
+    least = shortest_paths.lattice_path(problem.workspace.occupied, (0, 0), (19, 19), math.sqrt(2), corners).length + math.sqrt(2)
     assert found.objective >= least - 1e-9
     if corners == "none":
         column, row = points[1:-1].astype(int).T

@@ -10,7 +10,7 @@ import pytest
 from bezierplan.analysis import audit
 from bezierplan.analysis.papers import ma2020
 from bezierplan.analysis.results import Results
-from bezierplan.geometry import bounds, checker, curves
+from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.planners import bca, planner_module, planner_settings
 from bezierplan.running import problems
@@ -44,9 +44,9 @@ def test_maps(name):
     parameters = PUBLISHED["parameters"].set_index(["workspace", "parameter"])["value"]
     assert occupied == parameters[name, "occupied_cells"] == pytest.approx(4 * parameters[name, "obstacle_coverage"])
     for rule, length in (("one", one_side), ("none", strict)):
-        found = bounds.lattice_path(grid.occupied, (0, 0), (19, 19), math.sqrt(2), rule)
+        found = shortest_paths.lattice_path(grid.occupied, (0, 0), (19, 19), math.sqrt(2), rule)
         assert found.length + math.sqrt(2) == pytest.approx(length, abs=1e-7)
-    assert bounds.shortest_path(problem(name)).length == pytest.approx(shortest, abs=1e-7)
+    assert shortest_paths.shortest_path(problem(name)).length == pytest.approx(shortest, abs=1e-7)
     # No two blocks touch, not even at a corner: then any two diagonal neighbours share a block's row or column.
     diagonal = grid.occupied[1:, 1:] & grid.occupied[:-1, :-1] & ~grid.occupied[1:, :-1] & ~grid.occupied[:-1, 1:]
     other = grid.occupied[1:, :-1] & grid.occupied[:-1, 1:] & ~grid.occupied[1:, 1:] & ~grid.occupied[:-1, :-1]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from bezierplan.geometry import bounds
+from bezierplan.geometry import shortest_paths
 from bezierplan.running import problems
 from bezierplan.workspaces import files
 
@@ -123,7 +123,7 @@ def test_a_moving_ai_map_and_its_scenarios(tmp_path):
     job = {"study": "s", "workspaces": {"w": described()}, "problems": {"p": {"workspace": "w", "scenario": 2}}}
     problem = problems.build_all(job, tmp_path)[0]["p"]
     assert (problem.start, problem.target) == ((0.5, 0.5), (3.5, 1.5))
-    length = bounds.lattice_path(grid.occupied, (0, 0), (1, 3), math.sqrt(2), "none").length
+    length = shortest_paths.lattice_path(grid.occupied, (0, 0), (1, 3), math.sqrt(2), "none").length
     assert length == pytest.approx(4.0)
 
 

@@ -11,7 +11,7 @@ import shapely
 
 from bezierplan.analysis.papers import meledje
 from bezierplan.figures.panels import drawing
-from bezierplan.geometry import bounds
+from bezierplan.geometry import shortest_paths
 from bezierplan.planners import node_genetic
 from bezierplan.running import execution, problems
 from bezierplan.study import checked, reading
@@ -26,11 +26,11 @@ PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glo
 
 
 def workspace(name):
-    return files.load(STUDY.workspaces[name], FOLDER)
+    return files.load(STUDY.workspaces[name].plain(), FOLDER)
 
 
 def problem(name):
-    return problems.build(name, STUDY.problems[name], workspace(STUDY.problems[name]["workspace"]))
+    return problems.build(name, STUDY.problems[name].plain(), workspace(STUDY.problems[name].workspace))
 
 
 # The study's files
@@ -49,7 +49,8 @@ def test_repeats_are_the_trials_of_the_paper():
 
 
 def test_every_title_of_a_number_or_picture_on_the_maps_says_that_they_are_reconstructed():
-    for artefact in (STUDY.tables | STUDY.figures).values():
+    for each in (STUDY.tables | STUDY.figures).values():
+        artefact = each.plain()
         shown = {artefact.get("experiment"), *(panel.get("experiment") for panel in artefact.get("panels", []))}
         if "operators" in shown:
             assert "reconstructed" in artefact["title"]
@@ -59,7 +60,7 @@ def test_every_title_of_a_number_or_picture_on_the_maps_says_that_they_are_recon
 def test_optimum_is_the_shortest_path_over_centres_of_the_exact_geometry(name):
     where = problem(name)
     energy, path = cheapest(ground_of(where.workspace, 1.0), 0, 255)
-    exact = bounds.centre_path(where)
+    exact = shortest_paths.centre_path(where)
     assert energy == pytest.approx(exact.length, rel=1e-12)
     points = centres(where.workspace, path)
     assert np.hypot(*np.diff(points, axis=0).T).sum() == pytest.approx(exact.length, rel=1e-12)

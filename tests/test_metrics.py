@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bezierplan.analysis import metrics
+from bezierplan.analysis import measures, metrics
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 
@@ -123,7 +123,7 @@ def test_a_cell_is_its_column_and_its_row():
 def test_fine_samples_of_a_line_through_the_occupied_cell():
     # A third of the way from x = 5 to 35 lies between 10 and 20.
     inside = value("fine_bad", "polyline", [[5, 15], [35, 15]])
-    assert inside == pytest.approx(metrics.FINE_SAMPLES / 3, abs=1)
+    assert inside == pytest.approx(measures.FINE_SAMPLES / 3, abs=1)
     assert value("fine_bad", "polyline", [[5, 20], [35, 20]]) == 0
 
 

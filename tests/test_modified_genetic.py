@@ -6,12 +6,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy
 
-from bezierplan.geometry import bounds, cell_length
+from bezierplan.geometry import cell_length, shortest_paths
 from bezierplan.geometry.checker import check as certified
 from bezierplan.geometry.curves import bezier_pieces
 from bezierplan.geometry.region import region
 from bezierplan.planners import modified_genetic as planner
-from bezierplan.planners.parts import diversity, gene_lists
+from bezierplan.planners.parts import diversity, gene_curves, gene_lists
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
@@ -168,36 +168,36 @@ def test_points_can_be_joined_in_the_order_of_the_genes():
 def test_constraints_in_their_order():
     found = field(100, (50, 50, 3))
     empty = np.empty(0, dtype=np.int64)
-    assert planner.validate(empty, found, rules()) == (np.inf, False)
+    assert gene_curves.validate(empty, found, rules()) == (np.inf, False)
     straight = np.array([gene(25, 25)])
-    assert planner.validate(straight, found, rules()) == (np.inf, False)
+    assert gene_curves.validate(straight, found, rules()) == (np.inf, False)
     around = np.array([gene(25, 75)])
-    cost, free = planner.validate(around, found, rules())
+    cost, free = gene_curves.validate(around, found, rules())
     assert free
     assert cost > 141.5
     near = np.array([gene(25, 75), gene(25, 80)])
-    assert planner.validate(near, found, rules(least_distance=5.0))[1]
-    assert planner.validate(near, found, rules(least_distance=5.1)) == (np.inf, False)
+    assert gene_curves.validate(near, found, rules(least_distance=5.0))[1]
+    assert gene_curves.validate(near, found, rules(least_distance=5.1)) == (np.inf, False)
 
 
 def test_more_than_59_points_are_too_many():
     found = field(100)
     ones = np.array([gene(5 * i, 5 * j) for i in range(4) for j in range(1, 16)])
     assert len(ones) == 60
-    assert planner.validate(ones, found, rules()) == (np.inf, False)
-    assert planner.validate(ones[:59], found, rules())[1]
+    assert gene_curves.validate(ones, found, rules()) == (np.inf, False)
+    assert gene_curves.validate(ones[:59], found, rules())[1]
 
 
 def test_the_free_diagonal_costs_its_length():
     found = field(100)
     for name, length in (("length", 100 * np.sqrt(2)), ("cells4", 150.0), ("cells8", 150.0)):
-        assert planner.validate(np.array([gene(50, 50)]), found, rules(fitness_length=name))[0] == pytest.approx(length, rel=1e-12)
+        assert gene_curves.validate(np.array([gene(50, 50)]), found, rules(fitness_length=name))[0] == pytest.approx(length, rel=1e-12)
 
 
 def test_a_colliding_curve_may_be_punished_for_each_cell():
     found = field(100, (50, 50, 3))
     ones = np.array([gene(50, 45)])
-    cost, free = planner.validate(ones, found, rules(invalid="penalty"))
+    cost, free = gene_curves.validate(ones, found, rules(invalid="penalty"))
     x, y = cell_length.sample(planner.polygon(ones, found), cell_length.parts(planner.polygon(ones, found)), 1)
     bad = cell_length.occupied_cells(*cell_length.touched_cells(x, y), found.occupied)
     assert bad > 0
@@ -219,7 +219,7 @@ def test_first_sights_never_change_a_verdict():
             points = planner.polygon(ones, found)
             x, y = cell_length.sample(points, cell_length.parts(points), 1)
             bad = cell_length.occupied_cells(*cell_length.touched_cells(x, y), found.occupied)
-            cost, verdict = planner.validate(ones, found, rules(least_distance=0.0))
+            cost, verdict = gene_curves.validate(ones, found, rules(least_distance=0.0))
             assert verdict == (bad == 0)
             if verdict:
                 assert cost == cell_length.polyline_length(x, y)
@@ -235,10 +235,10 @@ def test_a_target_on_the_border_is_looked_at_within_the_grid():
         points = np.array([start, target])
         x, y = cell_length.sample(points, cell_length.parts(points), 1)
         # A sample on a grid line is left to the walk over the cells.
-        assert not planner._is_free_at_first_sight.py_func(x, y, occupied)
-        assert not planner._is_free_at_first_sight(x, y, occupied)
+        assert not gene_curves._is_free_at_first_sight.py_func(x, y, occupied)
+        assert not gene_curves._is_free_at_first_sight(x, y, occupied)
     x, y = np.linspace(0.513, 19.417, 50), np.linspace(0.619, 19.731, 50)
-    assert planner._is_free_at_first_sight.py_func(x, y, occupied)
+    assert gene_curves._is_free_at_first_sight.py_func(x, y, occupied)
 
 
 @pytest.mark.parametrize("target", [(20.0, 20.0), (20.0, 9.3), (9.3, 20.0)])
@@ -265,7 +265,7 @@ def test_plans_are_free_valid_and_above_the_bounds(diversity_rule, changed):
         assert certified(bezier_pieces(found.path), region(task.workspace)).feasible
         cells = cell_length.touched_cells(*cell_length.samples(found.path, task.workspace))
         assert cell_length.occupied_cells(*cells, task.workspace.occupied) == 0
-        least = bounds.lattice_path(
+        least = shortest_paths.lattice_path(
             task.workspace.occupied, *(task.workspace.cell_of(*end) for end in (task.start, task.target)), 1.5, "free"
         )
         assert cell_length.length4(found.path, task.workspace) >= cell_length.length8(found.path, task.workspace) >= least.length

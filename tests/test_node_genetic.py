@@ -15,6 +15,7 @@ from bezierplan.geometry import curves
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
 from bezierplan.planners import node_genetic, planner_settings, setting_fault
+from bezierplan.planners.parts.node_mutation import mutate
 from bezierplan.workspaces import files
 from bezierplan.workspaces import ground as ground_of_cells
 from bezierplan.workspaces.grid import Grid, from_lines
@@ -399,7 +400,7 @@ def mutated(path, grid, mutation, seed=0, **changes):
     rules = RULES._replace(mutation=OPERATORS.index(mutation), **changes)
     path = np.array(path)
     drawn = np.setdiff1d(np.flatnonzero(~grid.occupied), [path[0], path[-1]])
-    tried = node_genetic.mutate(np.random.default_rng(seed), path, drawn, ground_of(grid, 1.0), rules)
+    tried = mutate(np.random.default_rng(seed), path, drawn, ground_of(grid, 1.0), rules)
     return path.tolist(), tried
 
 

@@ -80,7 +80,7 @@ def test_counts_that_add_up_are_one_number_fewer():
 def test_outcome_counts_verdicts_of_numbers():
     words = ["reproduced", "not told apart", "cannot fail", "not reproduced"]
     table = comparison([1.0, 2.0, 3.0, 9.0], [1.2, 2.2, 3.2, 4.0], list("abcd")).assign(verdict=words)
-    claims = pd.DataFrame({"study": ["one"], "id": ["C1"], "primary": [True], "verdict": ["supported"]})
+    claims = pd.DataFrame({"study": ["one"], "id": ["C1"], "primary": [True], "finding": [False], "verdict": ["supported"]})
     found = summary.outcome(summary.numbers({("one", "table1"): table}, {"one": []}), claims).loc["one"]
     assert found[["numbers", *words]].to_list() == [4, 1, 1, 1, 1]
 

@@ -16,7 +16,7 @@ ROOT = Path(__file__).parents[1]
 PLANNER = """
 import numpy as np
 import nearby
-from bezierplan import curves
+from bezierplan.geometry import curves
 from bezierplan.planners import Path, Plan
 
 workspaces = ("circles",)
@@ -182,4 +182,4 @@ def test_figure_shows_the_own_planner(results):
 
 def test_summary_counts_the_study(results):
     summary = (results.parent / "summary.md").read_text()
-    assert "| bends | 2 | 1 | 0 | 0 | 1 | 1 | 0 | 1 | 0 | 0 | 0 |" in summary
+    assert "| bends | 2 | 1 | 0 | 0 | 1 | 1 | 0 | 0 | 0 | 1 | 0 | 0 | 0 |" in summary

@@ -164,7 +164,7 @@ RUNS = {
 def test_numbers_of_runs_and_units(study):
     rows = [row for file in (STUDIES / study / "published").glob("table*.csv") for row in transcribed(study, file.stem) if "metric" in row]
     runs, unit = RUNS[study]
-    units = {"cpu_s": "s", "generation_1pct": "generation", "generation_improved": "generation"}
+    units = {"cpu_s": "s", "generation_1pct": "generation", "generation_improved": "generation", "collisions_a": "particles"}
     units |= dict.fromkeys(("objective", "length", "cells4"), unit)
     assert {row["n"] for row in rows} == {runs}
     assert all(row["unit"] == units.get(row["metric"], "-") for row in rows)

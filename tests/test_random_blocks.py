@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from bezierplan.geometry import bounds
+from bezierplan.geometry import shortest_paths
 from bezierplan.running import problems
 from bezierplan.workspaces import random_blocks
 
@@ -62,7 +62,7 @@ def test_blocks_have_all_sizes_and_reach_all_borders():
 @pytest.mark.parametrize(("obstacles", "length"), [(60, 10 + 15 * math.sqrt(2)), (83, 14 + 13 * math.sqrt(2))])
 def test_maps_are_drawn_until_their_shortest_lattice_path_has_the_wanted_length(obstacles, length):
     for occupied in built(3, obstacles, lattice_length=round(length, 4)):
-        found = bounds.lattice_path(occupied, (0, 0), (19, 19), math.sqrt(2), "none").length + math.sqrt(2)
+        found = shortest_paths.lattice_path(occupied, (0, 0), (19, 19), math.sqrt(2), "none").length + math.sqrt(2)
         assert found == pytest.approx(length)
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bezierplan.geometry import bounds
+from bezierplan.geometry import shortest_paths
 from bezierplan.geometry.region import blocks, region
 from bezierplan.running import problems
 from bezierplan.workspaces import files, random_field
@@ -56,7 +56,7 @@ def test_fields_that_cut_off_the_target_are_drawn_again():
     crowded = FIELD | {"radius": 0.11}
     for number in range(5):
         grid = random_field.field(crowded, PROBLEM | {"layout": number}, "study/crowded")
-        assert np.isfinite(bounds.lattice_path(grid.occupied, (0, 0), (100, 100), 1.5, "free").length)
+        assert np.isfinite(shortest_paths.lattice_path(grid.occupied, (0, 0), (100, 100), 1.5, "free").length)
     with pytest.raises(ValueError, match=r"radius: 0[.]15: start and target are cut off from each other in 200 fields"):
         random_field.field(FIELD | {"radius": 0.15}, PROBLEM | {"obstacles": 60, "side": 40, "target": [40, 40]}, "study/walled")
     with pytest.raises(ValueError, match="radius: no circle keeps"):
@@ -85,7 +85,7 @@ def test_bounds_of_a_moved_grid_are_those_of_the_same_cells_at_the_origin(tmp_pa
     at_origin = moved._replace(
         workspace=type(moved.workspace)(moved.workspace.occupied, 1.0, "cell"), start=(0.5, 0.5), target=(100.5, 100.5)
     )
-    one, other = bounds.shortest_path(moved), bounds.shortest_path(at_origin)
+    one, other = shortest_paths.shortest_path(moved), shortest_paths.shortest_path(at_origin)
     assert one.length == other.length
     np.testing.assert_allclose(one.points + 0.5, other.points, rtol=0, atol=1e-12)
     table = problems.bounds_of({"a": moved}).to_pydict()

@@ -13,7 +13,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bezierplan.figures.panels import workspace as picture
-from bezierplan.geometry import bounds
+from bezierplan.geometry import shortest_paths
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
 from bezierplan.running import problems
@@ -56,7 +56,7 @@ def test_occupied_cells_of_the_benchmark_maps(name):
 def test_the_bound_is_that_of_the_polygons(name):
     start, target, length = ends(name)
     grid = drawn(name, 0.5, "overlap")
-    assert bounds.shortest_path(Problem(name, grid, start, target)).length == pytest.approx(length, abs=1e-5)
+    assert shortest_paths.shortest_path(Problem(name, grid, start, target)).length == pytest.approx(length, abs=1e-5)
 
 
 @settings(max_examples=60)

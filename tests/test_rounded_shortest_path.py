@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bezierplan.geometry import curves
-from bezierplan.geometry.bounds import shortest_path
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
+from bezierplan.geometry.shortest_paths import shortest_path
 from bezierplan.planners import rounded_shortest_path
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import polygons_from_geojson

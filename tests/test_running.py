@@ -101,7 +101,7 @@ def test_runs_are_thrown_away_until_times_are_stable(seconds, runs):
 WATCHED = """
     import logging, time
     logging.basicConfig(filename="log", level=logging.INFO)
-    from bezierplan import watchdog
+    from bezierplan.running import watchdog
     with watchdog.watching({limit}) as watch:
         for name in ("first", "second"):
             watch("run " + name)

@@ -9,7 +9,21 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
-TARGETS = {"help", "reproduce", "smoke", "extended", "test", "lint", "benchmark", "compare", "outcome", "lock", "clean", "distclean"}
+TARGETS = {
+    "help",
+    "reproduce",
+    "smoke",
+    "extended",
+    "test",
+    "lint",
+    "benchmark",
+    "compare",
+    "outcome",
+    "lock",
+    "clean",
+    "distclean",
+    "mutants",
+}
 
 
 def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess:

@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezierplan.analysis import statistics
-from bezierplan.analysis.statistics import LEAST_RUNS, STATISTICS, generator, interval, predicted, predictive_quantile, resampled, statistic
+from bezierplan.analysis.statistics import LEAST_RUNS, STATISTICS, interval, predicted, predictive_quantile, resampled, statistic
+from bezierplan.workspaces.seeds import generator
 
 samples = st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=30).map(np.array)
 
@@ -270,15 +271,15 @@ def test_prediction_interval_is_what_the_quantile_accepts():
     """A published number is reproduced where it lies between the ends, and beyond them it is not."""
     values = np.random.default_rng(0).normal(10, 2, 30)
     for name in ("mean", "median", "min"):
-        low, high = statistics.prediction_interval(name, values, 10, statistics.generator(name))
+        low, high = statistics.prediction_interval(name, values, 10, generator(name))
         assert low < statistics.statistic(name, values) < high or name == "min"
         for published, within in ((low + 1e-6, True), (high - 1e-6, True), (low - 0.05, False), (high + 0.05, False)):
             if np.isfinite(published):
-                assert statistics.predictive_quantile(name, values, published, 10, None, statistics.generator(name))[1] == within, (
+                assert statistics.predictive_quantile(name, values, published, 10, None, generator(name))[1] == within, (
                     name,
                     published,
                 )
-    assert np.isnan(statistics.prediction_interval("mean", np.array([]), 10, statistics.generator("empty"))).all()
+    assert np.isnan(statistics.prediction_interval("mean", np.array([]), 10, generator("empty"))).all()
 
 
 def test_holm_against_a_worked_example():

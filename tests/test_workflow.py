@@ -133,7 +133,7 @@ EDITS = {
     "a title": ("config/studies/song2016/artefacts.yaml", "title: ", "title: The same, ", {}),
     "a comment": ("src/bezierplan/planners/parts/genetic.py", "# A draw next to 1", "# Hence a draw next to 1", {}),
     # Convergence shares code with the kind `lines`, which reads the units of metrics.
-    "a metric": ("src/bezierplan/analysis/metrics.py", "FINE_SAMPLES = 4001", "FINE_SAMPLES = 4002", TABLES | {"figure figure4": 1}),
+    "a metric": ("src/bezierplan/analysis/measures.py", "FINE_SAMPLES = 4001", "FINE_SAMPLES = 4002", TABLES | {"figure figure4": 1}),
     "a kind of figure": ("src/bezierplan/figures/panels/convergence.py", "return", "0\n    return", {"figure figure4": 1}),
     "a setting of one method": (EXPERIMENTS, "samples: 701", "samples: 1401", runs(2, ["nonsmooth"]) | TABLES),
     "a setting of all methods": (EXPERIMENTS, "penalty: 10.0", "penalty: 11.0", runs(2, GENETIC) | ARTEFACTS_OF_RUNS),

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from timing import cpu_seconds
 
-from bezierplan.geometry import bounds, checker, curves
+from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
@@ -63,5 +63,5 @@ def benchmark_geometry() -> None:
         times = 1e6 * np.array(seconds[1:])
         inset = 0.5 * getattr(workspace, "cell", 0.02)
         corners = Problem("bound", workspace, (x_low + inset, y_low + inset), (x_high - inset, y_high - inset))
-        bound = 1e3 * cpu_seconds(lambda: bounds.shortest_path(corners))  # noqa: B023
+        bound = 1e3 * cpu_seconds(lambda: shortest_paths.shortest_path(corners))  # noqa: B023
         print(f"  {name:24}{np.median(times):18.0f}{np.quantile(times, 0.99):10.0f}{colliding / 401:11.2f}{bound:12.2f}")

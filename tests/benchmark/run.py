@@ -27,7 +27,7 @@ def benchmark_start() -> None:
     """CPU seconds of what every run job imports, of the check of the configuration, and of `bezierplan list`."""
     print(f"\n{'start-up':26}{'CPU s':>18}")
     for name, command in {
-        "imports of a run job": ["-c", "import pyarrow.parquet; from bezierplan import problems, running"],
+        "imports of a run job": ["-c", "import pyarrow.parquet; from bezierplan.running import execution, problems"],
         "bezierplan list": ["-m", "bezierplan", "list"],
     }.items():
         seconds = []

@@ -38,32 +38,20 @@ rule audit:
         "../scripts/audit.py"
 
 
-rule alternative_runs:
+# One job an alternative: most of its chunks take less time than a process takes to start.
+rule alternative:
     input:
-        problems=f"{RESULTS}/problems/{{experiment}}.parquet",
+        inputs(targets.alternative_inputs),
     output:
-        runs=f"{ALTERNATIVE}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
-        times=f"{ALTERNATIVE}/runs/{{experiment}}/{{method}}/{{chunk}}.times.parquet",
-    log:
-        f"{RESULTS}/logs/sensitivity/{{alternative}}/{{experiment}}/{{method}}/{{chunk}}.log",
-    params:
-        **params(targets.run_params, "job", "code"),
-    script:
-        "../scripts/runs.py"
-
-
-rule alternative_claims:
-    input:
-        inputs(targets.claims_inputs),
-    output:
+        runs=directory(f"{ALTERNATIVE}/runs"),
         claims=f"{ALTERNATIVE}/claims.csv",
         checks=f"{ALTERNATIVE}/claim_checks.csv",
     log:
-        f"{RESULTS}/logs/sensitivity/{{alternative}}/claims.log",
+        f"{RESULTS}/logs/sensitivity/{{alternative}}.log",
     params:
-        **params(targets.claims_params, "job", "published", "code"),
+        **params(targets.alternative_params, "chunks", "job", "published", "code"),
     script:
-        "../scripts/claims.py"
+        "../scripts/alternative.py"
 
 
 rule sensitivity:

@@ -3,18 +3,7 @@
 from bezierplan.running import log
 
 with log.job(snakemake) as output:
-    import importlib
-    from pathlib import Path
+    from bezierplan.analysis.claims import job as claims_job
 
-    import pandas as pd
-
-    from bezierplan.analysis import claims, results
-
-    job, files = snakemake.params.job, snakemake.input
-    found = results.read_all(files.runs, job["repeats"], files.problems, files.bounds)
-    published = {Path(file).stem: pd.read_csv(file) for file in files.published}
-    functions = vars(importlib.import_module(job["module"])) if job["module"] else {}
-    material = {"variant_of": job["variant_of"], "paired": job["paired"], "repeats": job["paper_repeats"], "labels": job["labels"]}
-    judged, checks = claims.judge(job["claims"], found, published, job["artefacts"], job["study"], functions, **material)
-    judged.to_csv(output.claims, index=False, float_format="%.10g", lineterminator="\n")
-    checks.to_csv(output.checks, index=False, float_format="%.10g", lineterminator="\n")
+    files = {name: list(snakemake.input[name]) for name in ("problems", "bounds", "published")}
+    claims_job.run(snakemake.params.job, list(snakemake.input.runs), files, output.claims, output.checks)

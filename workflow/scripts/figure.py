@@ -6,8 +6,6 @@ with log.job(snakemake) as output:
     import importlib
     from pathlib import Path
 
-    import pandas as pd
-
     from bezierplan.analysis import results
     from bezierplan.figures import sheet
     from bezierplan.workspaces import files
@@ -19,7 +17,7 @@ with log.job(snakemake) as output:
     functions = vars(importlib.import_module(job["module"])) if job["module"] else {}
     bare = {name: files.load(description, Path(snakemake.params.folder)) for name, description in job["workspaces"].items()}
     panels = job["spec"]["panels"]
-    tables = {Path(file).stem: pd.read_csv(file) for file in inputs.published}
+    tables = {Path(file).stem: results.published_table(file) for file in inputs.published}
     sheet.write_data(sheet.data(panels, found, bare, functions, tables), output.data)
     scene = sheet.Scene({name: each.problems for name, each in found.items()}, bare, job["labels"], job["unit"])
     figure = sheet.draw(panels, sheet.read_data(output.data), scene, job["spec"]["columns"])

@@ -7,6 +7,8 @@ import math
 
 import pandas as pd
 
+from bezierplan.analysis.results import published_table
+
 COLUMNS = ["study", "item", "place", "rule", "printed", "limit", "consistent"]
 
 # Metrics that are lengths of paths or never less, and statistics of them that no single path need have.
@@ -57,7 +59,7 @@ def _half_a_digit(printed: str) -> float:
 
 def read_published(file: str) -> pd.DataFrame:
     """Published numbers with a further column `printed`, their text, which keeps zeros at the end."""
-    table = pd.read_csv(file)
+    table = published_table(file)
     if "value" in table:
         table["printed"] = pd.read_csv(file, dtype=str)["value"]
     return table

@@ -34,7 +34,8 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics, statistics, tables
-from bezierplan.analysis.results import Results
+from bezierplan.analysis.results import Results, published_table
+from bezierplan.workspaces.seeds import generator
 
 LEAST_POWER = 0.5
 """Share of the numbers that matter which a test has to refuse before what it accepts counts as reproduced."""
@@ -54,8 +55,7 @@ def read_published(file: str | None, spec: dict) -> pd.DataFrame:
     """The published numbers of a table: key columns, metric, statistic, n, unit, value. Without a file none, with the table's keys."""
     if file is None:
         return pd.DataFrame(columns=[*tables.keys(spec), "metric", "statistic", "n", "unit", "value"])
-    # Only an empty cell means that there is nothing: `none` and `NA` may be names.
-    return as_read(pd.read_csv(file, keep_default_na=False, na_values=[""]), spec)
+    return as_read(published_table(file), spec)
 
 
 def as_read(published: pd.DataFrame, spec: dict) -> pd.DataFrame:
@@ -133,19 +133,19 @@ def _described(row: pd.Series, keys: list[str], name: str, rivals: np.ndarray) -
     numbers = row["numbers"]
     statistic = row["statistic"]
     row_name = "/".join([name, *(f"{key}={row[key]}" for key in keys), row["metric"], statistic])
-    low, high = statistics.interval(statistic, numbers, statistics.generator(f"{row_name}/interval"))
+    low, high = statistics.interval(statistic, numbers, generator(f"{row_name}/interval"))
     # The paper's own number of runs, whatever share of ours failed.
     size = None if pd.isna(row["n_published"]) else int(row["n_published"])
     published, single = row["value_published"], (row["least"], row["most"])
     quantile, reproduced = statistics.predictive_quantile(
-        statistic, numbers, published, size, row["decimals"], statistics.generator(f"{row_name}/prediction"), single
+        statistic, numbers, published, size, row["decimals"], generator(f"{row_name}/prediction"), single
     )
     if row["unit"] == "s":
         # Seconds of another machine are shown, not judged.
         reproduced = None
     predicted = (math.nan, math.nan)
     if not pd.isna(published):
-        predicted = statistics.prediction_interval(statistic, numbers, size, statistics.generator(f"{row_name}/prediction"), single)
+        predicted = statistics.prediction_interval(statistic, numbers, size, generator(f"{row_name}/prediction"), single)
     return {
         "n_ours": len(numbers),
         "value_ours": statistics.statistic(statistic, numbers),

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from bezierplan.analysis.results import select
+from bezierplan.analysis.results import published_table, select
 
 # What a table of kind `comparison` shows beside the keys: columns of `comparison.compare`, and their headings.
 _SHOWN = {
@@ -40,7 +40,7 @@ def table(
         return pd.read_csv(file, dtype=str, keep_default_na=False)
     if spec["kind"] == "comparison":
         return beside(spec, {Path(file).name.partition(".")[0]: pd.read_csv(file) for file in files}, labels)
-    return functions[spec["function"]]({Path(file).stem: pd.read_csv(file) for file in files})
+    return functions[spec["function"]]({Path(file).stem: published_table(file) for file in files})
 
 
 def beside(spec: dict, comparisons: dict[str, pd.DataFrame], labels: Mapping[str, str]) -> pd.DataFrame:

@@ -8,6 +8,7 @@ import pandas as pd
 import pyarrow.parquet as parquet
 
 from bezierplan.running import problems as problem_files
+from bezierplan.study.model import one_or_list
 from bezierplan.workspaces.problem import Path, Problem
 
 
@@ -64,12 +65,17 @@ def read_all(runs: list[str], repeats: dict[str, int], problems: list[str], boun
     return found
 
 
+def published_table(file: str) -> pd.DataFrame:
+    """A file of published numbers. Only an empty cell means that there is nothing: `none` and `NA` may be names."""
+    return pd.read_csv(file, keep_default_na=False, na_values=[""])
+
+
 def read_published(files: list[str]) -> pd.DataFrame | None:
     """The published numbers in some files, one below the other, the table's name (of its file) in the column `table`.
 
     Files of another form are left out. None if there is none.
     """
-    tables = [pd.read_csv(file).assign(table=PurePath(file).stem) for file in files]
+    tables = [published_table(file).assign(table=PurePath(file).stem) for file in files]
     tidy = [table for table in tables if {"metric", "statistic", "value"} <= set(table)]
     return pd.concat(tidy, ignore_index=True) if tidy else None
 
@@ -84,7 +90,7 @@ def path_of(run: pd.Series) -> Path | None:
 def select(runs: pd.DataFrame, where: dict) -> pd.DataFrame:
     """The runs whose columns equal the given values, or are among them where a list is given."""
     for column, wanted in where.items():
-        runs = runs[runs[column].isin(wanted if isinstance(wanted, list) else [wanted])]
+        runs = runs[runs[column].isin(one_or_list(wanted))]
     return runs
 
 

@@ -3,7 +3,6 @@
 Resampling is plain numpy: `scipy.stats.bootstrap` does the same draws, and its import alone takes longer than the tables of a paper.
 """
 
-import hashlib
 import math
 from collections.abc import Callable
 
@@ -76,11 +75,6 @@ WITHOUT_INTERVAL = ("min", "max", "range")
 def statistic(name: str, values: np.ndarray) -> float:
     """A named statistic of values (n,) without gaps; not a number without values. Raises KeyError for an unknown name."""
     return float(STATISTICS[name](values)) if len(values) else math.nan
-
-
-def generator(name: str) -> np.random.Generator:
-    """The random generator that belongs to a name: the same in every process and order."""
-    return np.random.default_rng(int.from_bytes(hashlib.sha256(name.encode()).digest()))
 
 
 def resampled(name: str, values: np.ndarray, size: int, rng: np.random.Generator) -> np.ndarray:

@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis.claim_verdicts import VERDICTS
+from bezierplan.analysis.claims.verdicts import VERDICTS
 
 NUMBERS = ("reproduced", "not told apart", "cannot fail", "not reproduced")
 

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-from bezierplan.analysis.metrics import CURVATURE_SAMPLES
-from bezierplan.geometry import bounds, checker, curves
+from bezierplan.analysis.measures import CURVATURE_SAMPLES
+from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.planners import Plan, known_planners, planner_module, planner_settings, setting_fault
 from bezierplan.running import problems
@@ -90,7 +90,7 @@ def _plan(given: Namespace) -> None:
         raise Fault(f"--out: {given.out}; expected a file that ends in {', '.join(OUT)}")
     planner, settings = _planner(given)
     problem = _problem(given, planner)
-    bound = bounds.shortest_path(problem)
+    bound = shortest_paths.shortest_path(problem)
     if not np.isfinite(bound.length):
         raise Fault(f"--target: {given.target or given.scenario}: no free way leads there from the start; expected one that can be reached")
     if planner == "rounded_shortest_path":

@@ -209,12 +209,24 @@ def samples(path: Path, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
 
 
 def length4(path: Path, grid: Grid) -> float:
-    """`cells4` of a path, in units."""
+    """`cells4` of a path, in units.
+
+    >>> from bezierplan.workspaces.grid import from_lines
+    >>> field = from_lines(["...", "..."], cell=1.0, unit="m")
+    >>> length4(Path("polyline", np.array([[0.5, 0.5], [2.5, 1.5]])), field)
+    3.0
+    """
     return cells4(*touched_cells(*samples(path, grid))) * grid.cell
 
 
 def length8(path: Path, grid: Grid) -> float:
-    """`cells8` of a path, in units. A path that goes from centre to centre of neighbouring cells is measured on these as they are."""
+    """`cells8` of a path, in units. A path that goes from centre to centre of neighbouring cells is measured on these as they are.
+
+    >>> from bezierplan.workspaces.grid import from_lines
+    >>> field = from_lines(["...", "..."], cell=1.0, unit="m")
+    >>> length8(Path("polyline", np.array([[0.5, 0.5], [2.5, 1.5]])), field)
+    2.5
+    """
     own = _is_cell_path(path, grid)
     return (cells4 if own else cells8)(*touched_cells(*samples(path, grid))) * grid.cell
 

@@ -119,7 +119,14 @@ def _hermite_pieces(values: np.ndarray, slopes: np.ndarray) -> np.ndarray:
 
 
 def bezier_pieces(path: Path) -> np.ndarray:
-    """The path as Bezier pieces (pieces, degree + 1, 2), in its unit, each piece beginning where the last one ends."""
+    """The path as Bezier pieces (pieces, degree + 1, 2), in its unit, each piece beginning where the last one ends.
+
+    A quadratic B-spline has a joint in the middle of each inner leg of its control polygon:
+
+    >>> path = Path("piecewise_quadratic", np.array([[0.0, 0.0], [1.0, 2.0], [3.0, 2.0], [4.0, 0.0]]))
+    >>> bezier_pieces(path).tolist()
+    [[[0.0, 0.0], [1.0, 2.0], [2.0, 2.0]], [[2.0, 2.0], [3.0, 2.0], [4.0, 0.0]]]
+    """
     if path.curve == "cubic_chain":
         return path.points[_chained(len(path.points))]  # without a matrix that grows with the square of the pieces
     return piece_matrix(path.curve, len(path.points)) @ path.points
@@ -215,7 +222,17 @@ def _piece_length(piece: np.ndarray) -> float:
 
 
 def length(path: Path) -> float:
-    """Exact arc length of a path in its unit (relative error below 1e-10)."""
+    """Exact arc length of a path in its unit (relative error below 1e-10).
+
+    >>> length(Path("polyline", np.array([[0.0, 0.0], [3.0, 4.0]])))
+    5.0
+
+    A parabola, whose length has a closed form:
+
+    >>> arc = length(Path("bezier", np.array([[0.0, 0.0], [1.0, 2.0], [2.0, 0.0]])))
+    >>> math.isclose(arc, math.sqrt(5) + math.asinh(2) / 2)
+    True
+    """
     return math.fsum(_piece_length(piece) for piece in bezier_pieces(path))
 
 

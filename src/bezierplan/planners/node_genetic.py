@@ -13,28 +13,24 @@ import numpy as np
 from numba import njit
 
 from bezierplan.planners import Plan, Range
-from bezierplan.planners.parts.genetic import check_pairs, roulette
+from bezierplan.planners.parts.genetic import below, check_pairs, roulette
+from bezierplan.planners.parts.node_mutation import Mutation, mutate
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.ground import Ground, centres, edge_energy, free_neighbours, ground_of, least_energy, obstacles_met
+from bezierplan.workspaces.ground import centres, edge_energy, ground_of, least_energy, obstacles_met, path_met
 from bezierplan.workspaces.problem import Path, Problem
 
 workspaces = ("grid",)
 exact = True
 keeps_best = False
 
-Mutation = Literal["random", "random_repair", "ref12", "ref21", "proposed"]
 Initial = Literal["feasible", "rejection", "unrestricted"]
 Selection = Literal["linear_rank", "best_half", "tournament", "roulette"]
-_RANDOM, _RANDOM_REPAIR, _REF12, _REF21, _PROPOSED = range(5)
 _FEASIBLE, _REJECTION, _UNRESTRICTED = range(3)
 _LINEAR_RANK, _BEST_HALF, _TOURNAMENT, _ROULETTE = range(4)
 
 # So many walks, or random paths, are begun for one path of the first population before it counts as out of reach.
 _MOST_TRIES = 1_000_000
-# So often random mutation is repeated for a feasible path.
-_MOST_REPAIRS = 50
-# Smaller differences of two energies are rounding: between neighbours of a node, and between a path and the best so far.
-_TIE = 1e-12
+# Smaller differences of the energies of a path and of the best so far are rounding.
 _IMPROVEMENT = 1e-9
 
 
@@ -265,9 +261,9 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
         for i in range(0, population, 2):
             mother, father = parents[i], parents[i + 1]
             if moves.random() < rules.crossover_probability:
-                cut = other_cut = 1 + _below(moves, min(lengths[mother], lengths[father]) - 1)
+                cut = other_cut = 1 + below(moves, min(lengths[mother], lengths[father]) - 1)
                 if not rules.one_cut:
-                    cut, other_cut = 1 + _below(moves, lengths[mother] - 1), 1 + _below(moves, lengths[father] - 1)
+                    cut, other_cut = 1 + below(moves, lengths[mother] - 1), 1 + below(moves, lengths[father] - 1)
             else:
                 cut, other_cut = lengths[mother], lengths[father]
             child_lengths[i] = join(paths[mother], cut, paths[father], other_cut, lengths[father], children[i])
@@ -280,10 +276,10 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
             for _ in range(lengths[i] - 2 if rules.each_node else 1):
                 if moves.random() < rules.mutation_probability and lengths[i] > 2:
                     path = paths[i, : lengths[i]]
-                    was_feasible = _path_met(path, ground) == 0
+                    was_feasible = path_met(path, ground) == 0
                     evaluations += mutate(moves, path, drawn, ground, rules)
                     feasible += was_feasible
-                    spoiled += was_feasible and _path_met(path, ground) > 0
+                    spoiled += was_feasible and path_met(path, ground) > 0
         if rules.elitism:
             _copy(best, paths[0], best_length)
             lengths[0] = best_length
@@ -301,12 +297,6 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
         spoiled / feasible if feasible else np.nan,
         diversity / (generation + 1),
     )
-
-
-@njit(cache=True)
-def _below(rng, count):
-    """A uniform whole number below another one, many times as fast as `rng.integers`."""
-    return int(rng.random() * count)
 
 
 @njit(cache=True)
@@ -334,16 +324,8 @@ def _evaluate(path, ground, penalty):
     energy = 0.0
     for k in range(len(path) - 1):
         energy += edge_energy(ground, path[k], path[k + 1])
-    met = _path_met(path, ground)
+    met = path_met(path, ground)
     return energy + penalty * met, met
-
-
-@njit(cache=True)
-def _path_met(path, ground):
-    met = 0
-    for k in range(len(path) - 1):
-        met += obstacles_met(ground, path[k], path[k + 1])
-    return met
 
 
 @njit(cache=True)
@@ -370,7 +352,7 @@ def _first_path(rng, path, target, free, ground, rules):
     """A random path, written behind its start; returns its number of nodes, 0 if none was found."""
     for _ in range(_MOST_TRIES):
         length = _walk(rng, path, target, free, ground) if rules.initial == _FEASIBLE else _random_path(rng, path, target, free)
-        if length and (rules.initial != _REJECTION or _path_met(path[:length], ground) == 0):
+        if length and (rules.initial != _REJECTION or path_met(path[:length], ground) == 0):
             return length
     return 0
 
@@ -384,7 +366,7 @@ def _walk(rng, path, target, free, ground):
             return 0
         path[length] = -1
         for _ in range(len(free)):
-            cell = free[_below(rng, len(free))]
+            cell = free[below(rng, len(free))]
             if obstacles_met(ground, path[length - 1], cell) == 0 and not _among(cell, path, length):
                 path[length] = cell
                 break
@@ -405,7 +387,7 @@ def _one_of_few(rng, path, length, free, ground):
         if obstacles_met(ground, path[length - 1], cell) == 0 and not _among(cell, path, length):
             seen[count] = cell
             count += 1
-    return seen[_below(rng, count)] if count else -1
+    return seen[below(rng, count)] if count else -1
 
 
 @njit(cache=True)
@@ -419,9 +401,9 @@ def _among(cell, path, length):
 @njit(cache=True)
 def _random_path(rng, path, target, free):
     """Any number of inner nodes that fits, each any free cell."""
-    inner = _below(rng, len(path) - 1)
+    inner = below(rng, len(path) - 1)
     for k in range(1, inner + 1):
-        path[k] = free[_below(rng, len(free))]
+        path[k] = free[below(rng, len(free))]
     path[inner + 1] = target
     return inner + 2
 
@@ -437,126 +419,7 @@ def _select(rng, order, ranks, selection):
     parents = np.empty_like(order)
     for i in range(len(order)):
         if selection == _BEST_HALF:
-            parents[i] = order[_below(rng, len(order) // 2)]
+            parents[i] = order[below(rng, len(order) // 2)]
         else:
-            parents[i] = order[min(_below(rng, len(order)), _below(rng, len(order)))]
+            parents[i] = order[min(below(rng, len(order)), below(rng, len(order)))]
     return parents
-
-
-# Mutation (meledje, Section 3). All operators change one inner node of a path in place, and leave the number of nodes.
-
-
-@njit(cache=True)
-def mutate(rng: np.random.Generator, path: np.ndarray, drawn: np.ndarray, ground: Ground, rules: Rules) -> int:
-    """Apply the operator once to a path of cells (n,), n at least 3; returns how many paths it evaluated.
-
-    drawn: the cells that random mutation draws from.
-    """
-    if rules.mutation == _RANDOM:
-        path[1 + _below(rng, len(path) - 2)] = drawn[_below(rng, len(drawn))]
-        return 0
-    if rules.mutation == _RANDOM_REPAIR:
-        return _random_repair(rng, path, drawn, ground)
-    if rules.mutation == _REF21:
-        return _ref21(rng, path, ground, rules)
-    k = _blocked_node(rng, path, ground, rules.beside_obstacle) if rules.mutation == _PROPOSED else 0
-    if k == 0:
-        if rules.mutation == _PROPOSED and not rules.any_node:
-            return 0
-        k = 1 + _below(rng, len(path) - 2)
-    return _best_neighbour(path, k, ground, rules)
-
-
-@njit(cache=True)
-def _random_repair(rng, path, drawn, ground):
-    """Random mutation, repeated until the path is feasible."""
-    for _ in range(_MOST_REPAIRS):
-        k = 1 + _below(rng, len(path) - 2)
-        before = path[k]
-        path[k] = drawn[_below(rng, len(drawn))]
-        if _path_met(path, ground) == 0:
-            return 0
-        path[k] = before
-    return 0
-
-
-@njit(cache=True)
-def _blocked_node(rng, path, ground, beside_obstacle):
-    """A random inner node that encounters an obstacle, 0 if there is none (Table 1, step 1)."""
-    count = 0
-    for k in range(1, len(path) - 1):
-        count += _encounters(path, k, ground, beside_obstacle)
-    if count == 0:
-        return 0
-    chosen = _below(rng, count)
-    for k in range(1, len(path) - 1):
-        if _encounters(path, k, ground, beside_obstacle):
-            if chosen == 0:
-                return k
-            chosen -= 1
-    return 0
-
-
-@njit(cache=True)
-def _encounters(path, k, ground, beside_obstacle):
-    """Whether the edge from node k to the next one meets an obstacle, or whether one of the eight cells around the node is occupied."""
-    if not beside_obstacle:
-        return obstacles_met(ground, path[k], path[k + 1]) > 0
-    row, column = divmod(path[k], ground.occupied.shape[1])
-    return ground.occupied[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2].any()
-
-
-@njit(cache=True)
-def _best_neighbour(path, k, ground, rules):
-    """Put the free neighbour cell that gives the best path in the place of node k (Table 1, steps 2 to 4; reference 12).
-
-    Of two that are equally good, the first from the lower left, row by row. Only the two edges of the node change.
-    """
-    neighbours, count = free_neighbours(path[k], ground)
-    best, least = path[k], np.inf
-    if rules.keep_better:
-        least = _cost_through(path, k, path[k], ground, rules.penalty)
-    for cell in neighbours[:count]:
-        cost = _cost_through(path, k, cell, ground, rules.penalty)
-        if cost < least - _TIE:
-            best, least = cell, cost
-    path[k] = best
-    return count
-
-
-@njit(cache=True, inline="always")
-def _cost_through(path, k, cell, ground, penalty):
-    """Energy and penalty of the two edges that node k would have in a cell."""
-    met = obstacles_met(ground, path[k - 1], cell) + obstacles_met(ground, cell, path[k + 1])
-    return edge_energy(ground, path[k - 1], cell) + edge_energy(ground, cell, path[k + 1]) + penalty * met
-
-
-@njit(cache=True)
-def _ref21(rng, path, ground, rules):
-    """Replace a random inner node by the first of its free neighbours, in random order, that lies in the direction of the target and whose
-    two edges are free, or with which the whole path is (reference 21).
-    """
-    k = 1 + _below(rng, len(path) - 2)
-    neighbours, count = free_neighbours(path[k], ground)
-    elsewhere = 0
-    if rules.whole_path:
-        elsewhere = _path_met(path[:k], ground) + _path_met(path[k + 1 :], ground)
-    for tried in range(count):
-        chosen = tried + _below(rng, count - tried)
-        neighbours[tried], neighbours[chosen] = neighbours[chosen], neighbours[tried]
-        cell = neighbours[tried]
-        accepted = elsewhere == 0 and _towards(path[0], cell, path[-1], ground.occupied.shape[1], rules.same_signs)
-        if accepted and obstacles_met(ground, path[k - 1], cell) == 0 and obstacles_met(ground, cell, path[k + 1]) == 0:
-            path[k] = cell
-            return tried + 1
-    return count
-
-
-@njit(cache=True)
-def _towards(start, cell, target, columns, same_signs):
-    """Does the way from a cell to the target have the direction of the way from the start to it?"""
-    across, up = target % columns - cell % columns, target // columns - cell // columns
-    whole_across, whole_up = target % columns - start % columns, target // columns - start // columns
-    if same_signs:
-        return np.sign(across) == np.sign(whole_across) and np.sign(up) == np.sign(whole_up)
-    return across * whole_across + up * whole_up > 0

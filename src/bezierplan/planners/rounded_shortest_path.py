@@ -13,7 +13,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numba import njit
 
-from bezierplan.geometry import bounds, curves
+from bezierplan.geometry import curves, shortest_paths
 from bezierplan.geometry.checker import first_collision
 from bezierplan.geometry.region import from_origin, region
 from bezierplan.planners import Plan, Range
@@ -66,7 +66,7 @@ def plan(
     Extra columns: turns, the number of corners; tight_turns, those with less than the turning radius; least_radius, the smallest radius of
     a turn, in units: 0 where a corner is left, infinite without a turn.
     """
-    bound = bounds.shortest_path(problem)
+    bound = shortest_paths.shortest_path(problem)
     if math.isinf(bound.length):
         nothing = {"turns": 0, "tight_turns": 0, "least_radius": math.nan}
         return Plan(None, math.inf, claimed_feasible=False, evaluations=1, history=np.array([math.inf]), stop="no way", extra=nothing)

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from bezierplan.geometry import bounds
+from bezierplan.geometry import shortest_paths
 from bezierplan.geometry.cell_length import DIAGONAL
 from bezierplan.planners import Plan
 from bezierplan.workspaces.problem import Path, Problem
@@ -21,10 +21,15 @@ def plan(problem: Problem, rng: np.random.Generator) -> Plan:
     """
     grid = problem.workspace
     start, target = (grid.cell_of(*end) for end in (problem.start, problem.target))
-    bound = bounds.lattice_path(grid.occupied, start, target, DIAGONAL, "free")
+    bound = shortest_paths.lattice_path(grid.occupied, start, target, DIAGONAL, "free")
     found = math.isfinite(bound.length)
     length = bound.length * grid.cell
-    path = Path("polyline", _without_straight_vertices(grid.in_units(bound.points))) if found else None
+    path = None
+    if found:
+        points = _without_straight_vertices(grid.in_units(bound.points))
+        # A centre of a cell that is computed can differ from the given one in the last bit.
+        points[[0, -1]] = problem.start, problem.target
+        path = Path("polyline", points)
     return Plan(path, length, claimed_feasible=found, evaluations=1, history=np.array([length]), stop="exact", extra={})
 
 

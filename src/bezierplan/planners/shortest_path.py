@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from bezierplan.geometry import bounds
+from bezierplan.geometry import shortest_paths
 from bezierplan.planners import Plan
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -18,7 +18,7 @@ def plan(problem: Problem, rng: np.random.Generator) -> Plan:
 
     Round circles it is a polyline at most 1e-6 units longer.
     """
-    bound = bounds.shortest_path(problem)
+    bound = shortest_paths.shortest_path(problem)
     found = math.isfinite(bound.length)
     path = Path("polyline", bound.points) if found else None
     return Plan(path, bound.length, claimed_feasible=found, evaluations=1, history=np.array([bound.length]), stop="exact", extra={})

@@ -13,7 +13,6 @@ A job is a mapping with these keys, all of them names and plain values (`study.j
     repeats                      [first, last): the repeats to run
 """
 
-import hashlib
 import itertools
 import logging
 import math
@@ -28,6 +27,7 @@ from bezierplan.geometry import checker, curves
 from bezierplan.geometry.region import Region, region
 from bezierplan.planners import PLACE, Plan, planner_module, planner_settings
 from bezierplan.running import answer, watchdog
+from bezierplan.workspaces import seeds
 from bezierplan.workspaces.problem import Problem
 
 logger = logging.getLogger(__name__)
@@ -108,7 +108,7 @@ def generator(job: dict, condition: Condition, repeat: int) -> np.random.Generat
         "common": [str(layout)],
     }
     name = "/".join([job["study"], job["experiment"], *parts[job["seeds"]], str(repeat)])
-    return np.random.default_rng(int.from_bytes(hashlib.sha256(name.encode()).digest()))
+    return seeds.generator(name)
 
 
 def run(job: dict, condition: Condition, repeat: int, problem: Problem) -> Plan:
@@ -201,7 +201,7 @@ def _order(job: dict, conditions: int, repeats: range) -> list[tuple[int, int]]:
     """
     pairs = list(itertools.product(range(conditions), repeats))
     name = "/".join([job["study"], job["experiment"], job["method"], str(repeats.start), "order"])
-    shuffled = np.random.default_rng(int.from_bytes(hashlib.sha256(name.encode()).digest())).permutation(len(pairs))
+    shuffled = seeds.generator(name).permutation(len(pairs))
     return [pairs[n] for n in shuffled]
 
 

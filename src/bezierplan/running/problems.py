@@ -86,11 +86,11 @@ _SAME_OPTIMUM = 1e-3
 
 def scenario(description: dict, number: int, workspace: Grid, folder: Path) -> dict:
     """Start and target of a scenario. Raises ValueError if it does not fit the map, or its length is not ours."""
-    from bezierplan.geometry import bounds
+    from bezierplan.geometry import shortest_paths
 
     found = files.scenario(description, number, workspace, folder)
     cells = (workspace.cell_of(*end) for end in (found.start, found.target))
-    length = bounds.lattice_path(workspace.occupied, *cells, math.sqrt(2), "none").length
+    length = shortest_paths.lattice_path(workspace.occupied, *cells, math.sqrt(2), "none").length
     if not abs(length - found.optimal) <= _SAME_OPTIMUM:
         place = f"{description['scenarios']}: line {number + 1}"
         raise ValueError(f"{place}: optimal length {found.optimal:g}; on {description['file']} it is {length:.8g}")
@@ -106,13 +106,13 @@ def _block_map(description: dict, problem: dict, name: str) -> Grid:
 
     Raises ValueError if there is none.
     """
-    from bezierplan.geometry import bounds
+    from bezierplan.geometry import shortest_paths
 
     wanted = description.get("lattice_length")
     for grid in random_blocks.maps(description, problem, name):
         ends = lattice.lattice(grid, tuple(problem["start"]), tuple(problem["target"]), description["corners"])
         cells = (divmod(cell, problem["side"]) for cell in (ends.start, ends.target))
-        length = bounds.lattice_path(grid.occupied, *cells, ends.diagonal, description["corners"]).length + ends.ends
+        length = shortest_paths.lattice_path(grid.occupied, *cells, ends.diagonal, description["corners"]).length + ends.ends
         if math.isfinite(length) and (wanted is None or abs(length - wanted) < _SAME_LENGTH):
             return grid
     asked = "a path from start to target" if wanted is None else f"a shortest lattice path of lattice_length {wanted:g}"
@@ -148,17 +148,17 @@ def read(file: str) -> dict[str, Problem]:
 
 def bounds_of(problems: dict[str, Problem]) -> pa.Table:
     """The straight line and the exact shortest path of each problem, one row each."""
-    from bezierplan.geometry import bounds
+    from bezierplan.geometry import shortest_paths
 
     rows = []
     for name, problem in problems.items():
-        bound = bounds.shortest_path(problem)
+        bound = shortest_paths.shortest_path(problem)
         rows.append(
             {
                 "problem": name,
                 "straight_line": math.dist(problem.start, problem.target),
                 "bound": bound.length,
-                "least_length": bounds.least_length(bound),
+                "least_length": shortest_paths.least_length(bound),
                 "bound_path": bound.points.ravel().tolist(),
                 "octile_bound": _cell_bound(problem),
             }
@@ -168,10 +168,10 @@ def bounds_of(problems: dict[str, Problem]) -> pa.Table:
 
 def _cell_bound(problem: Problem) -> float:
     """The least length, in units, of a path over free cells with straight and diagonal steps, which may pass between two occupied cells."""
-    from bezierplan.geometry import bounds
+    from bezierplan.geometry import shortest_paths
 
     grid = problem.workspace
     if not isinstance(grid, Grid):
         return math.nan
     start, target = (grid.cell_of(*end) for end in (problem.start, problem.target))
-    return bounds.lattice_path(grid.occupied, start, target, cell_length.DIAGONAL, "free").length * grid.cell
+    return shortest_paths.lattice_path(grid.occupied, start, target, cell_length.DIAGONAL, "free").length * grid.cell

@@ -4,7 +4,8 @@ import dataclasses
 import itertools
 from typing import Any
 
-from bezierplan.study.claims import Assumption, Check, Claim
+from bezierplan.analysis.claims.kinds import Check
+from bezierplan.study.claims import Assumption, Claim
 from bezierplan.study.definition import Study
 from bezierplan.study.model import one_or_list
 

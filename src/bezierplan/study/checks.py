@@ -8,6 +8,7 @@ from functools import cache, partial
 from typing import Any
 
 from bezierplan.analysis import metrics, statistics
+from bezierplan.analysis.claims.kinds import Check
 from bezierplan.planners import planner_module
 from bezierplan.running import problems
 from bezierplan.running.execution import conditions, settings_in
@@ -15,7 +16,7 @@ from bezierplan.study import published
 from bezierplan.study.alternatives import alternatives, concerned, methods_changed, with_alternative
 from bezierplan.study.artefacts import Comparison, Pivot, Table
 from bezierplan.study.checked import Fault, closest
-from bezierplan.study.claims import Assumption, Check, Claim
+from bezierplan.study.claims import Assumption, Claim
 from bezierplan.study.definition import Study, files_of, relative
 from bezierplan.study.design import Design, in_first_variant
 from bezierplan.study.experiments import WORKSPACES

@@ -3,11 +3,12 @@
 from functools import cache
 from typing import Any
 
+from bezierplan.analysis.claims.kinds import Check
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.planners import PLACE
 from bezierplan.running.execution import RUN_COLUMNS, conditions, settings_in
 from bezierplan.study.checked import Fault, closest
-from bezierplan.study.claims import Check, Claim
+from bezierplan.study.claims import Claim
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import job
 from bezierplan.study.model import one_or_list

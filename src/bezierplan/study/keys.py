@@ -7,6 +7,7 @@ from functools import partial
 
 from pydantic.fields import FieldInfo
 
+from bezierplan.analysis.claims import kinds
 from bezierplan.figures import panels
 from bezierplan.running.digest import PACKAGE
 from bezierplan.study import artefacts, claims, experiments
@@ -31,7 +32,7 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
     ],
     "claims": [
         ("A claim", claims.Claim),
-        ("A **check** has `test`, its kind, and by kind", claims.CHECKS),
+        ("A **check** has `test`, its kind, and by kind", kinds.kinds()),
     ],
     "assumptions": [("An assumption", claims.Assumption)],
 }
@@ -57,7 +58,7 @@ def _by_kind(models: dict[str, type[Model]]) -> str:
     rows: dict[tuple[str, str | None], list[str]] = {}
     for kind, model in models.items():
         for name, field in keys(model).items():
-            if name not in _ABOVE or (name == "unit" and issubclass(model, claims.Check)):
+            if name not in _ABOVE or (name == "unit" and issubclass(model, kinds.Check)):
                 rows.setdefault((_name(name, field), field.description), []).append(f"`{kind}`")
     shared = sorted(rows.items(), key=lambda row: -len(row[1]) if len(row[1]) > len(models) / 2 else 0)
     return "\n".join(

@@ -28,9 +28,9 @@ def _folder(scale: str, study: str, alternative: str | None = None) -> str:
     return f"results/{scale}/{study}" + (f"/sensitivity/{alternative}" if alternative else "")
 
 
-def _chunks(study: Study, scale: str, experiment: str, methods: Iterable[str], alternative: str | None = None) -> list[str]:
+def _chunks(study: Study, scale: str, experiment: str, methods: Iterable[str]) -> list[str]:
     """Runs of methods of an experiment: as the configuration says, whatever else lies in the folder."""
-    folder = f"{_folder(scale, study.key, alternative)}/runs/{experiment}"
+    folder = f"{_folder(scale, study.key)}/runs/{experiment}"
     return [f"{folder}/{method}/{chunk}.parquet" for method in methods for chunk in jobs.chunks(study, experiment, scale)]
 
 
@@ -76,12 +76,11 @@ def bounds_params() -> dict:
     return {"code": _code("bounds")}
 
 
-def run_params(given: Studies, scale: str, study: str, experiment: str, method: str, chunk: str, alternative: str | None = None) -> dict:
-    """Params of a chunk of runs, under an alternative if one is named."""
-    tried = alternatives.with_alternative(given[study], alternative) if alternative else given[study]
+def run_params(given: Studies, scale: str, study: str, experiment: str, method: str, chunk: str) -> dict:
+    """Params of a chunk of runs."""
     return {
-        "job": jobs.job(tried, experiment, method, scale, int(chunk)),
-        "code": _code("runs", _planner(tried.planner(method))),
+        "job": jobs.job(given[study], experiment, method, scale, int(chunk)),
+        "code": _code("runs", _planner(given[study].planner(method))),
     }
 
 
@@ -195,36 +194,69 @@ def _labels(study: Study, artefact: str) -> dict[str, str]:
 # Claims, audit, alternatives
 
 
-def _claims(study: Study, alternative: str | None) -> list[Claim]:
-    """All claims of a study, or under an alternative those on which it is tried."""
-    return alternatives.headline_claims(study, alternative) if alternative else study.claims
-
-
-def claims_inputs(given: Studies, scale: str, study: str, alternative: str | None = None) -> dict[str, list[str]]:
-    """Input files of claims. Under an alternative: its runs of the methods that it changes, and those in force of the others."""
+def claims_inputs(given: Studies, scale: str, study: str) -> dict[str, list[str]]:
+    """Input files of claims."""
     own = given[study]
-    claims = _claims(own, alternative)
-    changed = alternatives.methods_changed(own, alternative) if alternative else []
-    runs: list[str] = []
-    experiments = alternatives.experiments_of_claims(claims)
-    for experiment in experiments:
-        methods = alternatives.methods_of_claims(own, claims, experiment) if alternative else own.experiments[experiment].methods
-        runs += _chunks(own, scale, experiment, [name for name in methods if name not in changed])
-        runs += _chunks(own, scale, experiment, [name for name in methods if name in changed], alternative)
-    problems, bounds = _problems(scale, study, experiments), _bounds(scale, study, experiments)
-    return {"runs": runs, "problems": problems, "bounds": bounds, "published": own.published_files()}
+    experiments = alternatives.experiments_of_claims(own.claims)
+    runs = [file for name in experiments for file in _chunks(own, scale, name, own.experiments[name].methods)]
+    return {"runs": runs} | _judged_with(own, scale, experiments)
 
 
-def claims_params(given: Studies, scale: str, study: str, alternative: str | None = None) -> dict:
-    """Params of claims, under an alternative if one is named."""
+def _judged_with(study: Study, scale: str, experiments: list[str]) -> dict[str, list[str]]:
+    problems, bounds = _problems(scale, study.key, experiments), _bounds(scale, study.key, experiments)
+    return {"problems": problems, "bounds": bounds, "published": study.published_files()}
+
+
+def claims_params(given: Studies, scale: str, study: str) -> dict:
+    """Params of claims."""
     own = given[study]
-    job = jobs.claims_job(own, _claims(own, alternative))
-    artefacts = {name: {key: value for key, value in spec.items() if key != "title"} for name, spec in job["artefacts"].items()}
-    repeats = {name: own.experiments[name].repeats[scale] for name in job["paired"]}
     return {
-        "job": job | {"artefacts": artefacts, "repeats": repeats},
+        "job": _claims_job(own, scale, own.claims),
         "published": content_digest(*own.published_files()),
-        "code": _code("claims", own.module()),
+        "code": _code("claims", own.module(), *_kinds(own.claims)),
+    }
+
+
+def _kinds(claims: list[Claim]) -> list[str]:
+    """Modules of the kinds of check in claims, which are imported by name."""
+    return sorted({f"bezierplan.analysis.claims.kinds.{check.test}" for claim in claims for check in claim.checks})
+
+
+def _claims_job(study: Study, scale: str, claims: list[Claim]) -> dict:
+    job = jobs.claims_job(study, claims)
+    artefacts = {name: {key: value for key, value in spec.items() if key != "title"} for name, spec in job["artefacts"].items()}
+    return job | {"artefacts": artefacts, "repeats": {name: study.experiments[name].repeats[scale] for name in job["paired"]}}
+
+
+def alternative_inputs(given: Studies, scale: str, study: str, alternative: str) -> dict[str, list[str]]:
+    """Input files of an alternative: runs of the methods that it does not change."""
+    own = given[study]
+    claims, changed = alternatives.headline_claims(own, alternative), alternatives.methods_changed(own, alternative)
+    experiments = alternatives.experiments_of_claims(claims)
+    runs = []
+    for experiment in experiments:
+        methods = alternatives.methods_of_claims(own, claims, experiment)
+        runs += _chunks(own, scale, experiment, [name for name in methods if name not in changed])
+    return {"runs": runs} | _judged_with(own, scale, experiments)
+
+
+def alternative_params(given: Studies, scale: str, study: str, alternative: str) -> dict:
+    """Params of an alternative: `chunks`, the jobs of the runs that it changes, by the files that keep them."""
+    own, tried = given[study], alternatives.with_alternative(given[study], alternative)
+    claims, changed = alternatives.headline_claims(own, alternative), alternatives.methods_changed(own, alternative)
+    chunks = {
+        f"{experiment}/{method}/{chunk}.parquet": jobs.job(tried, experiment, method, scale, chunk)
+        for experiment in alternatives.experiments_of_claims(claims)
+        for method in alternatives.methods_of_claims(own, claims, experiment)
+        if method in changed
+        for chunk in jobs.chunks(own, experiment, scale)
+    }
+    planners = sorted({_planner(job["planner"]) for job in chunks.values()})
+    return {
+        "chunks": chunks,
+        "job": _claims_job(own, scale, claims),
+        "published": content_digest(*own.published_files()),
+        "code": _code("alternative", own.module(), *_kinds(claims), *planners),
     }
 
 

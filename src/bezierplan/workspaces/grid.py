@@ -84,6 +84,14 @@ def from_lines(lines: list[str], cell: float, unit: str) -> Grid:
     """A grid from text, top row first: `.` is a free cell, `#` an occupied one.
 
     Raises ValueError, naming the line, for an empty or ragged map, for any other character, and for more than `MOST_CELLS` cells.
+
+    >>> room = from_lines(["....", ".##.", "#..."], cell=0.5, unit="m")
+    >>> room.occupied[0].tolist()
+    [True, False, False, False]
+    >>> room.bounds
+    (0.0, 2.0, 0.0, 1.5)
+    >>> room.cell_of(0.75, 0.6)
+    (1, 1)
     """
     if not lines or not lines[0]:
         raise ValueError("the map is empty; expected lines of . (free) and # (occupied)")

@@ -79,6 +79,15 @@ def obstacles_met(ground: Ground, one: int, other: int) -> int:
     return _passed(ground, one, other)[0]
 
 
+@njit(cache=True)
+def path_met(path: np.ndarray, ground: Ground) -> int:
+    """How many occupied cells the edges of a path of cells (n,) meet; a cell counts for every edge that meets it."""
+    met = 0
+    for k in range(len(path) - 1):
+        met += obstacles_met(ground, path[k], path[k + 1])
+    return met
+
+
 @njit(cache=True, inline="always")
 def edge_energy(ground: Ground, one: int, other: int) -> float:
     """What the edge from a cell to another costs: its length, and what it climbs divided by the friction (meledje, eq. 2: epsilon)."""

@@ -1,11 +1,11 @@
 """Square maps with blocks of occupied cells at random places, none of which touches another."""
 
-import hashlib
 from collections.abc import Iterator
 
 import numpy as np
 
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.seeds import generator
 
 # Maps after which nothing is hoped for, and blocks that are tried for one map.
 MOST_MAPS = 500
@@ -33,7 +33,7 @@ def maps(description: dict, problem: dict, name: str) -> Iterator[Grid]:
             raise ValueError(f"{key}: {problem[key]}: outside the map; expected x and y from 0 to {side}")
         ends |= np.abs(np.indices(ends.shape) - np.reshape(cell, (2, 1, 1))).max(axis=0) < description["clear_ends"]
     parts = [name, side, *problem["start"], *problem["target"], problem["obstacles"], problem["layout"]]
-    rng = np.random.default_rng(int.from_bytes(hashlib.sha256("/".join(map(str, parts)).encode()).digest()))
+    rng = generator("/".join(map(str, parts)))
     for _ in range(MOST_MAPS):
         occupied = _blocks(rng, ends, problem["obstacles"], min(description["largest_block"], side))
         if occupied.sum() == problem["obstacles"]:

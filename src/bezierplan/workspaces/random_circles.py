@@ -1,11 +1,11 @@
 """Circles at random places: a layout is drawn once, from its names alone, and serves all methods and experiments."""
 
-import hashlib
 import math
 
 import numpy as np
 
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.seeds import generator
 
 # Draws of one circle before the layout is given up.
 MOST_DRAWS = 10_000
@@ -17,8 +17,7 @@ def layout(description: dict, name: str, number: int, ends: list[tuple[float, fl
     Centres are uniform within the bounds; a circle that covers an end, (x, y) in units, is drawn again (tharwat2018, Section 5.6). name: of
     study and workspace; number: of the layout. Circles may overlap each other. Raises ValueError if no free place is found.
     """
-    seed = hashlib.sha256(f"{name}/{number}".encode()).digest()
-    rng = np.random.default_rng(int.from_bytes(seed))
+    rng = generator(f"{name}/{number}")
     x_low, x_high, y_low, y_high = map(float, description["bounds"])
     radius = float(description["radius"])
     centres = []

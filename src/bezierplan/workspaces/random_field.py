@@ -4,12 +4,11 @@ A field of side N has (N + 1) x (N + 1) cells of side 1, whose centres are the p
 (0, 0) and (N, N), between which the paper plans, are cells. A cell is occupied if its centre lies in a circle.
 """
 
-import hashlib
-
 import numpy as np
 
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.seeds import generator
 
 # Fields and draws of one circle after which nothing is hoped for.
 MOST_FIELDS = 200
@@ -28,8 +27,7 @@ def field(description: dict, problem: dict, name: str) -> Grid:
     """
     side = problem["side"]
     parts = [name, side, *problem["start"], *problem["target"], problem["obstacles"], problem["layout"]]
-    seed = hashlib.sha256("/".join(f"{part}" for part in parts).encode()).digest()
-    rng = np.random.default_rng(int.from_bytes(seed))
+    rng = generator("/".join(map(str, parts)))
     empty = from_circles(Circles((0.0, side, 0.0, side), np.empty((0, 2)), np.empty(0), description["unit"]))
     ends = np.array([problem["start"], problem["target"]], dtype=float)
     cells = [empty.cell_of(*end) for end in ends]

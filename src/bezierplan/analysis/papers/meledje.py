@@ -13,6 +13,7 @@ import shapely
 
 from bezierplan.analysis.statistics import holm
 from bezierplan.planners import node_genetic
+from bezierplan.planners.parts.node_mutation import Mutation, mutate
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.ground import centres, ground_of, obstacles_met
 
@@ -121,10 +122,10 @@ def _shown(grid: Grid, operator: str, before: np.ndarray) -> Iterator[tuple[np.n
     """Paths after a mutation that shows what is said of the operator, each with the place of the changed node."""
     ground = ground_of(grid, 1.0)
     drawn = np.setdiff1d(np.flatnonzero(~grid.occupied), before[[0, -1]])
-    rules = RULES._replace(mutation=get_args(node_genetic.Mutation).index(operator))
+    rules = RULES._replace(mutation=get_args(Mutation).index(operator))
     for seed in range(SEEDS):
         after = before.copy()
-        node_genetic.mutate(np.random.default_rng(seed), after, drawn, ground, rules)
+        mutate(np.random.default_rng(seed), after, drawn, ground, rules)
         for k in np.flatnonzero(after != before).tolist():
             blocked = any(obstacles_met(ground, *edge) for edge in itertools.pairwise(after.tolist()))
             if blocked != (operator == "proposed"):

@@ -10,12 +10,12 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics, statistics
-from bezierplan.analysis.claim_effects import LEAST_WITHOUT_EXAMPLE
-from bezierplan.analysis.claim_tests import SURE
+from bezierplan.analysis.claims.effects import LEAST_WITHOUT_EXAMPLE, SURE
 from bezierplan.analysis.results import Results, select
-from bezierplan.geometry import bounds, curves
+from bezierplan.geometry import curves, shortest_paths
 from bezierplan.planners.parts import chaotic_maps
 from bezierplan.workspaces.problem import Problem, Workspace
+from bezierplan.workspaces.seeds import generator
 
 # Parameters of the maps in common use, where the paper gives a range or nothing.
 PARAMETERS = chaotic_maps.Parameters(singer_mu=1.07, singer_x4=13.302875, sine_a=4.0, piecewise_p=0.4, sinusoidal_a=2.3)
@@ -226,7 +226,7 @@ def best_curves(workspace: Workspace) -> pd.DataFrame:
     problem = Problem("", workspace, START, TARGET)
     numbers = range(1, MOST_POINTS + 1)
     rows = [("best Bezier curve found", n, best_curve(problem, n, SAMPLES)[0]) for n in numbers]
-    rows += [("shortest path possible", n, bounds.shortest_path(problem).length) for n in numbers]
+    rows += [("shortest path possible", n, shortest_paths.shortest_path(problem).length) for n in numbers]
     return pd.DataFrame(rows, columns=["path", "control_points", "length"])
 
 
@@ -361,7 +361,7 @@ def least_above(check: dict, results: dict[str, Results], published: dict[str, p
     """
     runs = select(results[check["experiment"]].runs, check.get("where", {}))
     values = runs.pivot_table(index="repeat", columns="particles", values=check["metric"]).dropna()
-    rng = statistics.generator("tharwat2018/C3")
+    rng = generator("tharwat2018/C3")
     means = values.to_numpy()[rng.integers(len(values), size=(statistics.DRAWS, len(values)))].mean(axis=1)
     share = float((values.columns.to_numpy()[means.argmin(axis=1)] > PARTICLES).mean())
     return _surely(share), share, None, len(values)
@@ -373,7 +373,7 @@ def outliers_of_others_alone(check: dict, results: dict[str, Results], published
     The effect is the share of draws of ten runs of each map, in both variants, that do. Of many runs some are outliers always.
     """
     runs = select(results[check["experiment"]].runs, check.get("where", {}))
-    rng = statistics.generator("tharwat2018/C20")
+    rng = generator("tharwat2018/C20")
     singer, others = np.zeros(statistics.DRAWS, dtype=bool), np.zeros(statistics.DRAWS, dtype=bool)
     for variant, name in itertools.product(("cpso1", "cpso2"), CHAOTIC):
         values = runs.loc[runs["method"] == f"{variant}_{name}", check["metric"]].to_numpy()

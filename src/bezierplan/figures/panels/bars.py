@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 # Metrics that the exact shortest length bounds from below.
 _BOUNDED = ("length", "objective")
 
+# Names of groups that have more characters in all are broken at spaces.
+_ONE_LINE = 40
+
 # Of the room of a group of bars, what the bars take.
 _FILLED = 0.84
 
@@ -73,8 +76,11 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
         at = own[x].map(groups.index).to_numpy() + (number - (len(bars) - 1) / 2) * width
         _draw_bars(axes, own, at, width, panel.get("below", "share"), look | {"label": style.printed(bar, hue, scene.labels)})
     axes.set_xlim(-0.5, len(groups) - 0.5)
-    axes.set_xticks(range(len(groups)), [scene.labels.get(group, group) if isinstance(group, str) else f"{group:g}" for group in groups])
-    axes.tick_params(axis="x", length=0, pad=32)  # below the shares
+    names = [scene.labels.get(group, group) if isinstance(group, str) else f"{group:g}" for group in groups]
+    if sum(map(len, names)) > _ONE_LINE:
+        names = [name.replace(" ", "\n") for name in names]
+    axes.set_xticks(range(len(groups)), names)
+    axes.tick_params(axis="x", length=0, pad=32 if panel.get("below") != "count" else 14)  # below what stands under the bars
     axes.set_xlabel(style.column_name(x, scene.labels))
     axes.set_ylabel(axis_label(panel["metric"], scene, panel.get("statistic", "mean")))
     axes.grid(visible=True, axis="y")
@@ -91,4 +97,4 @@ def _draw_bars(axes: Axes, frame: pd.DataFrame, at: np.ndarray, width: float, co
     for place, runs, feasible in zip(at, frame["runs"], frame["feasible_runs"]):
         below = {"xycoords": ("data", "axes fraction"), "xytext": (0, -2), "textcoords": "offset points"}
         text = f"{feasible:g}" if counted == "count" else f"{100 * feasible / runs:.0f} %"
-        axes.annotate(text, (place, 0), rotation=90, ha="center", va="top", **below)
+        axes.annotate(text, (place, 0), rotation=0 if counted == "count" else 90, ha="center", va="top", **below)

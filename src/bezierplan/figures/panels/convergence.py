@@ -16,6 +16,7 @@ from bezierplan.figures.panels import PICK, Pick, RunsPanel, exactly_one
 from bezierplan.figures.panels.lines import LIMITS, constants, interval_band, published, runs_note, shared_limits
 from bezierplan.figures.panels.paths import feasible_note, picked, run_note
 from bezierplan.study.model import Column, Flag, Line, Whole, wrong
+from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -125,7 +126,7 @@ def _intervals(histories: np.ndarray, statistic: str, name: str) -> tuple[np.nda
     ends = []
     for generation, values in enumerate(histories.T):
         held = generation > 0 and np.array_equal(values, histories[:, generation - 1])
-        ends.append(ends[-1] if held else statistics.interval(statistic, values, statistics.generator(name)))
+        ends.append(ends[-1] if held else statistics.interval(statistic, values, generator(name)))
     low, high = np.transpose(ends)
     return low, high
 

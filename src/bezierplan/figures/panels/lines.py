@@ -12,6 +12,7 @@ from bezierplan.analysis import metrics, statistics
 from bezierplan.figures import style
 from bezierplan.figures.panels import TablePanel, exactly_one
 from bezierplan.study.model import Column, Experiment, Flag, Function, Metric, Where, Whole, listed
+from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -92,7 +93,7 @@ def summary(results: Results, keys: list[str], metric: str, statistic: str) -> p
         numbers = np.sort(own["value"].dropna().to_numpy())
         named = dict(zip(keys, key))
         name = "/".join([metric, statistic, *(f"{column}={value}" for column, value in named.items())])
-        low, high = statistics.interval(statistic, numbers, statistics.generator(name))
+        low, high = statistics.interval(statistic, numbers, generator(name))
         counts = {"runs": len(own), "feasible_runs": int(own["feasible"].sum()), "n": len(numbers)}
         rows.append(constants(runs) | named | counts | {"value": statistics.statistic(statistic, numbers), "low95": low, "high95": high})
     return pd.DataFrame(rows)

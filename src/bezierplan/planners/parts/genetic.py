@@ -46,3 +46,9 @@ def complement_bit(chromosome: np.ndarray, position: int, bits: int) -> None:
 def redraw_gene(rng: np.random.Generator, chromosome: np.ndarray, alleles: np.ndarray) -> None:
     """Replace, in place, one random gene of a chromosome by a random one of some alleles, which may be the gene that it was."""
     chromosome[rng.integers(0, len(chromosome))] = alleles[rng.integers(0, len(alleles))]
+
+
+@njit(cache=True)
+def below(rng: np.random.Generator, count: int) -> int:
+    """A uniform whole number below another one, many times as fast as `rng.integers`."""
+    return int(rng.random() * count)

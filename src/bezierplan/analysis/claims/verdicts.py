@@ -19,8 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bezierplan.analysis.claim_effects import Finding
-from bezierplan.analysis.claim_tests import ALPHA
+from bezierplan.analysis.claims.effects import ALPHA, Finding
 
 VERDICTS = ("supported", "mostly", "in part", "seldom", "contradicted", "no effect", "undecided", "untestable")
 # Of the comparisons that are decided at least this share makes it `mostly`, at most the rest `seldom`; of all as many have to be decided.

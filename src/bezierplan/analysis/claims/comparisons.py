@@ -1,44 +1,24 @@
 """From a check of a claim to its comparisons: which runs stand against which, and the published numbers of the same cells."""
 
-import itertools
 from collections.abc import Iterator
 from pathlib import PurePath
-from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import claim_effects, claim_tests, comparison, metrics
-from bezierplan.analysis.claim_effects import Comparison
-from bezierplan.analysis.claim_published import listed, printed, rows_of_cell
-from bezierplan.analysis.results import Results, pick, select
+from bezierplan.analysis import comparison, metrics
+from bezierplan.analysis.claims import effects
+from bezierplan.analysis.claims.effects import Comparison
+from bezierplan.analysis.claims.kinds import cell_column, kind_of, named_groups
+from bezierplan.analysis.claims.material import Material, Untestable
+from bezierplan.analysis.claims.published import printed, rows_of_cell
+from bezierplan.analysis.results import pick, select
 from bezierplan.study.checked import Fault
+from bezierplan.study.model import one_or_list
 
 REST = "rest"
 # What one unit of a comparison has one value of; several, and their runs would be mixed without a word.
 _FACTORS = ["experiment", "condition", "method"]
-
-
-class Material(NamedTuple):
-    """What the claims of a study are judged on, everything by name.
-
-    results: of each experiment that was run. published: files of published numbers, named without `.csv`. artefacts: descriptions of tables
-    and figures as in artefacts.yaml. variant_of: method -> the method whose published numbers count.
-    paired: of each experiment, do runs of equal repeats share a start or a drawn workspace? repeats: how many repeats the paper has of
-    each, which counts where the printed numbers do not say. labels: name -> how readers see it.
-    """
-
-    results: dict[str, Results]
-    published: dict[str, pd.DataFrame]
-    artefacts: dict[str, dict]
-    variant_of: dict[str, str]
-    paired: dict[str, bool]
-    repeats: dict[str, int]
-    labels: dict[str, str]
-
-
-class Untestable(Exception):
-    """Why a check cannot be judged."""
 
 
 def unit_of(metric: str, experiments: list[str], material: Material) -> str:
@@ -49,7 +29,7 @@ def unit_of(metric: str, experiments: list[str], material: Material) -> str:
 
 def with_rest(check: dict, claim: dict, material: Material) -> dict:
     """The check with `rest` replaced by the groups of the claim's artefact that the check does not name."""
-    named = _named_groups(check)
+    named = named_groups(check)
     if REST not in named:
         return check
     rest = [group for group in _groups_of_artefact(check, claim, material) if group not in named]
@@ -61,17 +41,12 @@ def with_rest(check: dict, claim: dict, material: Material) -> dict:
     return check | replaced
 
 
-def _named_groups(check: dict) -> list:
-    tiers = [check.get("groups", []), check.get("than", []), *check.get("pairs", []), *check.get("order", [])]
-    return list(itertools.chain.from_iterable(tiers))
-
-
 def _parts_of_artefact(check: dict, claim: dict, material: Material) -> list[dict]:
     """The tables, and panels of figures, that show a claim's artefacts with runs of the check's experiments."""
     parts = []
-    for name in listed(claim.get("artefact", [])):
+    for name in one_or_list(claim.get("artefact", [])):
         artefact = material.artefacts.get(name, {})
-        parts += [part for part in artefact.get("panels", [artefact]) if part.get("experiment") in listed(check["experiment"])]
+        parts += [part for part in artefact.get("panels", [artefact]) if part.get("experiment") in one_or_list(check["experiment"])]
     return parts
 
 
@@ -81,9 +56,9 @@ def _groups_of_artefact(check: dict, claim: dict, material: Material) -> list:
     groups = []
     for part in _parts_of_artefact(check, claim, material) or [{}]:
         if across in part.get("where", {}):
-            groups += listed(part["where"][across])
+            groups += one_or_list(part["where"][across])
         else:
-            runs = [material.results[name].runs for name in listed(check["experiment"]) if name in material.results]
+            runs = [material.results[name].runs for name in one_or_list(check["experiment"]) if name in material.results]
             groups += sorted({group for table in runs for group in table[across].dropna()})
     return list(dict.fromkeys(groups))
 
@@ -97,7 +72,7 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
     runs = _measured_runs(check, claim, material)
     if runs.empty:
         raise Untestable("no run is of the conditions that the claim names")
-    column, unit = _cell_column(check), check.get("replicate", "repeat")
+    column, unit = cell_column(check), check.get("replicate", "repeat")
     every, pool = check.get("every", []), check.get("pool", [])
     tables, printed_metric = _published_tables(check, claim, material), check.get("printed_metric", check["metric"])
     keys = ["experiment", *every, *pool, *([column] if column else []), *(key for _, table in tables for key in table if key in runs)]
@@ -110,7 +85,7 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
     for place, rows in _split(runs, every):
         unit_tables = {name: _unit_table(part, unit, column) for name, part in _split(rows, pool)}
         conditions = [part for _, part in _split(places[place], pool)]
-        compared = list(_cells(check, rows))
+        compared = list(kind_of(check).cells(check, rows))
         printed_rows = {
             cell: [
                 rows_of_cell(part if column is None else part[part[column] == cell], printed_metric, tables, material.variant_of)
@@ -119,7 +94,7 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
             for cell in dict.fromkeys(cell for _, cells in compared for cell in cells)
         }
         for name, cells in compared:
-            strata = {key: claim_effects.event(check, table.reindex(columns=cells).to_numpy()) for key, table in unit_tables.items()}
+            strata = {key: effects.event(check, table.reindex(columns=cells).to_numpy()) for key, table in unit_tables.items()}
             numbers, number_of_runs = printed(check, list(zip(*(printed_rows[cell] for cell in cells))))
             found.append(
                 Comparison(
@@ -128,7 +103,7 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
                     cells=tuple(cells),
                     strata=strata,
                     printed=numbers,
-                    paper_units=number_of_runs or material.repeats.get(listed(check["experiment"])[0]),
+                    paper_units=number_of_runs or material.repeats.get(one_or_list(check["experiment"])[0]),
                     boolean=_is_boolean(check, material),
                     paired=check.get("paired", _shares_draws(check, material)),
                     note=_note(check, rows, column, cells),
@@ -148,7 +123,7 @@ def _measured_runs(check: dict, claim: dict, material: Material) -> pd.DataFrame
     conditions = {column: wanted for column, wanted in where.items() if column not in metrics.METRICS}
     outcomes = {column: wanted for column, wanted in where.items() if column in metrics.METRICS}
     measured = []
-    for name in listed(check["experiment"]):
+    for name in one_or_list(check["experiment"]):
         if name not in material.results:
             raise Untestable(f"the experiment {name} was not run")
         runs, problems = material.results[name].runs, material.results[name].problems
@@ -186,13 +161,6 @@ def _failure(check: dict) -> float:
     return np.nan
 
 
-def _cell_column(check: dict) -> str | None:
-    """The column whose values are the cells; None for a share, which has one cell."""
-    if check["test"] == "share":
-        return None
-    return check["x"] if check["test"] == "trend" else check.get("across", "method")
-
-
 def _refuse_mixtures(check: dict, claim: dict, runs: pd.DataFrame, keys: list[str]) -> None:
     """Raises Fault if a unit of a comparison, told apart by the keys, is of several experiments, conditions or methods."""
     distinct = runs[[*keys, *(factor for factor in _FACTORS if factor not in keys)]].drop_duplicates()
@@ -219,38 +187,15 @@ def _unit_table(rows: pd.DataFrame, unit: str, column: str | None) -> pd.DataFra
     return rows.groupby([unit, column])["value"].mean().unstack(column)
 
 
-def _cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
-    """The cells of each comparison, with its name."""
-    match check["test"]:
-        case "lower" | "equal_within":
-            pairs = check["pairs"] if "pairs" in check else itertools.product(check["groups"], check["than"])
-        case "ordered":
-            tiers = itertools.pairwise(check["order"])
-            pairs = itertools.chain.from_iterable(itertools.product(better, worse) for better, worse in tiers)
-        case "trend":
-            yield f"{check['x']} {check['direction']}", sorted(rows[check["x"]].dropna().unique())
-            return
-        case "share":
-            words = [word for limit in check.get("event", {}).items() for word in limit]
-            yield " ".join(map(str, [*words, "in", *([check["direction"]] if "direction" in check else []), check["threshold"]])), [""]
-            return
-        case "difference":
-            yield ", ".join(map(str, check["groups"])), check["groups"]
-            return
-    relation = "as" if check["test"] == "equal_within" else f"{check['direction']} than"
-    for pair in pairs:
-        yield f"{pair[0]} {relation} {pair[1]}", list(pair)
-
-
 def _is_boolean(check: dict, material: Material) -> bool:
     """Is the metric a column of truths, and not averaged over the runs of a unit?"""
-    runs = material.results[listed(check["experiment"])[0]].runs
+    runs = material.results[one_or_list(check["experiment"])[0]].runs
     return check.get("replicate", "repeat") == "repeat" and check["metric"] in runs and pd.api.types.is_bool_dtype(runs[check["metric"]])
 
 
 def _shares_draws(check: dict, material: Material) -> bool:
     """Do units of the same number share a drawn workspace or a start?"""
-    return "replicate" in check or all(material.paired.get(name, False) for name in listed(check["experiment"]))
+    return "replicate" in check or all(material.paired.get(name, False) for name in one_or_list(check["experiment"]))
 
 
 def _note(check: dict, rows: pd.DataFrame, column: str | None, cells: list) -> str:
@@ -261,16 +206,16 @@ def _note(check: dict, rows: pd.DataFrame, column: str | None, cells: list) -> s
 
     values = [rows.loc[rows[column] == cell, "value"] for cell in cells]
     counts = [[int(each.notna().sum()), int(each.isna().sum())] for each in values]
-    return "compared on successes alone, which are of different number" if stats.fisher_exact(counts).pvalue < claim_tests.ALPHA else ""
+    return "compared on successes alone, which are of different number" if stats.fisher_exact(counts).pvalue < effects.ALPHA else ""
 
 
 def _published_tables(check: dict, claim: dict, material: Material) -> list[tuple[str, pd.DataFrame]]:
     """Experiment and published numbers of each table of the check's experiments, those of the claim's artefacts first."""
-    own = listed(claim.get("artefact", []))
+    own = one_or_list(claim.get("artefact", []))
     tables = []
     for name in [*own, *(name for name in material.artefacts if name not in own)]:
         artefact = material.artefacts.get(name, {})
-        if "published" in artefact and artefact.get("experiment") in listed(check["experiment"]):
+        if "published" in artefact and artefact.get("experiment") in one_or_list(check["experiment"]):
             published = material.published[PurePath(artefact["published"]).stem]
             tables.append((artefact["experiment"], comparison.as_read(published, artefact)))
     return tables

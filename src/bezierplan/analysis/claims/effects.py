@@ -8,14 +8,19 @@ one to each kind of pair (Agresti and Min 2005): resampling says nothing about w
 """
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from bezierplan.analysis import statistics
-from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED, TAIL, generator
+from bezierplan.analysis.claims.kinds import kind_of
+from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED, TAIL
+from bezierplan.workspaces.seeds import generator
 
+ALPHA = 0.05
+# Share of draws in which a sentence about extremes has to hold.
+SURE = 0.95
 # So many runs without a counterexample make it 95 % sure that fewer than 5 % of all runs are one.
 LEAST_WITHOUT_EXAMPLE = 59
 # An effect of so many standard errors is found with a power of at least 0.8 (simulated for both rank tests, normal data, 10 to 100 units).
@@ -97,41 +102,56 @@ def event(check: dict, values: np.ndarray) -> np.ndarray:
     return np.where(np.isnan(values), np.nan, _EVENTS[word](values, limit))
 
 
-def effect(check: dict, points: np.ndarray, cells: tuple) -> np.ndarray:
-    """The effect (...) that point values (..., k) of the cells have.
+class Effect(NamedTuple):
+    """How a kind of test makes an effect of point values of cells; all functions take the check first.
 
-    If relative: to the other group's value, to that at the lowest x, to the mean of more than two groups.
+    of: values (..., k) and the names of the cells (k,) -> effects (...). gradient: values (k,) and names -> how the effect changes with
+    each value (k,), None where it has no linear approximation. claimed: effects (...) and the margin -> is each what the claim says?
+    reference: the cell whose value a relative effect is a share of. statistic: what stands for a cell where the check names none.
     """
-    relative = check.get("scale") == "relative"
+
+    of: Callable[[dict, np.ndarray, tuple], np.ndarray]
+    gradient: Callable[[dict, np.ndarray, tuple], np.ndarray | None]
+    claimed: Callable[[dict, np.ndarray, float], np.ndarray]
+    reference: int = 1
+    statistic: str = "mean"
+
+
+def _group_less_other(check: dict, points: np.ndarray, cells: tuple) -> np.ndarray:
+    group, other = points[..., 0], points[..., 1]
+    return group / other - 1 if check.get("scale") == "relative" else group - other
+
+
+def _gradient_of_groups(check: dict, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
+    if check.get("scale") != "relative":
+        return np.array([1.0, -1.0])
+    return np.array([1.0, -ours[0] / ours[1]]) / ours[1] if ours[1] else None
+
+
+def on_claimed_side(check: dict, effects: np.ndarray, margin: float) -> np.ndarray:
+    """Does the effect point as claimed, and beyond the claimed least one if there is one?"""
+    return SIDES[check["direction"]] * effects > check.get("least", 0)
+
+
+# Of two cells, a group and the one that it is compared with.
+BETWEEN_GROUPS = Effect(_group_less_other, _gradient_of_groups, on_claimed_side)
+
+
+def pairs_in_words(pairs: Iterable[Sequence], relation: str) -> Iterator[tuple[str, list]]:
+    """Pairs of groups, each with its name in words."""
+    for pair in pairs:
+        yield f"{pair[0]} {relation} {pair[1]}", list(pair)
+
+
+def effect(check: dict, points: np.ndarray, cells: tuple) -> np.ndarray:
+    """The effect (...) that point values (..., k) of the cells have."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        if check["test"] == "share":
-            return points[..., 0]
-        if check["test"] == "trend":
-            change = points @ change_weights(np.array(cells, dtype=float))
-            return change / points[..., 0] if relative else change
-        if len(cells) > 2:
-            return np.ptp(points, axis=-1) / (points.mean(axis=-1) if relative else 1)
-        group, other = points[..., 0], points[..., 1]
-        return group / other - 1 if relative else group - other
+        return kind_of(check).EFFECT.of(check, points, cells)
 
 
 def claimed(check: dict, effects: np.ndarray, margin: float) -> np.ndarray:
     """Is an effect what the claim says, by its value alone?"""
-    match check["test"]:
-        case "share":
-            match check["threshold"]:
-                case "all":
-                    return effects == 1
-                case "none":
-                    return effects == 0
-                case "some":
-                    return effects > 0
-            return SIDES[check["direction"]] * (effects - check["threshold"]) >= 0
-        case "equal_within":
-            return np.abs(effects - check.get("target", 0)) <= margin
-        case "difference":
-            return np.abs(effects) >= margin
-    return SIDES[check["direction"]] * effects > check.get("least", 0)
+    return kind_of(check).EFFECT.claimed(check, effects, margin)
 
 
 def margin_of(check: dict, comparison: Comparison) -> float:
@@ -145,7 +165,7 @@ def margin_of(check: dict, comparison: Comparison) -> float:
         return margin
     own = margin["published"]
     if check.get("scale") != "relative" and not comparison.boolean:
-        own *= abs(float(points(comparison, point_statistic(check))[0 if check["test"] == "trend" else 1]))
+        own *= abs(float(points(comparison, point_statistic(check))[kind_of(check).EFFECT.reference]))
     printed = effect(check, comparison.printed, comparison.cells)
     as_claimed = printed * SIDES.get(check.get("direction"), np.sign(printed)) > 0
     return min(own, float(abs(printed))) if as_claimed else own
@@ -153,16 +173,8 @@ def margin_of(check: dict, comparison: Comparison) -> float:
 
 def point_statistic(check: dict) -> str:
     """The statistic that stands for a cell where one number has to."""
-    if check["test"] == "share":
-        return "share"
     named = check.get("statistic", "rank")
-    return "mean" if named == "rank" else named
-
-
-def change_weights(x: np.ndarray) -> np.ndarray:
-    """Weights (k,) of values over x (k,) that give least-squares slope times range of x; not a number for a single x."""
-    from_mean = x - x.mean()
-    return from_mean / (from_mean**2).sum() * np.ptp(x)
+    return kind_of(check).EFFECT.statistic if named == "rank" else named
 
 
 # Values of units, statistics of cells, and their bootstrap.
@@ -215,7 +227,7 @@ def drawn_effects(check: dict, comparison: Comparison, name: str) -> np.ndarray:
         centre, variance = np.mean(adjusted, axis=0)
         return statistics.normal_draws(float(centre), math.sqrt(variance / len(adjusted)))
     ours = points(comparison, statistic)
-    gradient = _gradient(check, ours, comparison.cells)
+    gradient = kind_of(check).EFFECT.gradient(check, ours, comparison.cells)
     if gradient is None or any(len(v) <= MOST_RESAMPLED for s in comparison.strata.values() for v in finite(s, comparison.paired)):
         return effect(check, drawn_points(comparison, statistic, name), comparison.cells)
     variance = 0.0
@@ -238,16 +250,20 @@ def _adjusted_difference(group: np.ndarray, other: np.ndarray, paired: bool) -> 
     return shares[0] - shares[1], sum(share * (1 - share) / (len(values) + 2) for share, values in zip(shares, (group, other)))
 
 
-def _gradient(check: dict, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
-    """How the effect changes with the point value of each cell (k,); None where it has no linear approximation."""
-    reference = 1.0
-    if check.get("scale") == "relative":
-        reference = ours[0] if check["test"] == "trend" else ours[1]
-    if not reference or (len(cells) > 2 and check["test"] != "trend"):
-        return None
-    if check["test"] == "trend":
-        return change_weights(np.array(cells, dtype=float)) / reference
-    return np.array([1.0, -ours[0] / reference if check.get("scale") == "relative" else -1.0]) / reference
+def by_draws(check: dict, comparison: Comparison, name: str) -> Finding:
+    """A sentence about extremes: how often it holds in experiments of the paper's size, drawn from ours."""
+    statistic = point_statistic(check)
+    ours = float(effect(check, points(comparison, statistic), comparison.cells))
+    margin, n = margin_of(check, comparison), units(comparison)
+    finding = Finding(effect=ours, effect_size_name="difference", effect_size=ours, n=n, margin=margin)
+    if comparison.paper_units is None:
+        return finding._replace(mark="?", reason="the paper's number of runs is unknown")
+    effects = effect(check, drawn_points(comparison, statistic, name, comparison.paper_units), comparison.cells)
+    held = np.mean(claimed(check, effects, margin))
+    return finding._replace(
+        mark="+" if held >= SURE else "-" if held <= 1 - SURE else "?",
+        reason=f"holds in {held:.3f} of draws of {comparison.paper_units}",
+    )
 
 
 def two_sided(draws: np.ndarray) -> float:
@@ -298,3 +314,8 @@ def too_few(comparison: Comparison) -> str:
         if min(map(len, counted(stratum, comparison.paired))) < LEAST_RUNS:
             return f"fewer than {LEAST_RUNS} units"
     return ""
+
+
+def why_none(number: float) -> str:
+    """Why there is no such p or effect, empty if there is one."""
+    return "" if math.isfinite(number) else "relative to a value that is zero or does not exist"

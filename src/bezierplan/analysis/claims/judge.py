@@ -1,6 +1,6 @@
 """Sentences of a paper, judged on runs and on the paper's own numbers.
 
-A claim is a list of checks; config/README.md says how they are written, `claim_tests` which test each kind is. Every check gives one or
+A claim is a list of checks; config/README.md says how they are written, `kinds` which test each kind is. Every check gives one or
 several comparisons, every comparison a mark:
 
 | mark | meaning |
@@ -10,7 +10,7 @@ several comparisons, every comparison a mark:
 | 0 | neither, and the interval of the effect lies within the margin |
 | ? | neither of these; or there is too little to test |
 
-A comparison has one mark by itself and one in the family of all comparisons of the claim's deciding checks (`claim_verdicts` says which
+A comparison has one mark by itself and one in the family of all comparisons of the claim's deciding checks (`verdicts` says which
 procedure, and why). Where all have to hold, every mark by itself has to be + to support the claim; all else follows from the family's:
 
 | verdict | all have to hold | any may hold |
@@ -56,7 +56,7 @@ Columns of claim_checks.csv, one row a comparison:
 | test, metric, statistic, unit | of the check; unit of the metric |
 | condition, comparison | where, and what is compared |
 | mark, mark_family | by itself; in the family, empty for reported checks |
-| effect, effect_size_name, effect_size | of means, or of the statistic; what is computed from both groups (`claim_tests`) |
+| effect, effect_size_name, effect_size | of means, or of the statistic; what is computed from both groups (`kinds`) |
 | low95, high95 | interval of the effect |
 | p, p_family | two-sided; corrected, empty for reported checks and where no p decides |
 | n | units: pairs, or those of the smallest group |
@@ -66,20 +66,21 @@ Columns of claim_checks.csv, one row a comparison:
 | effect_published, published | the effect in the printed numbers, and does the sentence hold in them? |
 """
 
-import itertools
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import claim_comparisons, claim_effects, claim_published, claim_tests, claim_verdicts, metrics
-from bezierplan.analysis.claim_comparisons import Material, Untestable
-from bezierplan.analysis.claim_effects import Comparison, Finding
-from bezierplan.analysis.claim_published import listed
+from bezierplan.analysis import metrics
+from bezierplan.analysis.claims import comparisons, effects, verdicts
+from bezierplan.analysis.claims.effects import Comparison, Finding
+from bezierplan.analysis.claims.kinds import OfRuns, kind_of
+from bezierplan.analysis.claims.material import Material, Untestable
+from bezierplan.analysis.claims.variants import in_variant, variants, with_work
 from bezierplan.analysis.results import Results
-from bezierplan.study.checked import Fault, closest
+from bezierplan.study.model import one_or_list
 
 CLAIM_COLUMNS = [
     *("study", "id", "variant", "primary", "finding", "place", "statement", "verdict", "holds", "where_it_holds", "published"),
@@ -92,10 +93,6 @@ CHECK_COLUMNS = [
     *("margin", "least_detectable"),
     *("rho", "r_squared", "effect_published", "published", "timed", "reason"),
 ]
-# What a function in `studies/` answers: a mark, the effect, its 95 % interval or None, and how many units it saw.
-Answer = tuple[str, float, tuple[float, float] | None, int]
-# It gets the check, the results by experiment, and the published numbers by file.
-Function = Callable[[dict, dict[str, Results], dict[str, pd.DataFrame]], Answer]
 
 
 class _Judged(NamedTuple):
@@ -119,7 +116,7 @@ def judge(
     published: dict[str, pd.DataFrame],
     artefacts: dict[str, dict],
     study: str,
-    functions: dict[str, Function],
+    functions: dict[str, Any],
     *,
     variant_of: dict[str, str],
     paired: dict[str, bool],
@@ -128,105 +125,44 @@ def judge(
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """The claims of a study as tables with `CLAIM_COLUMNS` and `CHECK_COLUMNS`, described above.
 
-    claims: as in claims.yaml. study: its name; all random draws follow from names. functions: by name, of the study's file in `studies/`.
-    The others as in `claim_comparisons.Material`. Nothing depends on the order of the runs. Raises Fault for a claim that mixes runs of
+    claims: as in claims.yaml. study: its name; all random draws follow from names. functions: by name, of the study's file in `papers/`.
+    The others as in `Material`. Nothing depends on the order of the runs. Raises Fault for a claim that mixes runs of
     several conditions, or names an unknown function.
     """
-    material = Material(results, published, artefacts, variant_of, paired, repeats, labels or {})
+    material = Material(results, published, artefacts, functions, variant_of, paired, repeats, labels or {})
     claim_rows, check_rows = [], []
     for claim in claims:
         first, *_ = assignments = variants(claim)
         for assignment in assignments:
-            row, details = _judge_variant(claim, first, assignment, study, material, functions)
+            row, details = _judge_variant(claim, first, assignment, study, material)
             claim_rows.append(row | {"primary": assignment is first})
             check_rows += details
     return pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype({"n": "Int64"}), pd.DataFrame(check_rows, columns=CHECK_COLUMNS)
 
 
-# Variants.
-
-
-def variants(claim: dict) -> list[dict[str, Any]]:
-    """Every combination of the values of a claim's variants, column -> value; the first one decides."""
-    columns = claim.get("variants", {})
-    return [dict(zip(columns, values)) for values in itertools.product(*columns.values())]
-
-
-def in_variant(checks: list[dict], first: dict[str, Any], assignment: dict[str, Any]) -> list[dict]:
-    """The checks with the values of an assignment in the place of the first ones, wherever a check names those.
-
-    A list takes the place of a list, member by member. A column of which no check names the first value is one more condition of `where`.
-    """
-    for column, chosen in assignment.items():
-        pairs = dict(zip(listed(first[column]), listed(chosen), strict=True))
-        if any(_names(check, column) & set(pairs) for check in checks):
-            checks = [_exchanged(check, column, pairs) for check in checks]
-        else:
-            checks = [check | {"where": check.get("where", {}) | {column: chosen}} for check in checks]
-    return checks
-
-
-def _places(check: dict, column: str) -> list[str]:
-    """The keys of a check that hold values of a column."""
-    if column in ("metric", "experiment"):
-        return [column]
-    return ["groups", "than", "pairs", "order"] if column == check.get("across", "method") else []
-
-
-def _names(check: dict, column: str) -> set:
-    """The values of a column that a check names."""
-    given = [check[key] for key in _places(check, column) if key in check] + [check.get("where", {}).get(column, [])]
-    return set(_flat(given))
-
-
-def _flat(values: Any) -> list:
-    return [value for each in values for value in _flat(each)] if isinstance(values, list) else [values]
-
-
-def _exchanged(check: dict, column: str, pairs: dict) -> dict:
-    changed = {key: _replaced(check[key], pairs) for key in _places(check, column) if key in check}
-    if column in check.get("where", {}):
-        changed["where"] = check["where"] | {column: _replaced(check["where"][column], pairs)}
-    return check | changed
-
-
-def _replaced(values: Any, pairs: dict) -> Any:
-    return [_replaced(value, pairs) for value in values] if isinstance(values, list) else pairs.get(values, values)
-
-
 # From comparisons to a verdict.
 
 
-def with_work(check: dict) -> list[dict]:
-    """A check of seconds that names counted work, as that of the work, which decides, and that of the seconds, which is reported."""
-    if "work" not in check:
-        return [check]
-    seconds = {key: value for key, value in check.items() if key != "work"}
-    return [seconds | {"metric": check["work"], "printed_metric": check["metric"]}, seconds | {"secondary": True}]
-
-
-def _judge_variant(
-    claim: dict, first: dict, assignment: dict, study: str, material: Material, functions: dict[str, Function]
-) -> tuple[dict, list[dict]]:
+def _judge_variant(claim: dict, first: dict, assignment: dict, study: str, material: Material) -> tuple[dict, list[dict]]:
     """The row of claims.csv, and those of claim_checks.csv, of one variant of a claim."""
-    variant = ", ".join(f"{column}={' '.join(map(str, listed(value)))}" for column, value in assignment.items())
+    variant = ", ".join(f"{column}={' '.join(map(str, one_or_list(value)))}" for column, value in assignment.items())
     holds = claim.get("holds", "all")
     name = f"{study}/{claim['id']}/{variant}"
     # `rest` is what it is in the deciding variant, so it is filled in before values are exchanged.
-    checks = [claim_comparisons.with_rest(check, claim, material) for check in claim["checks"]]
+    checks = [comparisons.with_rest(check, claim, material) for check in claim["checks"]]
     checks = in_variant(checks, first, assignment)
     described = {
         **{key: claim[key] for key in ("id", "place", "statement")},
         "study": study,
         "variant": variant,
-        "artefact": ", ".join(listed(claim.get("artefact", []))),
+        "artefact": ", ".join(one_or_list(claim.get("artefact", []))),
         "finding": claim.get("finding", False),
         "timed": any(_is_timed(check) for check in checks if "secondary" not in check and "work" not in check),
     }
     judged, obstacle = [], ""
     for number, check in [(number, each) for number, given in enumerate(checks, start=1) for each in with_work(given)]:
         try:
-            judged += _findings(number, check, claim, name, material, functions)
+            judged += _findings(number, check, claim, name, material)
         except Untestable as reason:
             if "secondary" in check:
                 judged.append(_Judged(number, check, False, "", "", None, Finding(reason=str(reason))))
@@ -239,14 +175,12 @@ def _judge_variant(
         return described | {"verdict": "untestable", "published": _published(deciding), "reason": obstacle}, rows
     shown = _shown(deciding, holds)
     finding = shown.finding
-    verdict = claim_verdicts.verdict([each.mark for each in deciding], [each.mark_family for each in deciding], holds)
+    verdict = verdicts.verdict([each.mark for each in deciding], [each.mark_family for each in deciding], holds)
     everywhere = verdict == "supported" and holds == "all"
     summary = {
         "verdict": verdict,
         "holds": f"{sum(each.mark == '+' for each in deciding)} of {len(deciding)}",
-        "where_it_holds": ""
-        if everywhere
-        else claim_verdicts.where_it_holds([_in_words(each, deciding) for each in deciding], material.labels),
+        "where_it_holds": "" if everywhere else verdicts.where_it_holds([_in_words(each, deciding) for each in deciding], material.labels),
         "published": _published(deciding),
         **{key: getattr(finding, key) for key in ("effect", "effect_size_name", "effect_size", "n", "p")},
         "low95": finding.low,
@@ -260,57 +194,41 @@ def _judge_variant(
     return described | summary, rows
 
 
-def _findings(number: int, check: dict, claim: dict, name: str, material: Material, functions: dict[str, Function]) -> list[_Judged]:
+def _findings(number: int, check: dict, claim: dict, name: str, material: Material) -> list[_Judged]:
     """The comparisons of one check with what they found. Raises Untestable."""
-    primary = "secondary" not in check
-    if check["test"] == "published_arithmetic":
-        computed = claim_published.arithmetic(check, material.published)
-        if empty := [finding.reason for _, finding in computed if finding.mark == "?"]:
-            raise Untestable(empty[0])
-        return [_Judged(number, check, primary, condition, check["form"], None, finding) for condition, finding in computed]
-    if check["test"] == "function":
-        return [_Judged(number, check, primary, "", check["name"], None, _asked(check, claim, material, functions))]
+    primary, kind = "secondary" not in check, kind_of(check)
+    if not issubclass(kind.Options, OfRuns):
+        found = kind.findings(check, claim, material)
+        return [_Judged(number, check, primary, condition, words, None, finding) for condition, words, finding in found]
     if _is_timed(check) and check.get("scale") != "relative":
         raise Untestable("absolute seconds say nothing about another machine")
     return [
         _Judged(
             *(number, check, primary, comparison.place, comparison.name, comparison),
-            claim_tests.TESTS[check["test"]](check, comparison, f"{name}/{number}/{comparison.name}"),
+            kind.find(check, comparison, f"{name}/{number}/{comparison.name}"),
         )
-        for comparison in claim_comparisons.comparisons(check, claim, material)
+        for comparison in comparisons.comparisons(check, claim, material)
     ]
-
-
-def _asked(check: dict, claim: dict, material: Material, functions: dict[str, Function]) -> Finding:
-    """The answer of a function. Raises Untestable if its experiment was not run, Fault if there is no function of that name."""
-    for experiment in listed(check.get("experiment", [])):
-        if experiment not in material.results:
-            raise Untestable(f"the experiment {experiment} was not run")
-    if check["name"] not in functions:
-        raise Fault(f"claim {claim['id']}: function {check['name']}: unknown{closest(check['name'], functions)}")
-    answer, effect, interval, n = functions[check["name"]](check, material.results, material.published)
-    low, high = interval or (math.nan, math.nan)
-    return Finding(effect, check["effect"], effect, low, high, n, mark=answer)
 
 
 def _marked(judged: list[_Judged]) -> list[_Judged]:
     """The comparisons with their marks, the deciding ones also with those of the family."""
     tested = [number for number, each in enumerate(judged) if each.primary and not math.isnan(each.finding.p)]
-    corrected = dict(zip(tested, claim_verdicts.family(np.array([judged[number].finding.p for number in tested]))))
+    corrected = dict(zip(tested, verdicts.family(np.array([judged[number].finding.p for number in tested]))))
     marked = []
     for number, each in enumerate(judged):
         p_family = corrected.get(number, math.nan)
-        together = claim_verdicts.mark(each.finding, p_family) if each.primary else ""
-        marked.append(each._replace(mark=claim_verdicts.mark(each.finding, each.finding.p), mark_family=together, p_family=p_family))
+        together = verdicts.mark(each.finding, p_family) if each.primary else ""
+        marked.append(each._replace(mark=verdicts.mark(each.finding, each.finding.p), mark_family=together, p_family=p_family))
     return marked
 
 
-def _in_words(each: _Judged, deciding: list[_Judged]) -> claim_verdicts.Marked:
+def _in_words(each: _Judged, deciding: list[_Judged]) -> verdicts.Marked:
     """A comparison with the factors that tell it from the others of its claim."""
     metrics_differ = len({(other.check.get("metric"), other.check.get("statistic")) for other in deciding}) > 1
     factors: dict[str, Any] = {}
     if each.comparison is not None:
-        if each.check["test"] in ("lower", "ordered", "equal_within"):
+        if kind_of(each.check).Options.against:
             group, other = (_group_in_words(each.check, cell) for cell in each.comparison.cells)
             factors |= {"against": other, "group": group}
         factors |= dict(each.comparison.factors)
@@ -319,7 +237,7 @@ def _in_words(each: _Judged, deciding: list[_Judged]) -> claim_verdicts.Marked:
     if metrics_differ:
         statistic = each.check.get("statistic", "")
         factors["what"] = f"{statistic} {each.check.get('metric', each.check['test'])}".strip().replace("_", " ")
-    return claim_verdicts.Marked(factors, each.mark_family)
+    return verdicts.Marked(factors, each.mark_family)
 
 
 def _group_in_words(check: dict, group: Any) -> Any:
@@ -364,12 +282,12 @@ def _shown(deciding: list[_Judged], holds: str) -> _Judged:
 
 def _printed(each: _Judged) -> tuple[float, bool | None]:
     """The effect in the printed numbers, and whether the sentence holds in them; None if they are not printed."""
-    if each.check["test"] == "published_arithmetic":
+    if kind_of(each.check).Options.of_printed:
         return each.finding.effect, each.mark == "+"
     if each.comparison is None or np.isnan(each.comparison.printed).any():
         return math.nan, None
-    effect = claim_effects.effect(each.check, each.comparison.printed, each.comparison.cells)
-    return float(effect), bool(claim_effects.claimed(each.check, effect, each.finding.margin))
+    effect = effects.effect(each.check, each.comparison.printed, each.comparison.cells)
+    return float(effect), bool(effects.claimed(each.check, effect, each.finding.margin))
 
 
 def _published(deciding: list[_Judged]) -> str:
@@ -387,11 +305,11 @@ def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> 
         comparison = each.comparison
         if comparison is None or comparison.paper_units is None or "pick" in each.check:
             return math.nan
-        points = claim_effects.drawn_points(comparison, claim_effects.point_statistic(each.check), name, comparison.paper_units)
-        effects = claim_effects.effect(each.check, points, comparison.cells)
-        if np.isnan(effects).any():
+        points = effects.drawn_points(comparison, effects.point_statistic(each.check), name, comparison.paper_units)
+        drawn = effects.effect(each.check, points, comparison.cells)
+        if np.isnan(drawn).any():
             return math.nan
-        held.append(claim_effects.claimed(each.check, effects, each.finding.margin))
+        held.append(effects.claimed(each.check, drawn, each.finding.margin))
     together = np.all(held, axis=0) if holds == "all" else np.any(held, axis=0)
     return float(together.mean())
 
@@ -433,7 +351,7 @@ def _check_row(each: _Judged, material: Material) -> dict:
         "primary": each.primary,
         "test": check["test"],
         "metric": check.get("metric", ""),
-        "statistic": check.get("statistic", "rank") if check["test"] in ("lower", "ordered", "trend", "equal_within") else "",
+        "statistic": check.get("statistic", "rank") if "statistic" in kind_of(check).Options.model_fields else "",
         "unit": _unit(check, material),
         "condition": each.condition,
         "comparison": each.name,
@@ -455,5 +373,5 @@ def _unit(check: dict, material: Material) -> str:
     """The unit of a check's metric, or of the effect of a function; empty where neither is known."""
     if "effect_unit" in check:
         return check["effect_unit"]
-    experiments = [name for name in listed(check.get("experiment", [])) if name in material.results]
-    return claim_comparisons.unit_of(check["metric"], experiments, material) if experiments else ""
+    experiments = [name for name in one_or_list(check.get("experiment", [])) if name in material.results]
+    return comparisons.unit_of(check["metric"], experiments, material) if experiments else ""

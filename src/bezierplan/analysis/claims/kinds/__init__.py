@@ -1,0 +1,155 @@
+"""One file a kind of test.
+
+Every file has `Options`, which keys a check of this kind may have. A kind that judges runs (its `Options` are `OfRuns`) also has
+
+| name | means |
+| --- | --- |
+| `EFFECT` | how the point values of the cells make an effect: an `effects.Effect` |
+| `cells(check, rows)` | the cells of each comparison, with its name in words, among the runs of one place |
+| `find(check, comparison, name)` | the `effects.Finding` of a comparison; all random draws follow from the name |
+
+and any other kind `findings(check, claim, material)`: condition, name and finding of each comparison; it raises `Untestable` where there is
+nothing to judge. A check is a mapping, as it stands in claims.yaml. All p are two-sided and all intervals 95 %, by bootstrap over units
+within each condition; above `statistics.MOST_RESAMPLED` units by its normal approximation.
+
+Options are read at every start of the workflow, so these files import scipy and pandas inside the functions that need them.
+"""
+
+import importlib
+import itertools
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import Annotated, Any, ClassVar, Literal
+
+from pydantic import Field
+
+from bezierplan.study.model import (
+    Column,
+    Experiment,
+    Line,
+    Metric,
+    Model,
+    Positive,
+    Where,
+    is_number,
+    listed,
+    mapping_or,
+    one_or_list,
+    value,
+)
+
+Group = Annotated[str | float, value(lambda given: isinstance(given, str) or is_number(given), "a value of the column `across`, or rest")]
+Groups = listed(Group)
+Columns = listed(Column)
+
+
+class PublishedMargin(Model):
+    """A share of the other group's value, or the printed difference of the same cells if it is smaller."""
+
+    published: Positive = Field(description="the share of the other group's value, a number above 0")
+
+
+Margin = Annotated[Any, mapping_or(PublishedMargin, Positive)]
+
+# Descriptions of keys that several kinds of check have.
+SECONDARY = "true: shown, does not decide; left out otherwise"
+EXPERIMENT = "the name of an experiment, or a list of at least two"
+PAIRED = "whether equal units are compared with each other, true or false; left out: as the experiment is drawn"
+SCALE = "absolute (left out: this), or relative to the value of the other group"
+MARGIN = (
+    "the smallest effect that matters: a number above 0, or {published: share}, that share of the other group's value, or the printed "
+    "difference of the same cells if it is smaller"
+)
+WORK = "the metric of counted work that decides in the place of seconds, which differ from machine to machine and are reported"
+POOL = "a list of columns whose values are averaged with equal weight"
+GROUPS = "a list of values of the column `across`, or rest: the artefact's groups that are not named"
+THAN = "likewise: what the groups are compared with, each with each"
+SIDE = "lower or higher: how the groups, or the first tier, compare with the others"
+STATISTIC = "of what: rank (left out: this), mean, median, iqr, range, min or max"
+FAILURES = (
+    "what a run without a feasible path counts: drop (left out: this), last (worse than any success; also runs that do not satisfy a "
+    "condition on an outcome) or count (the event is false)"
+)
+
+# Keys that hold groups: lists of them, and lists of such lists.
+GROUP_KEYS = ("groups", "than", "pairs", "order")
+
+
+def named_groups(check: Mapping[str, Any]) -> list:
+    """All groups that a check names."""
+    lists = [each if isinstance(each, list) else [each] for key in GROUP_KEYS for each in check.get(key) or []]
+    return list(itertools.chain.from_iterable(lists))
+
+
+class Check(Model):
+    """A check of any kind: what others ask of it, whether it has the keys or not.
+
+    of_printed: does the kind judge the printed numbers themselves? against: does it compare one group with another? cells_key: the key that
+    names the column whose values are compared, if any.
+    """
+
+    of_printed: ClassVar[bool] = False
+    against: ClassVar[bool] = False
+    cells_key: ClassVar[str | None] = None
+
+    test: Line = Field(description="the name of a file in `src/bezierplan/analysis/claims/kinds`")
+
+    @property
+    def primary(self) -> bool:
+        """Does it count for the verdict?"""
+        return not getattr(self, "secondary", None)
+
+    @property
+    def experiments(self) -> list[str]:
+        """Experiments whose runs are judged."""
+        return one_or_list(getattr(self, "experiment", None) or [])
+
+    @property
+    def cells(self) -> str | None:
+        """The column whose values are compared, if any."""
+        return getattr(self, self.cells_key) if self.cells_key else None
+
+    @property
+    def groups_named(self) -> list:
+        """All groups that the check names."""
+        return named_groups({key: getattr(self, key, None) for key in GROUP_KEYS})
+
+
+class OfRuns(Check):
+    """Checks of runs."""
+
+    experiment: listed(Experiment, least=2, single=True) = Field(description=EXPERIMENT)
+    metric: Metric = Field(description="the name of a metric")
+    where: Where = Field({}, description="column of the runs table → value or list of values: the runs that are judged", min_length=1)
+    every: Columns = Field([], description="a list of columns; one comparison for each combination of their values")
+    replicate: Column = Field("repeat", description="the column that numbers independent replicates; left out: repeat")
+
+
+class Comparing(OfRuns):
+    """Checks that compare groups."""
+
+    cells_key: ClassVar[str | None] = "across"
+
+    across: Column = Field("method", description="the column whose values are the groups; left out: method")
+    scale: Literal["absolute", "relative"] = Field("absolute", description=SCALE)
+    margin: Margin = Field(description=MARGIN)
+
+
+def kind_of(check: Mapping[str, Any]) -> ModuleType:
+    """The file of a check's kind of test."""
+    return importlib.import_module(f"{__name__}.{check['test']}")
+
+
+def cell_column(check: Mapping[str, Any]) -> str | None:
+    """The column whose values are the cells; None for a kind that has one cell."""
+    key = kind_of(check).Options.cells_key
+    return check.get(key, "method") if key else None
+
+
+@cache
+def kinds() -> dict[str, type[Check]]:
+    """Kind of test -> what a check of this kind may have."""
+    names = sorted(file.stem for file in Path(__file__).parent.glob("[!_]*.py"))
+    return {name: importlib.import_module(f"{__name__}.{name}").Options for name in names}

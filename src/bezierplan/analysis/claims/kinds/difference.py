@@ -1,0 +1,95 @@
+"""Groups differ at all.
+
+The effect is the range of the means. Two groups are tested as by `lower`; more by Friedman's test (paired; Kendall's W), else by Kruskal
+and Wallis's (epsilon squared).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.analysis.claims.effects import (
+    BETWEEN_GROUPS,
+    Comparison,
+    Finding,
+    counted,
+    drawn_effects,
+    effect,
+    interval,
+    is_negligible,
+    least_detectable,
+    margin_of,
+    no_difference,
+    points,
+    too_few,
+    units,
+)
+from bezierplan.analysis.claims.kinds import PAIRED, SECONDARY, Comparing, Group, lower
+from bezierplan.study.model import Flag, listed
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class Options(Comparing):
+    """Keys of a check."""
+
+    secondary: Literal[True] = Field(None, description=SECONDARY)
+    paired: Flag = Field(None, description=PAIRED)
+    groups: listed(Group, least=2) = Field(description="a list of at least two values of the column `across`")
+
+
+def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
+    """All groups side by side."""
+    yield ", ".join(map(str, check["groups"])), check["groups"]
+
+
+def _range(check: dict, points: np.ndarray, cells: tuple) -> np.ndarray:
+    """The range of more than two groups, if relative to their mean; the difference of two."""
+    if len(cells) == 2:
+        return BETWEEN_GROUPS.of(check, points, cells)
+    return np.ptp(points, axis=-1) / (points.mean(axis=-1) if check.get("scale") == "relative" else 1)
+
+
+def _gradient(check: dict, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
+    return BETWEEN_GROUPS.gradient(check, ours, cells) if len(cells) == 2 else None
+
+
+EFFECT = BETWEEN_GROUPS._replace(of=_range, gradient=_gradient, claimed=lambda check, effects, margin: np.abs(effects) >= margin)
+
+
+def find(check: dict, comparison: Comparison, name: str) -> Finding:
+    """Do the cells differ at all?"""
+    from scipy import stats
+
+    ours = float(effect(check, points(comparison, "mean"), comparison.cells))
+    n, reason = units(comparison), too_few(comparison)
+    if reason:
+        return Finding(effect=ours, n=n, mark="?", reason=reason)
+    if len(comparison.cells) == 2:
+        found = lower.find(check | {"direction": "higher"}, comparison, name)
+        return found._replace(toward=abs(found.toward))
+    (stratum,) = comparison.strata.values()
+    groups = counted(stratum, comparison.paired)
+    total = sum(map(len, groups))
+    low, high = interval(drawn_effects(check, comparison, name))
+    margin = margin_of(check, comparison)
+    if comparison.paired:
+        same = all(np.ptp(values) == 0 for values in zip(*groups))
+        tested = None if same else stats.friedmanchisquare(*groups)
+        size_name, largest = "Kendall's W", n * (len(groups) - 1)
+    else:
+        tested = None if np.ptp(np.concatenate(groups)) == 0 else stats.kruskal(*groups)
+        size_name, largest = "epsilon squared", total - 1
+    return Finding(
+        *(ours, size_name, float(tested.statistic / largest) if tested else 0.0, low, high, n, float(tested.pvalue) if tested else 1.0),
+        toward=int(ours >= margin),
+        margin=margin,
+        negligible=is_negligible(low, high, margin, n),
+        least_detectable=least_detectable(low, high, n),
+        reason=no_difference(low, high, n),
+    )

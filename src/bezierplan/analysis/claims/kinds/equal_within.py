@@ -1,0 +1,86 @@
+"""Two groups differ by no more than the margin.
+
+Two one-sided tests: the 90 % interval of the difference, less the target, lies within the margin. Effect and effect size are the difference
+of the statistic that the check names.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.analysis.claims.effects import (
+    BETWEEN_GROUPS,
+    Comparison,
+    Finding,
+    by_draws,
+    drawn_effects,
+    effect,
+    interval,
+    margin_of,
+    pairs_in_words,
+    point_statistic,
+    points,
+    too_few,
+    units,
+    why_none,
+)
+from bezierplan.analysis.claims.kinds import GROUPS, POOL, SECONDARY, THAN, Columns, Comparing, Groups
+from bezierplan.analysis.statistics import WITHOUT_INTERVAL
+from bezierplan.study.model import Number
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class Options(Comparing):
+    """Keys of a check."""
+
+    against: ClassVar[bool] = True
+
+    secondary: Literal[True] = Field(None, description=SECONDARY)
+    pool: Columns = Field([], description=POOL)
+    groups: Groups = Field(description=GROUPS)
+    than: Groups = Field(description=THAN)
+    statistic: Literal["mean", "median", "min", "max"] = Field(description="of what: mean, median, min or max")
+    target: Number = Field(0, description="the claimed difference, a number; left out: 0")
+
+
+def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
+    """Each group beside each of the others."""
+    return pairs_in_words(itertools.product(check["groups"], check["than"]), "as")
+
+
+def claimed(check: dict, effects: np.ndarray, margin: float) -> np.ndarray:
+    """Is the effect, less the target, within the margin?"""
+    return np.abs(effects - check.get("target", 0)) <= margin
+
+
+EFFECT = BETWEEN_GROUPS._replace(claimed=claimed)
+
+
+def find(check: dict, comparison: Comparison, name: str) -> Finding:
+    """Is the difference of two cells, less the target, within the margin? Two one-sided tests; p of being outside where it is outside."""
+    ours = float(effect(check, points(comparison, point_statistic(check)), comparison.cells))
+    n, reason = units(comparison), too_few(comparison)
+    if reason:
+        return Finding(effect=ours, n=n, mark="?", reason=reason)
+    if point_statistic(check) in WITHOUT_INTERVAL:
+        return by_draws(check, comparison, name)
+    margin = margin_of(check, comparison)
+    draws = drawn_effects(check, comparison, name)
+    low, high = interval(draws)
+    toward = 1 if bool(claimed(check, ours, margin)) else -1
+    beyond = draws - check.get("target", 0)
+    if math.isnan(low):
+        p = math.nan
+    elif toward > 0:
+        p = float(max(np.mean(beyond <= -margin), np.mean(beyond >= margin)))
+    else:
+        p = min(1.0, 2 * float(np.mean(beyond <= margin) if ours > check.get("target", 0) else np.mean(beyond >= -margin)))
+    return Finding(ours, "difference", ours, low, high, n, p, toward, margin, reason=why_none(ours))

@@ -1,0 +1,40 @@
+"""What a function of the study's module finds, for sentences that no other kind fits.
+
+It gets the check, the results by experiment and the published numbers by file, and answers with a mark, the effect, its 95 % interval or
+None, and how many units it saw.
+"""
+
+from __future__ import annotations
+
+import math
+
+from pydantic import Field
+
+from bezierplan.analysis.claims.effects import Finding
+from bezierplan.analysis.claims.kinds import EXPERIMENT, Check
+from bezierplan.analysis.claims.material import Material, Untestable
+from bezierplan.study.checked import Fault, closest
+from bezierplan.study.model import Experiment, Function, Line, Metric, Where, listed, one_or_list
+
+
+class Options(Check):
+    """Keys of a check."""
+
+    name: Function = Field(description="the name of a function of `src/bezierplan/analysis/papers/<study>.py`")
+    effect: Line = Field(description="what its effect measures, in words")
+    effect_unit: Line = Field(description="the unit of its effect, - for a number without unit")
+    experiment: listed(Experiment, least=2, single=True) = Field(None, description=EXPERIMENT)
+    metric: Metric = Field(None, description="the name of a metric")
+    where: Where = Field({}, description="column of the runs table → value or list of values", min_length=1)
+
+
+def findings(check: dict, claim: dict, material: Material) -> list[tuple[str, str, Finding]]:
+    """The answer. Raises Untestable if the experiment was not run, Fault if there is no function of that name."""
+    for experiment in one_or_list(check.get("experiment", [])):
+        if experiment not in material.results:
+            raise Untestable(f"the experiment {experiment} was not run")
+    if check["name"] not in material.functions:
+        raise Fault(f"claim {claim['id']}: function {check['name']}: unknown{closest(check['name'], material.functions)}")
+    mark, effect, interval, n = material.functions[check["name"]](check, material.results, material.published)
+    low, high = interval or (math.nan, math.nan)
+    return [("", check["name"], Finding(effect, check["effect"], effect, low, high, n, mark=mark))]

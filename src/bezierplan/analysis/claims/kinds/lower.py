@@ -1,0 +1,195 @@
+"""Groups are lower, or higher, than others.
+
+| statistic | test | effect size |
+| --- | --- | --- |
+| `rank` | Wilcoxon's signed ranks, Pratt's zeros (paired), Mann-Whitney | A12 in the claimed direction |
+| `rank` of truths | McNemar's exact test (paired), Fisher's exact test | odds ratio |
+| `mean` | Student's t of the differences (paired), Welch's t | A12 |
+| another, or several conditions | bootstrap | A12, of spreads the difference |
+| `min`, `max`, `range` | how often the sentence holds in draws of the paper's number of runs, on which they depend | the difference |
+
+The effect is the group's value less the other's: of means, or of the statistic that the check names.
+"""
+
+from __future__ import annotations
+
+import itertools
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from bezierplan.analysis.claims.effects import (
+    BETWEEN_GROUPS,
+    SIDES,
+    Comparison,
+    Finding,
+    by_draws,
+    counted,
+    drawn_effects,
+    effect,
+    finite,
+    interval,
+    is_negligible,
+    least_detectable,
+    margin_of,
+    no_difference,
+    pairs_in_words,
+    point_statistic,
+    points,
+    too_few,
+    two_sided,
+    units,
+    why_none,
+)
+from bezierplan.analysis.claims.kinds import (
+    FAILURES,
+    GROUPS,
+    PAIRED,
+    POOL,
+    SECONDARY,
+    SIDE,
+    STATISTIC,
+    THAN,
+    WORK,
+    Columns,
+    Comparing,
+    Group,
+    Groups,
+)
+from bezierplan.analysis.claims.ranks import rank_test, wins
+from bezierplan.analysis.statistics import WITHOUT_INTERVAL
+from bezierplan.study.model import Flag, Metric, Positive, listed, wrong
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+EFFECT = BETWEEN_GROUPS
+
+
+class Options(Comparing):
+    """Keys of a check."""
+
+    against: ClassVar[bool] = True
+
+    secondary: Literal[True] = Field(None, description=SECONDARY)
+    pool: Columns = Field([], description=POOL)
+    paired: Flag = Field(None, description=PAIRED)
+    groups: Groups = Field(None, description=GROUPS)
+    than: Groups = Field(None, description=THAN)
+    pairs: listed(listed(Group, least=2)) = Field(None, description="a list of [group, other group], in place of groups and than")
+    direction: Literal["lower", "higher"] = Field(description=SIDE)
+    statistic: Literal["rank", "mean", "median", "iqr", "range", "min", "max"] = Field("rank", description=STATISTIC)
+    least: Positive = Field(None, description="the claimed least effect, a number above 0; left out: any effect")
+    work: Metric = Field(None, description=WORK)
+    failures: Literal["drop", "last", "count"] = Field("drop", description=FAILURES)
+
+    @model_validator(mode="after")
+    def _check_groups(self) -> Options:
+        if self.model_fields_set & {"groups", "than", "pairs"} not in ({"groups", "than"}, {"pairs"}):
+            raise wrong("groups: expected either groups and than, or pairs")
+        if any(len(pair) != 2 for pair in self.pairs or []):
+            raise wrong("pairs: expected a list of [group, other group]")
+        return self
+
+
+def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
+    """Each pair, or each group beside each of the others."""
+    pairs = check["pairs"] if "pairs" in check else itertools.product(check["groups"], check["than"])
+    return pairs_in_words(pairs, f"{check['direction']} than")
+
+
+def find(check: dict, comparison: Comparison, name: str) -> Finding:
+    """Is the first cell lower (higher) than the second one?"""
+    ours = float(effect(check, points(comparison, point_statistic(check)), comparison.cells))
+    n, reason = units(comparison), too_few(comparison)
+    if reason:
+        return Finding(effect=ours, n=n, mark="?", reason=reason)
+    if point_statistic(check) in WITHOUT_INTERVAL:
+        found = by_draws(check, comparison, name)
+        return found if abs(ours) >= found.margin else found._replace(mark="?")
+    side, least = SIDES[check["direction"]], check.get("least", 0)
+    margin = margin_of(check, comparison)
+    draws = drawn_effects(check, comparison, name)
+    low, high = interval(draws)
+    toward = np.sign(side * ours - least)
+    if "least" not in check and abs(ours) < margin:
+        toward = 0
+    (stratum, *others) = comparison.strata.values()
+    group, other = counted(stratum, comparison.paired)
+    named = check.get("statistic", "rank")
+    if others or named not in ("rank", "mean") or (comparison.boolean and "least" in check):
+        p = two_sided(side * draws - least)
+    elif comparison.boolean:
+        p = _boolean_test(group, other, comparison.paired)
+    elif named == "mean":
+        p = _t_test(*_shifted(check, *finite(stratum, comparison.paired)), comparison.paired)
+    else:
+        p, ranked = rank_test(*_shifted(check, group, other), comparison.paired)
+        # The means have to differ in the direction of the ranks, unless some values have no mean.
+        toward = side * ranked if np.isinf(stratum).any() or toward == side * ranked else 0
+    infinite = any(np.isinf(each).any() for each in comparison.strata.values())
+    if not (math.isfinite(ours) or infinite):
+        p = math.nan
+    size_name, size = _effect_size(check, comparison, side, ours)
+    found = Finding(ours, size_name, size, low, high, n, p, int(np.nan_to_num(toward)), margin)
+    reason = why_none(p) or ("" if toward else no_difference(low, high, n))
+    negligible = not infinite and is_negligible(low, high, margin, n, side * least)
+    return found._replace(negligible=negligible, least_detectable=least_detectable(low, high, n), reason=reason)
+
+
+def _t_test(group: np.ndarray, other: np.ndarray, paired: bool) -> float:
+    """p of two means; of the ranks where values that do not spread leave no t."""
+    from scipy import stats
+
+    spread = (group - other).std() if paired else group.std() + other.std()
+    if spread <= 1e-12 * max(np.abs(group).max(), np.abs(other).max(), 1e-300):
+        return rank_test(group, other, paired)[0]
+    test = stats.ttest_rel(group, other) if paired else stats.ttest_ind(group, other, equal_var=False)
+    return float(test.pvalue)
+
+
+def _shifted(check: dict, group: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Values of both groups, the other's moved by the claimed least effect; infinite ones replaced by one beyond any difference."""
+    finite = np.concatenate([values[np.isfinite(values)] for values in (group, other)])
+    worst = finite.max() + 2 * np.ptp(finite) + 1
+    group, other = (np.where(np.isinf(values), worst, values) for values in (group, other))
+    move = SIDES[check["direction"]] * check.get("least", 0)
+    return group, other * (1 + move) if check.get("scale") == "relative" else other + move
+
+
+def _boolean_test(group: np.ndarray, other: np.ndarray, paired: bool) -> float:
+    """McNemar's exact p of pairs of truths, Fisher's of two groups."""
+    from scipy import stats
+
+    if paired:
+        more, fewer = int(np.sum(group > other)), int(np.sum(group < other))
+        return float(stats.binomtest(more, more + fewer).pvalue) if more + fewer else 1.0
+    return float(stats.fisher_exact(_contingency(group, other)).pvalue)
+
+
+def _contingency(group: np.ndarray, other: np.ndarray) -> list[list[int]]:
+    return [[int(values.sum()), int(len(values) - values.sum())] for values in (group, other)]
+
+
+def _effect_size(check: dict, comparison: Comparison, side: int, ours: float) -> tuple[str, float]:
+    """Name and value: odds ratio of truths; A12, the share of pairs won in the claimed direction; or the difference itself."""
+    pairs = [counted(stratum, comparison.paired) for stratum in comparison.strata.values()]
+    if comparison.boolean and len(pairs) == 1:
+        ((group, other),) = pairs
+        if comparison.paired:
+            odds = np.array([np.sum(group > other), np.sum(group < other)], dtype=float)
+        else:
+            (a, b), (c, d) = _contingency(group, other)
+            odds = np.array([a * d, b * c], dtype=float)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            return "odds ratio", float(odds[0] / odds[1])
+    if point_statistic(check) not in ("mean", "median"):
+        return "difference", ours
+    if comparison.paired:
+        won = [np.mean((group > other) + 0.5 * (group == other)) for group, other in pairs]
+    else:
+        won = [wins(group, other) for group, other in pairs]
+    return "A12", float(np.mean(won)) if side > 0 else 1 - float(np.mean(won))

@@ -1,0 +1,38 @@
+"""Tiers of groups, each lower, or higher, than the next: every group against every one of the next tier, as `lower` does it."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+from pydantic import Field
+
+from bezierplan.analysis.claims.effects import BETWEEN_GROUPS, pairs_in_words
+from bezierplan.analysis.claims.kinds import PAIRED, SECONDARY, SIDE, STATISTIC, Comparing, Group, lower
+from bezierplan.study.model import Flag, listed
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+EFFECT = BETWEEN_GROUPS
+find = lower.find
+
+
+class Options(Comparing):
+    """Keys of a check."""
+
+    against: ClassVar[bool] = True
+
+    secondary: Literal[True] = Field(None, description=SECONDARY)
+    paired: Flag = Field(None, description=PAIRED)
+    order: listed(listed(Group), least=2) = Field(description="tiers, the best first: a list of lists of groups")
+    direction: Literal["lower", "higher"] = Field(description=SIDE)
+    statistic: Literal["rank", "mean", "median", "iqr", "range", "min", "max"] = Field("rank", description=STATISTIC)
+
+
+def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
+    """Each group beside each of the next tier."""
+    tiers = itertools.pairwise(check["order"])
+    pairs = itertools.chain.from_iterable(itertools.product(better, worse) for better, worse in tiers)
+    return pairs_in_words(pairs, f"{check['direction']} than")

@@ -1,0 +1,131 @@
+"""The share of runs in which something is so.
+
+Exact binomial test, interval of Clopper and Pearson; of six pooled conditions or more Student's t over their shares. For `all`, `none` and
+`some` one (counter)example decides. The effect is the share.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from bezierplan.analysis.claims.effects import LEAST_WITHOUT_EXAMPLE, SIDES, Comparison, Effect, Finding, counted
+from bezierplan.analysis.claims.kinds import FAILURES, POOL, SECONDARY, Columns, OfRuns
+from bezierplan.analysis.statistics import LEAST_RUNS
+from bezierplan.study.model import Metric, Model, Number, is_number, value, wrong
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class Pick(Model):
+    """One feasible run of each condition and method."""
+
+    lowest: Metric = Field(description="the name of a metric")
+
+
+class Event(Model):
+    """What a share is the share of."""
+
+    below: Number = Field(None, description="a number")
+    above: Number = Field(None, description="a number")
+    at_most: Number = Field(None, description="a number")
+    at_least: Number = Field(None, description="a number")
+    equals: Number = Field(None, description="a number")
+
+    @model_validator(mode="after")
+    def _check_one(self) -> Event:
+        if len(self.model_fields_set) != 1:
+            raise wrong(f"{len(self.model_fields_set)} keys; expected one of below, above, at_most, at_least, equals")
+        return self
+
+
+class Options(OfRuns):
+    """Keys of a check."""
+
+    secondary: Literal[True] = Field(None, description=SECONDARY)
+    pool: Columns = Field([], description=POOL)
+    event: Event = Field(
+        None, description="one of {below: number}, above, at_most, at_least, equals; left out for a metric that is true or false"
+    )
+    threshold: Annotated[
+        Any, value(lambda given: given in ("all", "none", "some") if isinstance(given, str) else is_number(given) and 0 <= given <= 1, "")
+    ] = Field(description="a share from 0 to 1, or all, none, some")
+    direction: Literal["at_least", "at_most"] = Field(None, description="at_least or at_most, where the threshold is a number")
+    failures: Literal["drop", "last", "count"] = Field("drop", description=FAILURES)
+    pick: Pick = Field(None, description="{lowest: metric}: one feasible run of each condition and method")
+
+    @model_validator(mode="after")
+    def _check_side(self) -> Options:
+        if isinstance(self.threshold, str) != (self.direction is None):
+            needed = "has no direction" if self.direction else "needs a direction, at_least or at_most"
+            raise wrong(f"threshold: {self.threshold}: {needed}")
+        return self
+
+
+def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
+    """One cell, of all runs."""
+    words = [word for limit in check.get("event", {}).items() for word in limit]
+    yield " ".join(map(str, [*words, "in", *([check["direction"]] if "direction" in check else []), check["threshold"]])), [""]
+
+
+def claimed(check: dict, effects: np.ndarray, margin: float) -> np.ndarray:
+    """Is the share on the claimed side of the threshold?"""
+    match check["threshold"]:
+        case "all":
+            return effects == 1
+        case "none":
+            return effects == 0
+        case "some":
+            return effects > 0
+    return SIDES[check["direction"]] * (effects - check["threshold"]) >= 0
+
+
+EFFECT = Effect(lambda check, points, cells: points[..., 0], lambda check, ours, cells: np.ones(1), claimed, reference=0, statistic="share")
+
+
+def find(check: dict, comparison: Comparison, name: str) -> Finding:
+    """In which share of the units does the event happen?"""
+    from scipy import stats
+
+    happened = np.concatenate([counted(stratum, False)[0] for stratum in comparison.strata.values()])
+    n, k = len(happened), int(happened.sum())
+    if not n:
+        return Finding(mark="?", reason="no run counts")
+    found = Finding(k / n, "share", k / n, n=n)
+    holds = bool(claimed(check, np.array(k / n), math.nan))
+    if "pick" in check:
+        return found._replace(mark="+" if holds else "-")
+    exact = stats.binomtest(k, n).proportion_ci(method="exact")
+    found = found._replace(low=float(exact.low), high=float(exact.high))
+    if isinstance(check["threshold"], str):
+        # For `some` one example decides and many misses are needed against it; for `all` and `none` it is the other way round.
+        decided = holds == (check["threshold"] == "some") or n >= LEAST_WITHOUT_EXAMPLE
+        mark = ("+" if holds else "-") if decided else "?"
+        return found._replace(mark=mark, reason="" if decided else f"fewer than {LEAST_WITHOUT_EXAMPLE} runs")
+    if n < LEAST_RUNS:
+        return found._replace(mark="?", reason=f"fewer than {LEAST_RUNS} units")
+    threshold = check["threshold"]
+    if len(comparison.strata) >= LEAST_RUNS:
+        return _share_of_conditions(found, comparison, threshold, SIDES[check["direction"]])
+    # Twice the smaller tail, the test that belongs to the interval of Clopper and Pearson.
+    p = min(1.0, 2 * float(min(stats.binom.cdf(k, n, threshold), stats.binom.sf(k - 1, n, threshold))))
+    return found._replace(p=p, toward=int(np.sign(SIDES[check["direction"]] * (k / n - threshold))))
+
+
+def _share_of_conditions(found: Finding, comparison: Comparison, threshold: float, side: int) -> Finding:
+    """Conditions that are drawn, such as layouts, are the units: runs of one are alike. Student's t over their shares."""
+    from scipy import stats
+
+    shares = np.array([np.nanmean(stratum) for stratum in comparison.strata.values() if not np.isnan(stratum).all()])
+    mean = float(shares.mean())
+    toward = int(np.sign(side * (mean - threshold)))
+    if not np.ptp(shares):
+        return found._replace(effect=mean, effect_size=mean, low=mean, high=mean, n=len(shares), p=0.0 if toward else 1.0, toward=toward)
+    test = stats.ttest_1samp(shares, threshold)
+    low, high = (float(np.clip(end, 0, 1)) for end in test.confidence_interval(0.95))
+    return found._replace(effect=mean, effect_size=mean, low=low, high=high, n=len(shares), p=float(test.pvalue), toward=toward)

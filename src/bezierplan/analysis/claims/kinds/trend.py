@@ -1,0 +1,132 @@
+"""The metric rises, or falls, along a column of numbers.
+
+The effect is the change from the lowest to the highest x, the effect size the least-squares slope. Wilcoxon's signed ranks test the slopes
+of the units against 0; with `statistic: std`, the spread of each condition, a bootstrap does.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.analysis import statistics
+from bezierplan.analysis.claims.effects import (
+    SIDES,
+    Comparison,
+    Effect,
+    Finding,
+    drawn_effects,
+    effect,
+    interval,
+    is_negligible,
+    least_detectable,
+    margin_of,
+    no_difference,
+    on_claimed_side,
+    point_statistic,
+    points,
+    two_sided,
+    why_none,
+)
+from bezierplan.analysis.claims.kinds import MARGIN, PAIRED, SCALE, WORK, Margin, OfRuns
+from bezierplan.analysis.claims.ranks import signed_rank_test
+from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED
+from bezierplan.study.model import Column, Flag, Metric
+from bezierplan.workspaces.seeds import generator
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+
+class Options(OfRuns):
+    """Keys of a check."""
+
+    cells_key: ClassVar[str | None] = "x"
+
+    paired: Flag = Field(None, description=PAIRED)
+    x: Column = Field(description="a column of numbers along which the metric changes")
+    direction: Literal["up", "down"] = Field(description="up or down")
+    statistic: Literal["std"] = Field(None, description="std: the spread of each condition; left out: the values themselves")
+    scale: Literal["absolute", "relative"] = Field("absolute", description=SCALE)
+    margin: Margin = Field(description=MARGIN)
+    work: Metric = Field(None, description=WORK)
+
+
+def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
+    """All values of x, rising."""
+    yield f"{check['x']} {check['direction']}", sorted(rows[check["x"]].dropna().unique())
+
+
+def _weights(x: np.ndarray) -> np.ndarray:
+    """Weights (k,) of values over x (k,) that give least-squares slope times range of x; not a number for a single x."""
+    from_mean = x - x.mean()
+    return from_mean / (from_mean**2).sum() * np.ptp(x)
+
+
+def _change(check: dict, points: np.ndarray, cells: tuple) -> np.ndarray:
+    """From the lowest x to the highest; if relative, to the value at the lowest."""
+    change = points @ _weights(np.array(cells, dtype=float))
+    return change / points[..., 0] if check.get("scale") == "relative" else change
+
+
+def _gradient(check: dict, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
+    reference = ours[0] if check.get("scale") == "relative" else 1.0
+    return _weights(np.array(cells, dtype=float)) / reference if reference else None
+
+
+EFFECT = Effect(_change, _gradient, on_claimed_side, reference=0)
+
+
+def find(check: dict, comparison: Comparison, name: str) -> Finding:
+    """Does a metric change with x as claimed?"""
+    from scipy import stats
+
+    x = np.array(comparison.cells, dtype=float)
+    (stratum,) = comparison.strata.values()
+    slopes = _slopes(x, stratum)
+    n, statistic = len(slopes), point_statistic(check)
+    if n < LEAST_RUNS:
+        return Finding(n=n, mark="?", reason=f"fewer than {LEAST_RUNS} units with at least 3 values of {check['x']}")
+    # A unit counts where it has a value, whether or not it has one at every x.
+    each = comparison._replace(paired=False)
+    ours = points(each, statistic)
+    if statistic == "mean":
+        slope = float(slopes.mean())
+        changes = slopes * np.ptp(x)
+        if check.get("scale") == "relative":
+            changes = changes / ours[0] if ours[0] else np.full(n, np.nan)
+        change = float(changes.mean())
+        if n > MOST_RESAMPLED:
+            draws = statistics.normal_draws(change, changes.std(ddof=1) / math.sqrt(n))
+        else:
+            draws = statistics.resampled("mean", changes, n, generator(name))
+        p = signed_rank_test(slopes)
+    else:
+        slope = float(_weights(x) @ ours / np.ptp(x))
+        change = float(effect(check, ours, comparison.cells))
+        draws = drawn_effects(check, comparison, name)
+        p = two_sided(draws)
+    low, high = interval(draws)
+    margin = margin_of(check, each)
+    known = np.isfinite(ours)
+    linear = known.sum() >= 3 and np.ptp(ours[known]) > 0
+    return Finding(
+        *(change, "slope", slope, low, high, n, p),
+        toward=0 if abs(change) < margin else int(np.sign(SIDES[check["direction"]] * np.nan_to_num(change))),
+        margin=margin,
+        negligible=is_negligible(low, high, margin, n),
+        least_detectable=least_detectable(low, high, n),
+        reason=why_none(change) or no_difference(low, high, n),
+        rho=float(stats.spearmanr(x[known], ours[known]).statistic) if linear else math.nan,
+        r_squared=float(np.corrcoef(x[known], ours[known])[0, 1] ** 2) if linear else math.nan,
+    )
+
+
+def _slopes(x: np.ndarray, stratum: np.ndarray) -> np.ndarray:
+    """Least-squares slopes over x of units that have a finite value at 3 of x or more."""
+    usable = stratum[np.isfinite(stratum).sum(axis=1) >= 3]
+    return np.array([_weights(x[there]) @ values[there] / np.ptp(x[there]) for values in usable for there in [np.isfinite(values)]])

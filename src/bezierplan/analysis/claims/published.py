@@ -1,0 +1,67 @@
+"""Published numbers of the same cells as our comparisons."""
+
+import itertools
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from bezierplan.analysis.claims import effects
+
+# Statistics that may stand for a check which names none, the first that is printed of every cell.
+_ANY_STATISTIC = ("mean", "median", "unstated", "share", "count", "min", "max")
+
+
+class Printed(NamedTuple):
+    """Printed numbers of one cell: the number of their table, and statistic -> (row in it, value, how many runs it is of)."""
+
+    table: int
+    statistics: dict[str, tuple[int, float, float]]
+
+
+def printed(check: dict, found: Sequence[Sequence[Printed | None]]) -> tuple[np.ndarray, int | None]:
+    """Printed numbers of cells (k,), averaged over conditions, and how many runs they are of, None if that is not printed.
+
+    found: of each condition, of each cell, its rows as from `rows_of_cell`.
+
+    All of one statistic: the check's own or an unstated one; where it names none, the first of `_ANY_STATISTIC` that is printed of every
+    cell. Not a number where a cell is not printed, or where two cells would have the same row (the paper does not tell them apart).
+    """
+    cells = len(found[0])
+    nothing = np.full(cells, np.nan), None
+    found = list(itertools.chain.from_iterable(found))
+    if None in found:
+        return nothing
+    rows = [(each.table, row) for each in found for row, _, _ in each.statistics.values()]
+    if len(set(rows)) < len(rows):
+        return nothing
+    named = check.get("statistic", "rank")
+    for statistic in _ANY_STATISTIC if named == "rank" else (named, "unstated"):
+        if all(statistic in each.statistics for each in found):
+            values, runs = np.array([each.statistics[statistic][1:] for each in found]).T
+            numbers = (values / runs if statistic == "count" else values).reshape(-1, cells).mean(axis=0)
+            return effects.event(check, numbers), None if np.isnan(runs).all() else int(np.nanmin(runs))
+    return nothing
+
+
+def rows_of_cell(cell: pd.DataFrame, metric: str, tables: list[tuple[str, pd.DataFrame]], variant_of: dict[str, str]) -> Printed | None:
+    """The printed numbers of a cell's metric; None if no table has it, or if the cell is several rows of it.
+
+    cell: the columns that tell its runs apart. tables: experiment and published numbers; the first that has the cell serves.
+    variant_of: method -> the method whose published numbers count.
+    """
+    for number, (experiment, table) in enumerate(tables):
+        keys = table.columns[: table.columns.get_loc("metric")].to_list()
+        if set(cell["experiment"]) != {experiment} or not set(keys) <= set(cell.columns):
+            continue
+        places = cell[keys].drop_duplicates()
+        if len(places) != 1:
+            continue
+        rows = table[table["metric"] == metric]
+        for key, value in places.iloc[0].items():
+            rows = rows[rows[key] == (variant_of.get(value, value) if key == "method" else value)]
+        if not rows.empty:
+            values, runs = (rows[column].astype(float) for column in ("value", "n"))
+            return Printed(number, dict(zip(rows["statistic"], zip(rows.index, values, runs))))
+    return None

@@ -1,0 +1,358 @@
+"""The measures behind the metrics: computed from other columns of the runs table, from the history of the objective, or from the path.
+
+A measure takes a table of at least one run and the problems by name, and gives one number a run (n,), not a number where a run has no such
+value. A measure of a single path becomes one by `of_path` or `of_path_on_grid`. What draws curves is imported no earlier than a value is
+asked for.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable, Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import ON_LINE, Grid, embed
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from bezierplan.workspaces.problem import Path, Problem, Workspace
+
+# Values of a curve's parameter at which curvature is taken: 100 steps on each of the six quadratic pieces of song2016.
+CURVATURE_SAMPLES = 601
+# A finer test than any planner's own.
+FINE_SAMPLES = 4001
+# Samples of a path by which its way round the circles is told.
+CLASS_SAMPLES = 2001
+# Samples of a curved piece between which its heading is compared (ma2020: 2,000 chords).
+HEADING_SAMPLES = 2001
+# Parts of about this length, in units, by which a path's bending is measured, and samples of a curved piece that they are cut from.
+BENDING_PART = 0.1
+BENDING_SAMPLES = 64
+# A smaller change of heading, in radians, is no corner.
+CORNER = 1e-6
+# A value this many interquartile ranges beyond its quartile is an outlier of a box plot.
+_OUTLIER_REACH = 1.5
+
+
+def failed(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Whether (n,) a run has no path that the certified checker accepts."""
+    return ~runs["feasible"].astype(bool)
+
+
+def disagrees(claimed: bool, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Whether (n,) the planner's own test says this and the checker's the opposite."""
+    return ((runs["claimed_feasible"] == claimed) & (runs["feasible"] != claimed)).to_numpy()
+
+
+def rank(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Rank (n,) of the objective within one unit, among methods or numbers of obstacles; equal ones share the mean of their ranks."""
+    unit = [column for column in ("workspace", "layout", "profile", "repeat") if column in runs]
+    return runs.groupby(unit, dropna=False)["objective"].rank().to_numpy()
+
+
+def outlier(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Whether (n,) a run's objective lies beyond the whiskers of the box of its method under its condition."""
+    grouped = runs.groupby(["condition", "method"], dropna=False)["objective"]
+    first, third = grouped.transform(lambda each: each.quantile(0.25)), grouped.transform(lambda each: each.quantile(0.75))
+    reach = _OUTLIER_REACH * (third - first)
+    return ((runs["objective"] < first - reach) | (runs["objective"] > third + reach)).to_numpy()
+
+
+def gap_reference(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Length over that of the best known path of the same kind, minus 1 (n,); not a number where none is known."""
+    return runs["length"] / runs["reference"] - 1
+
+
+def excess_reference(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Length minus that of the best known path of the same kind (n,); not a number where none is known."""
+    return runs["length"] - runs["reference"]
+
+
+def _held_history(runs: pd.DataFrame) -> np.ndarray:
+    """Best objective so far by generation: (runs, most generations + 1). Runs that stopped early hold their last value."""
+    lengths = runs["history"].map(len).to_numpy()
+    starts = np.cumsum(lengths) - lengths
+    columns = np.minimum(np.arange(lengths.max()), lengths[:, None] - 1)
+    return np.concatenate(runs["history"].to_list())[starts[:, None] + columns]
+
+
+def lowest_objective(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Lowest objective (n,) of any generation, whichever one the planner's result is taken from."""
+    return _held_history(runs)[:, -1]
+
+
+def first_generation_within(share: float, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """First generation (n,) whose best objective so far is at most 1 + share times the final one."""
+    held = _held_history(runs)
+    return (held <= held[:, -1:] * (1 + share)).argmax(axis=1)
+
+
+def improvement_by(generation: int, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Share (n,) of the improvement from generation 0 to the last one that is made by a generation."""
+    held = _held_history(runs)
+    total = held[:, 0] - held[:, -1]
+    made = held[:, 0] - held[:, min(generation, held.shape[1] - 1)]
+    return np.divide(made, total, out=np.full(len(held), np.nan), where=total > 0)
+
+
+def history_mean(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Mean (n,) of the best objective so far over all generations."""
+    return _held_history(runs).mean(axis=1)
+
+
+def deviation(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Absolute relative deviation (n,) of the length from the median of its method and condition."""
+    median = runs.groupby(["experiment", "condition", "method"])["length"].transform("median")
+    return (runs["length"] / median - 1).abs()
+
+
+def gap(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Length over the exact shortest length of the problem, minus 1 (n,)."""
+    return runs["length"] / runs["bound"] - 1
+
+
+def gap_best(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Length over that of the best run of the same method and condition, minus 1 (n,)."""
+    best = runs.groupby(["experiment", "condition", "method"])["length"].transform("min")
+    return runs["length"] / best - 1
+
+
+def _paths(runs: pd.DataFrame) -> Iterator[Path | None]:
+    """The path of each run, None where it has none."""
+    from bezierplan.workspaces.problem import Path
+
+    for curve, points in zip(runs["path_curve"], runs["path_points"]):
+        yield Path(curve, np.reshape(points, (-1, 2))) if curve else None
+
+
+def of_path(measure: Callable[[Path], float], runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
+    """A number of each run's path, not a number where the run has none."""
+    return [np.nan if path is None else measure(path) for path in _paths(runs)]
+
+
+def of_path_on_grid(measure: Callable[[Path, Grid], float], runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
+    """A number of each run's path and the grid that it lies in, not a number where the run has no path."""
+    return [np.nan if path is None else measure(path, problems[problem].workspace) for path, problem in zip(_paths(runs), runs["problem"])]
+
+
+def homotopy_class(points: np.ndarray, workspace: Workspace) -> float:
+    """On which side a way of points (n, 2) passes each circle: the sum of 2^k over the circles k = 0, 1, ... that it leaves to its left.
+
+    A circle lies to the left if the angle that the way sweeps about its centre is positive. Enough to tell classes apart where no way winds
+    round a circle and all have the same ends. Not a number without points or in a workspace of another kind.
+    """
+    if not len(points) or not isinstance(workspace, Circles):
+        return np.nan
+    x, y = np.ascontiguousarray(points.T)[:, None] - workspace.centres.T[:, :, None]
+    angles = np.arctan2(y[:, [0, -1]], x[:, [0, -1]])
+    # Where the way crosses the ray to the left of the centre its angle goes on from pi to -pi, or back.
+    leftward = x[:, :-1] * y[:, 1:] > y[:, :-1] * x[:, 1:]
+    above = y >= 0
+    rounds = (above[:, :-1] & ~above[:, 1:] & leftward).sum(axis=1) - (~above[:, :-1] & above[:, 1:] & ~leftward).sum(axis=1)
+    swept = angles[:, 1] - angles[:, 0] + 2 * np.pi * rounds
+    return float((2.0 ** np.arange(len(workspace.centres)))[swept > 0].sum())
+
+
+def homotopy(runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
+    """The homotopy class of each run's path."""
+    from bezierplan.geometry import curves
+
+    found = []
+    for path, problem in zip(_paths(runs), runs["problem"]):
+        if path is None:
+            found.append(np.nan)
+            continue
+        points = curves.sample_matrix(path.curve, len(path.points), CLASS_SAMPLES) @ path.points
+        found.append(homotopy_class(points, problems[problem].workspace))
+    return found
+
+
+def best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Whether (n,) a run's path is free and in the homotopy class of the exact shortest one; not a number without circles."""
+    best = {
+        problem: homotopy_class(np.reshape(own["bound_path"].iloc[0], (-1, 2)), problems[problem].workspace)
+        for problem, own in runs.groupby("problem")
+    }
+    best = runs["problem"].map(best).to_numpy()
+    return np.where(np.isnan(best), np.nan, runs["feasible"] & (homotopy(runs, problems) == best))
+
+
+def max_curvature(path: Path) -> float:
+    """Largest absolute curvature of `CURVATURE_SAMPLES` samples, in 1/unit; where the curve stands still it counts as 0."""
+    from bezierplan.geometry import curves
+
+    kappa, _ = curves.curvature(path, CURVATURE_SAMPLES)
+    return float(np.nan_to_num(np.abs(kappa)).max())
+
+
+def zero_speed_points(path: Path) -> int:
+    """How many of `CURVATURE_SAMPLES` samples lie where the curve stands still."""
+    from bezierplan.geometry import curves
+
+    kappa, _ = curves.curvature(path, CURVATURE_SAMPLES)
+    return int(np.isnan(kappa).sum())
+
+
+def curvature_jump(path: Path) -> float:
+    """Largest jump of curvature over a path's joints, in 1/unit."""
+    from bezierplan.geometry import curves
+
+    return curves.curvature_jump(path)
+
+
+def distinct_points(path: Path) -> int:
+    """How many different control points a path has."""
+    return len(set(map(tuple, path.points.tolist())))
+
+
+def _steps(points: np.ndarray) -> np.ndarray:
+    """Steps (m, 2) between points (n, 2), those of length 0 left out."""
+    steps = np.diff(points, axis=0)
+    return steps[np.hypot(*steps.T) > 0]
+
+
+def _headings(steps: np.ndarray) -> np.ndarray:
+    """Absolute changes of heading (n - 1,), in radians, between steps (n, 2)."""
+    cross = steps[:-1, 0] * steps[1:, 1] - steps[:-1, 1] * steps[1:, 0]
+    return np.abs(np.arctan2(cross, (steps[:-1] * steps[1:]).sum(axis=1)))
+
+
+def _path_headings(path: Path) -> np.ndarray:
+    """Changes of heading along a path; a curve is taken as chords between samples."""
+    from bezierplan.geometry import curves
+
+    if path.curve == "polyline":
+        return _headings(_steps(path.points))
+    return _headings(_steps(curves.sample_matrix(path.curve, len(path.points), HEADING_SAMPLES) @ path.points))
+
+
+def heading_max(path: Path) -> float:
+    """Largest change of heading between neighbouring chords, in radians."""
+    return float(_path_headings(path).max(initial=0.0))
+
+
+def turning(path: Path) -> float:
+    """Sum of all changes of heading, in radians."""
+    return float(_path_headings(path).sum())
+
+
+def _equal_parts(path: Path) -> tuple[np.ndarray, float]:
+    """A path as steps (n, 2) between points that lie apart by equal lengths of arc, and that length; both next to `BENDING_PART`."""
+    from bezierplan.geometry import curves
+
+    points = path.points
+    if path.curve != "polyline":
+        count = BENDING_SAMPLES * len(curves.bezier_pieces(path)) + 1
+        points = curves.sample_matrix(path.curve, len(path.points), count) @ path.points
+    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    parts = max(2, round(at[-1] / BENDING_PART))
+    wanted = np.linspace(0.0, at[-1], parts + 1)
+    return np.diff(np.column_stack([np.interp(wanted, at, points[:, axis]) for axis in range(2)]), axis=0), at[-1] / parts
+
+
+def bending(path: Path) -> float:
+    """Integral of squared curvature, from parts of about `BENDING_PART`, in radians^2/unit."""
+    steps, length = _equal_parts(path)
+    return float((_headings(steps) ** 2).sum() / length) if length else 0.0
+
+
+def max_turn(path: Path) -> float:
+    """Largest change of heading between parts of about `BENDING_PART`, in degrees."""
+    return float(np.degrees(_headings(_equal_parts(path)[0]).max(initial=0.0)))
+
+
+def corners(path: Path) -> int:
+    """Joints of a path's pieces at which its heading changes."""
+    from bezierplan.geometry import curves
+
+    legs = [steps for steps in map(_steps, curves.bezier_pieces(path)) if len(steps)]
+    return sum(int(_headings(np.array([one[-1], other[0]]))[0] > CORNER) for one, other in itertools.pairwise(legs))
+
+
+def length_over_polygon(path: Path) -> float:
+    """Length of a path over that of its control polygon; 1 if the polygon has no length."""
+    from bezierplan.geometry import curves
+
+    polygon = np.hypot(*np.diff(path.points, axis=0).T).sum()
+    return curves.length(path) / polygon if polygon else 1.0
+
+
+def obstacle_clearance(runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
+    """Least distance (n,) of a path in a grid to its occupied cells; infinite without any.
+
+    The checker's clearance, which counts the border, in the same grid with so many free cells around it that the border is farthest.
+    """
+    from bezierplan.geometry import checker, curves
+    from bezierplan.geometry.region import region
+
+    wide, found = {}, []
+    for path, name in zip(_paths(runs), runs["problem"]):
+        grid = problems[name].workspace
+        margin = sum(grid.occupied.shape)
+        if name not in wide:
+            wide[name] = region(Grid(np.pad(grid.occupied, margin), grid.cell, grid.unit))
+        moved = path._replace(points=(grid.in_cells(path.points) + margin) * grid.cell)
+        found.append(checker.check(curves.bezier_pieces(moved), wide[name]).clearance if grid.occupied.any() else np.inf)
+    return found
+
+
+def keeps_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Whether (n,) a path keeps its planner's safety distance from the obstacles; not a number where the planner has none."""
+    kept = np.array(obstacle_clearance(runs, problems)) >= runs["safety_distance"]
+    return kept.astype(float).where(runs["safety_distance"].notna()).to_numpy()
+
+
+def _in_occupied_cells(points: np.ndarray, grid: Grid) -> int:
+    """How many of the points (n, 2), in units, lie in occupied cells; a point on a grid line belongs to the cell above or to the right.
+
+    song2016's planner may use surplus cells beside a grid that is not a power of two wide (`grid.embed`); they count as occupied.
+    """
+    occupied = embed(grid.occupied)
+    columns, rows = np.floor(grid.in_cells(points) + ON_LINE).astype(int).T
+    return int(occupied[np.minimum(rows, occupied.shape[0] - 1), np.minimum(columns, occupied.shape[1] - 1)].sum())
+
+
+def occupied_points(path: Path, grid: Grid) -> int:
+    """How many control points lie in occupied cells."""
+    return _in_occupied_cells(path.points, grid)
+
+
+def fine_bad(path: Path, grid: Grid) -> int:
+    """How many of `FINE_SAMPLES` samples lie in occupied cells."""
+    from bezierplan.geometry import curves
+
+    return _in_occupied_cells(curves.sample_matrix(path.curve, len(path.points), FINE_SAMPLES) @ path.points, grid)
+
+
+def length_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
+    """A length that counts cells (`cell_length`). Raises ValueError, naming the run, if one lies below the bound of its problem."""
+    from bezierplan.geometry import cell_length
+
+    lengths = of_path_on_grid(getattr(cell_length, name), runs, problems)
+    for run, length, bound in zip(runs["id"], lengths, runs["octile_bound"]):
+        if length < bound * (1 - 1e-12):
+            raise ValueError(f"run {run} is said to be feasible, but its length {length:.12g} in cells lies below the bound {bound:.12g}")
+    return lengths
+
+
+def straight_blocked(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Whether (n,) the straight line of a run's problem, which lies on a grid, touches an occupied cell."""
+    from bezierplan.geometry import cell_length
+    from bezierplan.workspaces.problem import Path
+
+    blocked = {}
+    for name in runs["problem"].unique():
+        grid = problems[name].workspace
+        line = Path("polyline", np.array([problems[name].start, problems[name].target]))
+        cells = cell_length.touched_cells(*cell_length.samples(line, grid))
+        blocked[name] = cell_length.occupied_cells(*cells, grid.occupied) > 0
+    return runs["problem"].map(blocked)
+
+
+def gap_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """A length that counts cells over the least one of the problem, minus 1 (n,)."""
+    return length_in_cells(name, runs, problems) / runs["octile_bound"] - 1

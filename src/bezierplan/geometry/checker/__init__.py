@@ -1,0 +1,98 @@
+"""The certified collision check: whether a path of Bezier pieces enters the blocked region, where first, how deep, and how near it comes.
+
+The curve of a piece lies in the hull of its control points (`hulls`). A piece is halved until every part is either certified free, because
+its hull is, or begins with a point that is certainly blocked (`collision`). There are two thresholds, so that this always ends: a collision
+is certified by a point deeper than `TOLERANCE`, freedom by a depth of at most twice that. (In a corner between two walls it is twice that
+from each wall.) Depth and clearance are found by branch and bound over the same halves (`distances`).
+
+Each search is written once. What it asks of a kind of region (`certificates`) is chosen by the type of the region when the kernel is
+compiled.
+"""
+
+import math
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from bezierplan.geometry.checker.collision import first_collision
+from bezierplan.geometry.checker.corner_cutting import CONTACT_RADIUS, first_corner_cut
+from bezierplan.geometry.checker.distances import CLEARANCE_TOLERANCE, DEPTH_TOLERANCE, largest_depth, least_clearance
+from bezierplan.geometry.checker.hulls import LARGEST_COORDINATE, LARGEST_DEGREE, ROUNDING, TOLERANCE
+from bezierplan.geometry.region import CircleRegion, GridRegion, Region, from_origin
+
+__all__ = ["TOLERANCE", "Check", "check", "first_collision", "refuse_unfit"]
+
+# Halving adds up as many roundings as the degree. Above this degree coordinates have to be smaller, so that their sum grows no further.
+_FULL_RANGE_DEGREE = 32
+
+
+class Check(NamedTuple):
+    """The verdict on a path.
+
+    feasible: it does not enter the blocked region. collision_at: number of the piece plus parameter in it of the first collision; nan when
+    free. depth: largest depth in the blocked region, in units; 0 when free, and where a path cuts a closed corner. Depth is the distance
+    to free space; where discs overlap or reach over the border it is the largest of their depths, a lower bound. clearance: least distance
+    to the blocked region, in units; 0 when colliding. tolerance: proven error, in units, of `clearance` when free, of `depth` when
+    colliding. intervals: how many parameter intervals the verdict needed.
+    """
+
+    feasible: bool
+    collision_at: float
+    depth: float
+    clearance: float
+    tolerance: float
+    intervals: int
+
+
+def check(pieces: np.ndarray, region: Region, corner_cutting: Literal["open", "closed"] = "open") -> Check:
+    """Check a path of Bezier pieces (pieces, degree + 1, 2), in the region's unit, each beginning where the last one ends.
+
+    corner_cutting: whether a path may pass between two occupied cells that meet only by a corner; touching the corner is always allowed. It
+    matters on grids only.
+
+    A path deeper than 4e-9 is never called free, one no deeper than 1e-9 never colliding; between them either answer may come. In the tip
+    of a notch between polygons that is sharper than 60 degrees, 2e-9 over the sine of half its angle stands for 4e-9.
+
+    Raises ValueError for coordinates that are not finite or beyond 1e5, or 1e5 x 32 / degree for a degree above 32; for a degree above 60;
+    and for an unknown rule of corner cutting.
+
+    A straight line runs into an obstacle, a parabola goes around it:
+
+    >>> from bezierplan.geometry.region import region
+    >>> from bezierplan.workspaces.grid import from_lines
+    >>> room = region(from_lines(["....", ".##.", "...."], cell=1.0, unit="m"))
+    >>> straight = check(np.array([[[0.5, 0.5], [3.5, 2.5]]]), room)
+    >>> straight.feasible, round(straight.collision_at, 6), straight.depth
+    (False, 0.25, 0.5)
+    >>> parabola = check(np.array([[[0.5, 0.5], [4.0, -0.5], [3.5, 2.5]]]), room)
+    >>> parabola.feasible, parabola.clearance
+    (True, 0.25)
+    """
+    pieces = np.ascontiguousarray(pieces, dtype=float)
+    if corner_cutting not in ("open", "closed"):
+        raise ValueError(f"unknown rule of corner cutting {corner_cutting!r}; known: open, closed")
+    refuse_unfit(pieces)
+    pieces = from_origin(pieces, region)
+    collision_at, intervals = first_collision(pieces, region)
+    if corner_cutting == "closed" and isinstance(region, GridRegion):
+        cut_at = first_corner_cut(pieces, region.contacts, CONTACT_RADIUS * region.cell)
+        if cut_at < collision_at:
+            return Check(False, cut_at, 0.0, 0.0, 0.0, intervals)
+    if collision_at < math.inf:
+        depth = largest_depth(pieces, region, collision_at)
+        return Check(False, collision_at, depth, 0.0, max(DEPTH_TOLERANCE * depth, ROUNDING), intervals)
+    if isinstance(region, CircleRegion):
+        clearance = least_clearance(pieces, region.edges, region.centres, region.radii)
+    else:
+        clearance = least_clearance(pieces, region.edges, np.empty((0, 2)), np.empty(0))
+    return Check(True, math.nan, 0.0, clearance, CLEARANCE_TOLERANCE, intervals)
+
+
+def refuse_unfit(pieces: np.ndarray) -> None:
+    """Raise ValueError for pieces that `check` cannot judge: of another shape, of too high a degree, too far out, or not finite."""
+    if pieces.ndim != 3 or pieces.shape[2] != 2 or not 2 <= pieces.shape[1] <= LARGEST_DEGREE + 1:
+        raise ValueError(f"pieces have the shape {pieces.shape}; expected (pieces, degree + 1, 2) with a degree of 1 to {LARGEST_DEGREE}")
+    # Written so that a coordinate that is not a number fails as well.
+    largest = LARGEST_COORDINATE * min(1.0, _FULL_RANGE_DEGREE / (pieces.shape[1] - 1))
+    if not np.abs(pieces).max(initial=0.0) <= largest:
+        raise ValueError(f"a path has a coordinate that is not finite or beyond {largest:g}")

@@ -1,0 +1,350 @@
+"""What the searches ask of a region: whether a point is blocked, whether a hull is free, and how deep they are.
+
+Each kind of region has answers of its own. The overloads at the end choose by the type of the region.
+"""
+
+import math
+
+import numpy as np
+from numba import njit
+from numba.extending import overload
+
+from bezierplan.geometry.checker.hulls import (
+    LARGEST_COORDINATE,
+    LARGEST_DEGREE,
+    TOLERANCE,
+    box,
+    bulge_of,
+    direction,
+    distance_to_segment,
+    range_along,
+)
+from bezierplan.geometry.region import CircleRegion, GridRegion, PolygonRegion
+
+# How far the cells around a grid reach, which stand for its outside: beyond every coordinate.
+_FAR = 4 * LARGEST_COORDINATE
+
+# Hulls that span more doubled-grid elements than this are halved rather than tested against each blocked element.
+_WIDEST_RANGE = 12
+
+# An edge that keeps this distance from a hull cannot be passed within the tolerance of its ends, so it cannot matter to the hull.
+_APART = 4 * TOLERANCE
+
+_BINOMIAL = np.array([[math.comb(n, k) for k in range(2 * LARGEST_DEGREE + 1)] for n in range(2 * LARGEST_DEGREE + 1)], dtype=float)
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# The questions. These four functions are only names for numba to attach the overloads to: compiled code never enters their bodies, and
+# plain Python must not.
+
+
+def is_blocked(x, y, region):
+    """Whether a point is certainly blocked: its depth is above the tolerance."""
+    raise NotImplementedError
+
+
+def is_free(points, region):
+    """Whether the curve of some control points is certified free. May be false for a free curve, but not for ever when it is halved."""
+    raise NotImplementedError
+
+
+def depth_at(x, y, region):
+    """Depth of a point in the blocked region, 0 outside."""
+    raise NotImplementedError
+
+
+def depth_bound(points, region):
+    """Upper bound of the depth of the curve of some control points."""
+    raise NotImplementedError
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Cells: elements of the doubled grid, and separating axes
+
+
+@njit(cache=True)
+def _element(x: float, cell: float, last: int) -> int:
+    """Index in the doubled grid of a coordinate: odd on a grid line (within the tolerance), even in a cell; the outside is 0 and `last`."""
+    line = round(x / cell)
+    index = 2 * math.floor(x / cell) + 2
+    if abs(x - line * cell) <= TOLERANCE:
+        index = 2 * line + 1
+    return min(max(index, 0), last)
+
+
+@njit(cache=True)
+def _sides(index: int, cell: float, last: int) -> tuple[float, float]:
+    """Lowest and highest coordinate of the cells that touch an element: one cell for even indices, two for odd ones."""
+    low = -_FAR if index <= 1 else (index // 2 - 1) * cell
+    high = _FAR if index >= last - 1 else ((index + 1) // 2) * cell
+    return low, high
+
+
+@njit(cache=True)
+def _blocked_elements(counts: np.ndarray, bottom: int, top: int, left: int, right: int) -> int:
+    """Number of blocked elements in a range of the doubled grid, both ends included."""
+    return counts[top + 1, right + 1] - counts[bottom, right + 1] - counts[top + 1, left] + counts[bottom, left]
+
+
+def _is_blocked_in_grid(x, y, region):
+    rows, columns = region.blocked.shape
+    return region.blocked[_element(y, region.cell, rows - 1), _element(x, region.cell, columns - 1)]
+
+
+def _is_free_in_grid(points, region):
+    rows, columns = region.blocked.shape
+    cell = region.cell
+    x_low, x_high, y_low, y_high = box(points)
+    left, right = _element(x_low, cell, columns - 1), _element(x_high, cell, columns - 1)
+    bottom, top = _element(y_low, cell, rows - 1), _element(y_high, cell, rows - 1)
+    if _blocked_elements(region.counts, bottom, top, left, right) == 0:
+        return True
+
+    # The rectangle of an edge or vertex covers the cells on both sides of a seam. So that no seam is overlooked, the range reaches as far
+    # beyond the hull as a hull may reach into a rectangle.
+    reach = 2.0 * TOLERANCE
+    left, right = _element(x_low - reach, cell, columns - 1), _element(x_high + reach, cell, columns - 1)
+    bottom, top = _element(y_low - reach, cell, rows - 1), _element(y_high + reach, cell, rows - 1)
+    if right - left >= _WIDEST_RANGE or top - bottom >= _WIDEST_RANGE:
+        return False
+    along_x, along_y = direction(points)
+    across_low, across_high = range_along(points, -along_y, along_x)
+    for row in range(bottom, top + 1):
+        rectangle_bottom, rectangle_top = _sides(row, cell, rows - 1)
+        if y_high <= rectangle_bottom + reach or y_low >= rectangle_top - reach:
+            continue
+        for column in range(left, right + 1):
+            if not region.blocked[row, column]:
+                continue
+            rectangle_left, rectangle_right = _sides(column, cell, columns - 1)
+            if x_high <= rectangle_left + reach or x_low >= rectangle_right - reach:
+                continue
+            x = 0.5 * (rectangle_left + rectangle_right) - points[0, 0]
+            y = 0.5 * (rectangle_bottom + rectangle_top) - points[0, 1]
+            middle = along_x * y - along_y * x
+            half = 0.5 * (abs(along_y) * (rectangle_right - rectangle_left) + abs(along_x) * (rectangle_top - rectangle_bottom))
+            if across_high > middle - half + reach and across_low < middle + half - reach:
+                return False
+    return True
+
+
+def _depth_in_grid(x, y, region):
+    return _distance_to_edges(x, y, region.edges) if is_blocked(x, y, region) else 0.0
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Distance to boundary edges, for cells and polygons
+
+
+@njit(cache=True)
+def _distance_to_edges(x: float, y: float, edges: np.ndarray) -> float:
+    least = math.inf
+    for ax, ay, bx, by in edges:
+        least = min(least, distance_to_segment(x, y, ax, ay, bx, by))
+    return least
+
+
+def _depth_bound_by_edges(points, region):
+    """No blocked point is deeper than it is far from an edge, which on a chord is greatest at one of its ends."""
+    least = math.inf
+    for ax, ay, bx, by in region.edges:
+        first = distance_to_segment(points[0, 0], points[0, 1], ax, ay, bx, by)
+        if first < least:
+            least = min(least, max(first, distance_to_segment(points[-1, 0], points[-1, 1], ax, ay, bx, by)))
+    return least + bulge_of(points)
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Circles: the Bernstein form of the squared distance
+
+
+@njit(cache=True)
+def least_distance_to_centre(points: np.ndarray, x: float, y: float) -> float:
+    """Lower bound of the distance of a curve to a point: the root of the smallest Bernstein coefficient of the squared distance.
+
+    The differences to the point are taken first, so that the error stays relative to the distance.
+    """
+    n = len(points) - 1
+    least = math.inf
+    for k in range(2 * n + 1):
+        coefficient = 0.0
+        for i in range(max(0, k - n), min(n, k) + 1):
+            j = k - i
+            product = (points[i, 0] - x) * (points[j, 0] - x) + (points[i, 1] - y) * (points[j, 1] - y)
+            coefficient += _BINOMIAL[n, i] * _BINOMIAL[n, j] * product
+        least = min(least, coefficient / _BINOMIAL[2 * n, k])
+    return math.sqrt(max(0.0, least))
+
+
+def _depth_in_circles(x, y, region):
+    left, right, bottom, top = region.bounds
+    depth = math.hypot(max(0.0, left - x, x - right), max(0.0, bottom - y, y - top))
+    for k in range(len(region.radii)):
+        depth = max(depth, region.radii[k] - math.hypot(x - region.centres[k, 0], y - region.centres[k, 1]))
+    return depth
+
+
+def _is_blocked_in_circles(x, y, region):
+    return depth_at(x, y, region) > TOLERANCE
+
+
+def _is_free_in_circles(points, region):
+    x_low, x_high, y_low, y_high = box(points)
+    left, right, bottom, top = region.bounds
+    reach = 2.0 * TOLERANCE
+    if x_low < left - reach or x_high > right + reach or y_low < bottom - reach or y_high > top + reach:
+        return False
+    along_x, along_y = direction(points)
+    along_low, along_high = range_along(points, along_x, along_y)
+    across_low, across_high = range_along(points, -along_y, along_x)
+    for k in range(len(region.radii)):
+        radius = region.radii[k] - reach
+        x = region.centres[k, 0] - points[0, 0]
+        y = region.centres[k, 1] - points[0, 1]
+        along = along_x * x + along_y * y
+        across = along_x * y - along_y * x
+        outside_along = max(0.0, along_low - along, along - along_high)
+        outside_across = max(0.0, across_low - across, across - across_high)
+        if math.hypot(outside_along, outside_across) >= radius:
+            continue
+        if least_distance_to_centre(points, region.centres[k, 0], region.centres[k, 1]) < radius:
+            return False
+    return True
+
+
+def _depth_bound_in_circles(points, region):
+    bound = 0.0
+    left, right, bottom, top = region.bounds
+    for x, y in points:
+        bound = max(bound, math.hypot(max(0.0, left - x, x - right), max(0.0, bottom - y, y - top)))
+    for k in range(len(region.radii)):
+        if region.radii[k] > bound:
+            bound = max(bound, region.radii[k] - least_distance_to_centre(points, region.centres[k, 0], region.centres[k, 1]))
+    return bound
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Polygons: chains of the boundary edges that a hull touches
+
+
+def _depth_in_polygons(x, y, region):
+    """Free space is where a ray crosses the boundary an odd number of times."""
+    inside_free = False
+    for ax, ay, bx, by in region.edges:
+        if (ay > y) != (by > y) and x < ax + (y - ay) / (by - ay) * (bx - ax):
+            inside_free = not inside_free
+    return 0.0 if inside_free else _distance_to_edges(x, y, region.edges)
+
+
+def _is_blocked_in_polygons(x, y, region):
+    return depth_at(x, y, region) > TOLERANCE
+
+
+@njit(cache=True)
+def _sides_of_edge(points, edge, normal) -> tuple[float, float]:
+    """Least and largest distance of control points from the line of an edge, positive on its free side."""
+    low = math.inf
+    high = -math.inf
+    for x, y in points:
+        distance = (x - edge[0]) * normal[0] + (y - edge[1]) * normal[1]
+        low = min(low, distance)
+        high = max(high, distance)
+    return low, high
+
+
+def _is_free_in_polygons(points, region):
+    """A hull is free if it begins in free space and crosses none of the boundary.
+
+    Edges that keep apart from the hull do not matter, on whichever side it lies. The others form chains of consecutive edges: see
+    `_passes_chain`.
+    """
+    x_low, x_high, y_low, y_high = box(points)
+    along_x, along_y = direction(points)
+    across_low, across_high = range_along(points, -along_y, along_x)
+    touched = np.zeros(len(region.edges), dtype=np.bool_)
+    remaining = 0
+    for e in range(len(region.edges)):
+        ax, ay, bx, by = region.edges[e]
+        if max(ax, bx) < x_low - _APART or min(ax, bx) > x_high + _APART or max(ay, by) < y_low - _APART or min(ay, by) > y_high + _APART:
+            continue
+        across_a = along_x * (ay - points[0, 1]) - along_y * (ax - points[0, 0])
+        across_b = along_x * (by - points[0, 1]) - along_y * (bx - points[0, 0])
+        if max(across_a, across_b) < across_low - _APART or min(across_a, across_b) > across_high + _APART:
+            continue
+        low, high = _sides_of_edge(points, region.edges[e], region.normals[e])
+        if low > _APART or high < -_APART:
+            continue
+        touched[e] = True
+        remaining += 1
+
+    for e in range(len(region.edges)):
+        if touched[e] and not touched[region.preceding[e]]:
+            length = _passes_chain(points, region, touched, e, along_x, along_y, across_low, across_high)
+            if length == 0:
+                return False
+            remaining -= length
+    # What remains are rings that the hull touches all around: not decided.
+    return remaining == 0 and not is_blocked(points[0, 0], points[0, 1], region)
+
+
+@njit(cache=True)
+def _passes_chain(points, region, touched, first, along_x, along_y, across_low, across_high) -> int:
+    """Number of edges of a chain of touched edges if a hull passes it on the free side, else 0.
+
+    It does if it lies on the free side of all lines of the chain. Where the blocked region is convex at the chain's corners, one of them is
+    enough, or any line between hull and chain, with free space on the hull's side; the one along the hull is tried.
+    """
+    reach = 2.0 * TOLERANCE
+    length = 0
+    beside_all = True
+    beside_one = False
+    only_convex = True
+    chain_low = facing_low = math.inf
+    chain_high = facing_high = -math.inf
+    e = first
+    while touched[e]:
+        if length > 0:
+            only_convex &= region.convex[region.preceding[e]]
+        length += 1
+        low, _ = _sides_of_edge(points, region.edges[e], region.normals[e])
+        beside_all &= low >= -reach
+        beside_one |= low >= -reach
+        facing = along_x * region.normals[e, 1] - along_y * region.normals[e, 0]
+        facing_low = min(facing_low, facing)
+        facing_high = max(facing_high, facing)
+        for k in (0, 2):
+            across = along_x * (region.edges[e, k + 1] - points[0, 1]) - along_y * (region.edges[e, k] - points[0, 0])
+            chain_low = min(chain_low, across)
+            chain_high = max(chain_high, across)
+        e = region.following[e]
+    above = across_low >= chain_high - reach and facing_high > 0.0
+    below = across_high <= chain_low + reach and facing_low < 0.0
+    return length if beside_all or (only_convex and (beside_one or above or below)) else 0
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# The answers by kind of region
+
+
+@overload(is_blocked)
+def _choose_is_blocked(x, y, region):
+    return {GridRegion: _is_blocked_in_grid, CircleRegion: _is_blocked_in_circles, PolygonRegion: _is_blocked_in_polygons}[
+        region.instance_class
+    ]
+
+
+@overload(is_free)
+def _choose_is_free(points, region):
+    return {GridRegion: _is_free_in_grid, CircleRegion: _is_free_in_circles, PolygonRegion: _is_free_in_polygons}[region.instance_class]
+
+
+@overload(depth_at)
+def _choose_depth(x, y, region):
+    return {GridRegion: _depth_in_grid, CircleRegion: _depth_in_circles, PolygonRegion: _depth_in_polygons}[region.instance_class]
+
+
+@overload(depth_bound)
+def _choose_depth_bound(points, region):
+    return {GridRegion: _depth_bound_by_edges, CircleRegion: _depth_bound_in_circles, PolygonRegion: _depth_bound_by_edges}[
+        region.instance_class
+    ]

@@ -1,0 +1,118 @@
+"""How deep a colliding path lies in the blocked region, and how near a free one comes to it: branch and bound over halved pieces."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from bezierplan.geometry.checker.certificates import depth_at, depth_bound, is_free, least_distance_to_centre
+from bezierplan.geometry.checker.hulls import ROUNDING, STACK, bulge_of, copy_points, distance_to_segment, halve, size
+from bezierplan.geometry.region import Region
+
+# Proven error of the clearance in units, and of the depth relative to it.
+CLEARANCE_TOLERANCE = 1e-9
+DEPTH_TOLERANCE = 1e-6
+
+
+@njit(cache=True)
+def largest_depth(pieces: np.ndarray, region: Region, collision_at: float) -> float:
+    """Largest depth of a path, to a relative `DEPTH_TOLERANCE`, by branch and bound from the piece of its first collision on."""
+    stack = np.empty((STACK, pieces.shape[1], 2))
+    largest = 0.0
+    for piece in range(max(0, math.ceil(collision_at) - 1), len(pieces)):
+        copy_points(pieces[piece], stack[0])
+        for x, y in (pieces[piece, 0], pieces[piece, -1]):
+            largest = max(largest, depth_at(x, y, region))
+        top = 0
+        while top >= 0:
+            points = stack[top]
+            enough = largest + max(DEPTH_TOLERANCE * largest, ROUNDING)
+            if size(points) <= ROUNDING or depth_bound(points, region) <= enough or is_free(points, region):
+                top -= 1
+            else:
+                halve(points, stack[top + 1])
+                largest = max(largest, depth_at(points[0, 0], points[0, 1], region))
+                top += 1
+    return largest
+
+
+@njit(cache=True)
+def least_clearance(pieces: np.ndarray, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> float:
+    """Least distance of a free path to edges (n, 4) and discs, to `CLEARANCE_TOLERANCE`, by branch and bound.
+
+    An edge is no nearer to the curve than to its chord, less what the curve may leave its chord by. Obstacles farther away than the least
+    distance found are dropped for both halves: they change places with others, behind the number that the halves look at.
+    """
+    stack = np.empty((STACK, pieces.shape[1], 2))
+    considered = np.empty(STACK, dtype=np.int64)
+    obstacles = np.arange(len(edges) + len(radii))
+    least = math.inf
+    for piece in range(len(pieces)):
+        copy_points(pieces[piece], stack[0])
+        considered[0] = len(obstacles)
+        for x, y in (pieces[piece, 0], pieces[piece, -1]):
+            least = min(least, _clearance_of_point(x, y, obstacles, edges, centres, radii))
+        top = 0
+        while top >= 0:
+            points = stack[top]
+            bulge = bulge_of(points)
+            near = 0
+            for k in range(considered[top]):
+                if _clearance_bound(points, bulge, obstacles[k], edges, centres, radii) < least - CLEARANCE_TOLERANCE:
+                    obstacles[near], obstacles[k] = obstacles[k], obstacles[near]
+                    near += 1
+            if near == 0:
+                top -= 1
+            else:
+                halve(points, stack[top + 1])
+                least = min(least, _clearance_of_point(points[0, 0], points[0, 1], obstacles[:near], edges, centres, radii))
+                considered[top] = considered[top + 1] = near
+                top += 1
+    return least
+
+
+@njit(cache=True)
+def _clearance_of_point(x: float, y: float, obstacles: np.ndarray, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> float:
+    """Least distance of a point to some of the obstacles: numbers of edges, and after them of discs."""
+    least = math.inf
+    for obstacle in obstacles:
+        disc = obstacle - len(edges)
+        if disc < 0:
+            ax, ay, bx, by = edges[obstacle]
+            least = min(least, distance_to_segment(x, y, ax, ay, bx, by))
+        else:
+            least = min(least, max(0.0, math.hypot(x - centres[disc, 0], y - centres[disc, 1]) - radii[disc]))
+    return least
+
+
+@njit(cache=True)
+def _clearance_bound(points: np.ndarray, bulge: float, obstacle: int, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> float:
+    """Lower bound of the distance of a curve to an obstacle. A curve leaves its chord by `bulge` at most."""
+    ax, ay = points[0]
+    bx, by = points[-1]
+    disc = obstacle - len(edges)
+    if disc < 0:
+        return max(0.0, _distance_of_segments(points[0], points[-1], edges[obstacle, :2], edges[obstacle, 2:]) - bulge)
+    x, y = centres[disc]
+    from_chord = distance_to_segment(x, y, ax, ay, bx, by) - bulge
+    if bulge > 0.0:
+        from_chord = max(from_chord, least_distance_to_centre(points, x, y))
+    return max(0.0, from_chord - radii[disc])
+
+
+@njit(cache=True)
+def _distance_of_segments(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> float:
+    if _turn(a, b, c) * _turn(a, b, d) < 0.0 and _turn(c, d, a) * _turn(c, d, b) < 0.0:
+        return 0.0
+    return min(
+        distance_to_segment(a[0], a[1], c[0], c[1], d[0], d[1]),
+        distance_to_segment(b[0], b[1], c[0], c[1], d[0], d[1]),
+        distance_to_segment(c[0], c[1], a[0], a[1], b[0], b[1]),
+        distance_to_segment(d[0], d[1], a[0], a[1], b[0], b[1]),
+    )
+
+
+@njit(cache=True)
+def _turn(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
+    """Twice the signed area of a triangle, positive if it is counterclockwise."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

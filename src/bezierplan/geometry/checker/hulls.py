@@ -1,0 +1,117 @@
+"""Hulls of the control points of Bezier pieces: halving, extent and direction; and the limits within which they are exact enough."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+# Depth in units above which a point is certainly blocked.
+TOLERANCE = 1e-9
+
+# Smaller than this, differences of coordinates are rounding.
+ROUNDING = 1e-12
+
+# Coordinates beyond this would bring the rounding of halved control points near the tolerance.
+LARGEST_COORDINATE = 1e5
+
+LARGEST_DEGREE = 60
+
+# Halving reaches the tolerance from the largest coordinate in some fifty levels; a level needs one place on the stack.
+STACK = 64
+
+# A chord this much shorter than its hull does not show the hull's direction.
+_SHORT_CHORD = 1e-3
+
+
+@njit(cache=True)
+def copy_points(points: np.ndarray, place: np.ndarray) -> None:
+    """Copy control points one by one. Assigning whole arrays does the same, but takes seconds to compile."""
+    for i in range(len(points)):
+        place[i, 0] = points[i, 0]
+        place[i, 1] = points[i, 1]
+
+
+@njit(cache=True)
+def halve(points: np.ndarray, left: np.ndarray) -> None:
+    """Replace a piece by its right half and write its left half (de Casteljau's construction)."""
+    n = len(points) - 1
+    for level in range(n + 1):
+        left[level, 0] = points[0, 0]
+        left[level, 1] = points[0, 1]
+        for i in range(n - level):
+            points[i, 0] = 0.5 * (points[i, 0] + points[i + 1, 0])
+            points[i, 1] = 0.5 * (points[i, 1] + points[i + 1, 1])
+
+
+@njit(cache=True)
+def size(points: np.ndarray) -> float:
+    """Largest distance of a control point from the first one."""
+    largest = 0.0
+    for i in range(1, len(points)):
+        largest = max(largest, math.hypot(points[i, 0] - points[0, 0], points[i, 1] - points[0, 1]))
+    return largest
+
+
+@njit(cache=True)
+def direction(points: np.ndarray) -> tuple[float, float]:
+    """Unit vector along a hull: its chord's or, where the chord is short, that to the point farthest from the first one."""
+    farthest = len(points) - 1
+    longest = size(points)
+    if math.hypot(points[-1, 0] - points[0, 0], points[-1, 1] - points[0, 1]) < _SHORT_CHORD * longest:
+        for i in range(1, len(points)):
+            if math.hypot(points[i, 0] - points[0, 0], points[i, 1] - points[0, 1]) == longest:
+                farthest = i
+    x = points[farthest, 0] - points[0, 0]
+    y = points[farthest, 1] - points[0, 1]
+    length = math.hypot(x, y)
+    if length == 0.0:
+        return 1.0, 0.0
+    return x / length, y / length
+
+
+@njit(cache=True)
+def range_along(points: np.ndarray, x: float, y: float) -> tuple[float, float]:
+    """Least and largest component of the control points in a direction, seen from the first one."""
+    low = high = 0.0
+    for i in range(1, len(points)):
+        component = (points[i, 0] - points[0, 0]) * x + (points[i, 1] - points[0, 1]) * y
+        low = min(low, component)
+        high = max(high, component)
+    return low, high
+
+
+@njit(cache=True)
+def box(points: np.ndarray) -> tuple[float, float, float, float]:
+    """Lowest and highest x, lowest and highest y of the control points."""
+    left = right = points[0, 0]
+    bottom = top = points[0, 1]
+    for i in range(1, len(points)):
+        left = min(left, points[i, 0])
+        right = max(right, points[i, 0])
+        bottom = min(bottom, points[i, 1])
+        top = max(top, points[i, 1])
+    return left, right, bottom, top
+
+
+@njit(cache=True)
+def distance_to_segment(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> float:
+    """Distance of the point (x, y) from the segment from (ax, ay) to (bx, by)."""
+    dx = bx - ax
+    dy = by - ay
+    square = dx * dx + dy * dy
+    share = 0.0
+    if square > 0.0:
+        share = min(1.0, max(0.0, ((x - ax) * dx + (y - ay) * dy) / square))
+    dx = x - ax - share * dx
+    dy = y - ay - share * dy
+    return math.sqrt(dx * dx + dy * dy)
+
+
+@njit(cache=True)
+def bulge_of(points: np.ndarray) -> float:
+    """Largest distance of a control point from the chord."""
+    largest = 0.0
+    for i in range(1, len(points) - 1):
+        distance = distance_to_segment(points[i, 0], points[i, 1], points[0, 0], points[0, 1], points[-1, 0], points[-1, 1])
+        largest = max(largest, distance)
+    return largest

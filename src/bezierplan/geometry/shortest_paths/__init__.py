@@ -1,0 +1,64 @@
+"""Exact shortest paths of a point robot: any-angle on grids, around circles and polygons; through cell centres; on the 8-connected lattice.
+
+They read the same region as the certified check, and the paths that they give are free by it: touching is allowed. There is a file for each
+kind of region, and one for the lattice.
+"""
+
+from typing import Literal
+
+import numpy as np
+
+from bezierplan.geometry.checker import TOLERANCE, check
+from bezierplan.geometry.region import CircleRegion, GridRegion, region
+from bezierplan.geometry.shortest_paths.circles import shortest_around_circles
+from bezierplan.geometry.shortest_paths.graph import Bound, no_path
+from bezierplan.geometry.shortest_paths.grid import centre_path, shortest_on_grid
+from bezierplan.geometry.shortest_paths.lattice import lattice_path
+from bezierplan.geometry.shortest_paths.polygons import shortest_among_polygons
+from bezierplan.workspaces.problem import Problem
+
+__all__ = ["Bound", "centre_path", "lattice_path", "least_length", "shortest_path"]
+
+
+def shortest_path(problem: Problem, corner_cutting: Literal["open", "closed"] = "open") -> Bound:
+    """The shortest path from start to target; no path if one of them is blocked.
+
+    corner_cutting: whether it may pass between two occupied cells that meet only by a corner; matters on grids only.
+
+    On a grid the visibility of start and target is decided for the nearest points of a lattice: coordinates that are no fractions of a cell
+    with a common denominator of at most 2**20 are off by up to 5e-7 cells there. Lengths are those of the points themselves. Around circles
+    the length is a sum of closed forms, and the polyline is up to `circles.POLYLINE_EXCESS` longer.
+
+    Raises ValueError for an unknown rule of corner cutting, and for the rule `closed` on a grid with more than `grid.MOST_NODES` corners.
+
+    Around two occupied cells, by their upper left corner:
+
+    >>> from bezierplan.workspaces.grid import from_lines
+    >>> room = from_lines(["....", ".##.", "...."], cell=1.0, unit="m")
+    >>> found = shortest_path(Problem("room", room, start=(0.5, 0.5), target=(3.5, 2.5)))
+    >>> round(found.length, 6)
+    4.130649
+    >>> found.points.tolist()
+    [[0.5, 0.5], [1.0, 2.0], [3.5, 2.5]]
+    """
+    blocked = region(problem.workspace)
+    for point in (problem.start, problem.target):
+        if not check(np.array([[point, point]]), blocked, corner_cutting).feasible:
+            return no_path()
+    if isinstance(blocked, GridRegion):
+        return shortest_on_grid(problem, blocked, corner_cutting)
+    if isinstance(blocked, CircleRegion):
+        return shortest_around_circles(problem, blocked)
+    return shortest_among_polygons(problem, blocked)
+
+
+def least_length(bound: Bound) -> float:
+    """The least length that a path may have which the certified check calls free.
+
+    Such a path may be a few 1e-9 deep and cuts its bends by that; the allowance is a relative 1e-9 and 1e-8 a radian of turning. Obstacles
+    that are sharper than a right angle and gaps below 1e-7 can allow more.
+    """
+    step = np.diff(bound.points, axis=0)
+    step = step[np.hypot(step[:, 0], step[:, 1]) > TOLERANCE]
+    heading = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))
+    return bound.length * (1 - 1e-9) - 1e-8 * float(np.abs(np.diff(heading)).sum())

@@ -1,0 +1,79 @@
+"""Shortest paths in visibility graphs, and the paths that they give."""
+
+import math
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numba import njit
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+# Sparse matrices take an entry of zero for no edge.
+NO_LENGTH = 1e-300
+
+
+class Bound(NamedTuple):
+    """A shortest path.
+
+    length: in the problem's unit, infinite if there is no path. points: (n, 2) a polyline along it from start to target, (0, 2) if there
+    is no path.
+    """
+
+    length: float
+    points: np.ndarray
+
+
+def no_path() -> Bound:
+    """What a search answers that finds no path."""
+    return Bound(math.inf, np.empty((0, 2)))
+
+
+def moved(bound: Bound, by: np.ndarray | tuple[float, float]) -> Bound:
+    """A path measured from a grid's corner, measured from the origin."""
+    return bound._replace(points=bound.points + by)
+
+
+def along(points: np.ndarray, nodes: np.ndarray) -> Bound:
+    """The polyline along some of the points (n, 2), without repeated ones; no path without nodes."""
+    if not len(nodes):
+        return no_path()
+    path = points[nodes]
+    moving = np.any(np.diff(path, axis=0) != 0, axis=1)
+    path = np.concatenate([path[:1], path[1:][moving]]) if moving.any() else path[:2]
+    return Bound(math.fsum(np.hypot(*np.diff(path, axis=0).T)), path)
+
+
+def shortest_in_graph(points: np.ndarray, visible: np.ndarray) -> Bound:
+    """The shortest polyline from the first to the second of some points (n, 2), along pairs that see each other: bool (n, n), i < j."""
+    from scipy.sparse import coo_array
+
+    tail, head = np.nonzero(visible)
+    lengths = np.hypot(*(points[head] - points[tail]).T)
+    graph = coo_array((np.maximum(lengths, NO_LENGTH), (tail, head)), shape=visible.shape).tocsr()
+    _, nodes = dijkstra_path(graph, 0, 1)
+    if not len(nodes):
+        return no_path()
+    return along(points, nodes)
+
+
+def dijkstra_path(graph: "csr_array", start: int, target: int) -> tuple[float, np.ndarray]:
+    """Length of a shortest path in a sparse graph, whose edges go both ways, and the nodes along it; none without a path."""
+    from scipy.sparse.csgraph import dijkstra
+
+    distances, predecessors = dijkstra(graph, directed=False, indices=start, return_predecessors=True)
+    if math.isinf(distances[target]):
+        return math.inf, np.empty(0, dtype=np.int64)
+    nodes = [target]
+    while nodes[-1] != start:
+        nodes.append(int(predecessors[nodes[-1]]))
+    return float(distances[target]), np.array(nodes[::-1])
+
+
+@njit(cache=True)
+def way_back(before, length):
+    """The nodes from node 0 to node 1, by the node before each; none if the length is infinite."""
+    nodes = [1]
+    while before[nodes[-1]] >= 0:
+        nodes.append(before[nodes[-1]])
+    return np.array(nodes[::-1]) if length < np.inf else np.empty(0, dtype=np.int64)

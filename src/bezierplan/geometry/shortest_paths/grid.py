@@ -1,0 +1,258 @@
+"""Shortest paths on grids: visibility between corners of cells, or between their centres, in whole numbers."""
+
+import math
+from fractions import Fraction
+
+import numpy as np
+from numba import njit
+
+from bezierplan.geometry.region import GridRegion, from_origin, occupied_around, walled
+from bezierplan.geometry.shortest_paths.graph import Bound, along, moved, no_path, shortest_in_graph, way_back
+from bezierplan.geometry.shortest_paths.lattice import lattice_path
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.problem import Problem
+
+# A graph has an entry for every pair of nodes; with more nodes than this a search that keeps no pairs takes its place.
+MOST_NODES = 5000
+
+# Start and target are put on a lattice of at most this many points a cell, so that visibility is decided with whole numbers.
+_FINEST_LATTICE = 2**20
+
+# Products of two coordinates of the lattice must fit in 64 bits.
+_LARGEST_WHOLE = 2**30
+
+# A value this near to a fraction with a small denominator, in cells, is meant as that fraction.
+_SAME_FRACTION = 1e-12
+
+# A cell centre may be this far off, in cells.
+_CENTRE_TOLERANCE = 1e-9
+
+
+def shortest_on_grid(problem: Problem, blocked: GridRegion, corner_cutting: str) -> Bound:
+    """The visibility graph of start, target and the corners at which a shortest path can turn.
+
+    Those are the vertices with exactly one occupied cell around them, and contacts. A contact that is closed is two nodes, one a free
+    quadrant, each with directions of its own quadrant only.
+    """
+    cells = np.ascontiguousarray(blocked.blocked[::2, ::2])
+    corners, slopes, quadrants = _grid_corners(cells, corner_cutting == "closed")
+    ends = from_origin(np.array([problem.start, problem.target], dtype=float), blocked)
+    scale = _lattice(ends / blocked.cell, min(_FINEST_LATTICE, _LARGEST_WHOLE // max(cells.shape)))
+    lattice = np.concatenate([np.rint(ends / blocked.cell * scale).astype(np.int64), corners * scale])
+    slopes = np.concatenate([[0, 0], slopes])
+    if len(lattice) > MOST_NODES and corner_cutting == "open":
+        most = _least_over_cells(problem)
+        if math.isinf(most):
+            return no_path()
+        nodes = _search_grid(np.concatenate([ends / blocked.cell, corners]), lattice, slopes, cells, scale, most)
+        return moved(along(np.concatenate([ends, corners * blocked.cell]), nodes), blocked.origin)
+    refuse_large(len(lattice))
+    quadrants = np.concatenate([np.zeros((2, 2), dtype=np.int64), quadrants])
+    visible = _visible_on_grid(lattice, slopes, quadrants, cells, scale, corner_cutting == "closed")
+    return moved(shortest_in_graph(np.concatenate([ends, corners * blocked.cell]), visible), blocked.origin)
+
+
+def centre_path(problem: Problem) -> Bound:
+    """The shortest polyline through centres of free cells of a grid, in the problem's unit.
+
+    Raises ValueError if start or target is not the centre of a cell, within 1e-9 of a cell's side, and for more than `MOST_NODES` free
+    cells.
+    """
+    grid = problem.workspace
+    nodes = [_centre_cell(grid, name, point) for name, point in (("start", problem.start), ("target", problem.target))]
+    if any(grid.occupied[row, column] for row, column in nodes):
+        return no_path()
+    cells = np.concatenate([nodes, np.argwhere(~grid.occupied)])
+    refuse_large(len(cells))
+    lattice = 2 * cells[:, ::-1] + 1
+    anything = np.zeros((len(cells), 2), dtype=np.int64)
+    visible = _visible_on_grid(lattice, anything[:, 0], anything, walled(grid.occupied), 2, False)
+    return moved(shortest_in_graph(lattice * (0.5 * grid.cell), visible), grid.origin)
+
+
+def _centre_cell(grid: Grid, name: str, point: tuple[float, float]) -> tuple[int, int]:
+    """Row and column of the cell whose centre a point is."""
+    column, row = grid.in_cells(np.array(point)) - 0.5
+    rows, columns = grid.occupied.shape
+    is_centre = abs(column - round(column)) <= _CENTRE_TOLERANCE and abs(row - round(row)) <= _CENTRE_TOLERANCE
+    if not (is_centre and 0 <= round(row) < rows and 0 <= round(column) < columns):
+        raise ValueError(f"the {name} {point} is not the centre of a cell")
+    return round(row), round(column)
+
+
+def refuse_large(nodes: int) -> None:
+    if nodes > MOST_NODES:
+        raise ValueError(f"the visibility graph has {nodes} nodes, more than {MOST_NODES}; use a coarser or a smaller workspace")
+
+
+def _grid_corners(cells: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Corners (n, 2) as x and y in cells, slopes (n,) and quadrants (n, 2) of the directions that a shortest path can take from them.
+
+    A slope of +1 stands for directions with dx dy >= 0, -1 for dx dy <= 0. A quadrant holds the signs of dx and dy, or zeros for any.
+    """
+    around = occupied_around(cells)
+    below_left, below_right, above_left, above_right = around
+    single = around.sum(axis=0) == 1
+    pair = around.sum(axis=0) == 2
+    # Around a single occupied cell a path turns from one of the two quadrants beside it to the other; at a contact it stays in free ones.
+    rising = (single & (below_right | above_left)) | (pair & below_right & above_left)
+    falling = (single & (below_left | above_right)) | (pair & below_left & above_right)
+    row, column = np.nonzero(rising | falling)
+    corners = np.column_stack([column, row])
+    slopes = np.where(rising[row, column], 1, -1)
+    quadrants = np.zeros_like(corners)
+    if closed:
+        contact = pair[row, column]
+        twice = np.repeat(np.arange(len(corners)), np.where(contact, 2, 1))
+        corners, slopes, contact = corners[twice], slopes[twice], contact[twice]
+        first = np.concatenate([[True], twice[1:] != twice[:-1]])[: len(twice)]
+        side = np.where(first, 1, -1)
+        quadrants = np.where(contact[:, None], np.column_stack([side, side * slopes]), 0)
+    return corners, slopes, quadrants
+
+
+def _lattice(points: np.ndarray, finest: int) -> int:
+    """The least number of lattice points a cell that makes all coordinates whole; `finest` if that is not enough."""
+    fractions = [Fraction(value).limit_denominator(finest) for value in points.ravel().tolist()]
+    scale = math.lcm(*(fraction.denominator for fraction in fractions))
+    exact = all(abs(value - fraction) <= _SAME_FRACTION for value, fraction in zip(points.ravel(), fractions))
+    return scale if exact and scale <= finest else finest
+
+
+def _least_over_cells(problem: Problem) -> float:
+    """Length in cells of the shortest way over the centres of free cells, start and target joined to those of their own cells: no shortest
+    path is longer. Infinite without one, for then there is no path at all; but not if start or target lies on an occupied cell's side.
+    """
+    grid = problem.workspace
+    start, target = (grid.cell_of(*end) for end in (problem.start, problem.target))
+    if grid.occupied[start] or grid.occupied[target]:
+        return np.finfo(float).max
+    ends = sum(
+        math.dist(end, grid.centre(row * grid.occupied.shape[1] + column)) for end, (row, column) in zip(problem[2:], (start, target))
+    )
+    return lattice_path(grid.occupied, start, target, math.sqrt(2), "free").length + ends / grid.cell
+
+
+@njit(cache=True)
+def _search_grid(points, lattice, slopes, cells, scale, most):
+    """The nodes of a shortest path from node 0 to node 1 by the algorithm A*, none without a path; pairs are tested when they matter.
+
+    points: (n, 2) in cells, lattice: (n, 2) the same in whole numbers. most: in cells, a length that the path does not exceed.
+    """
+    ahead = np.hypot(points[:, 0] - points[1, 0], points[:, 1] - points[1, 1])
+    length = np.full(len(points), np.inf)
+    before = np.full(len(points), -1)
+    left = np.flatnonzero(np.hypot(points[:, 0] - points[0, 0], points[:, 1] - points[0, 1]) + ahead <= most * (1 + 1e-9))
+    length[0] = 0.0
+    while len(left) > 0:
+        best = 0
+        for k in range(len(left)):
+            if length[left[k]] + ahead[left[k]] < length[left[best]] + ahead[left[best]]:
+                best = k
+        i = left[best]
+        if i == 1 or length[i] == np.inf:
+            break
+        left[best] = left[-1]
+        left = left[:-1]
+        for j in left:
+            dx, dy = lattice[j, 0] - lattice[i, 0], lattice[j, 1] - lattice[i, 1]
+            if slopes[i] * dx * dy < 0 or slopes[j] * dx * dy < 0:
+                continue
+            so_far = length[i] + math.sqrt((points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2)
+            if so_far >= length[j] or so_far + ahead[j] > most * (1 + 1e-9):
+                continue
+            if (dx == 0 and dy == 0) or _sees(lattice[i], lattice[j], cells, scale, False):
+                length[j] = so_far
+                before[j] = i
+    return way_back(before, length[1])
+
+
+@njit(cache=True)
+def _visible_on_grid(
+    nodes: np.ndarray, slopes: np.ndarray, quadrants: np.ndarray, cells: np.ndarray, scale: int, closed: bool
+) -> np.ndarray:
+    """Which pairs i < j of nodes can follow each other on a shortest path: bool (n, n).
+
+    nodes: (n, 2) whole numbers, `scale` a cell. cells: occupied cells with a ring around them.
+    """
+    visible = np.zeros((len(nodes), len(nodes)), dtype=np.bool_)
+    for i in range(len(nodes)):
+        for j in range(i + 1, len(nodes)):
+            dx = nodes[j, 0] - nodes[i, 0]
+            dy = nodes[j, 1] - nodes[i, 1]
+            if slopes[i] * dx * dy < 0 or slopes[j] * dx * dy < 0:
+                continue
+            if not (_in_quadrant(dx, dy, quadrants[i]) and _in_quadrant(-dx, -dy, quadrants[j])):
+                continue
+            if dx == 0 and dy == 0:
+                # The two nodes of a closed contact lie in one place and do not see each other.
+                visible[i, j] = quadrants[i, 0] == 0 or quadrants[j, 0] == 0
+            else:
+                visible[i, j] = _sees(nodes[i], nodes[j], cells, scale, closed)
+    return visible
+
+
+@njit(cache=True)
+def _in_quadrant(dx: int, dy: int, quadrant: np.ndarray) -> bool:
+    return dx * quadrant[0] >= 0 and dy * quadrant[1] >= 0
+
+
+@njit(cache=True)
+def _sees(one: np.ndarray, other: np.ndarray, cells: np.ndarray, scale: int, closed: bool) -> bool:
+    """Whether the segment between two different points of the lattice is free."""
+    dx, dy = other[0] - one[0], other[1] - one[1]
+    if dx == 0:
+        return _sees_along_column(one[0], min(one[1], other[1]), abs(dy), cells, scale, closed)
+    if dy == 0:
+        return _sees_along_column(one[1], min(one[0], other[0]), abs(dx), cells.T, scale, closed)
+    return _sees_across(one[0], one[1], dx, dy, cells, scale, closed)
+
+
+@njit(cache=True)
+def _sees_along_column(x: int, low: int, length: int, cells: np.ndarray, scale: int, closed: bool) -> bool:
+    """Whether a vertical segment is free. On a grid line it passes edges, blocked if both of their cells are occupied."""
+    column = x // scale
+    on_line = x % scale == 0
+    for row in range(low // scale, (low + length - 1) // scale + 1):
+        if cells[row + 1, column + 1] and (not on_line or cells[row + 1, column]):
+            return False
+        if closed and on_line and row * scale > low and _is_contact(cells, row, column):
+            return False
+    return True
+
+
+@njit(cache=True)
+def _is_contact(cells: np.ndarray, row: int, column: int) -> bool:
+    """Whether two occupied cells meet only by a corner in a vertex, given by its grid lines."""
+    below_left, below_right = cells[row, column], cells[row, column + 1]
+    above_left, above_right = cells[row + 1, column], cells[row + 1, column + 1]
+    return below_left == above_right and below_right == above_left and below_left != below_right
+
+
+@njit(cache=True)
+def _sees_across(x: int, y: int, dx: int, dy: int, cells: np.ndarray, scale: int, closed: bool) -> bool:
+    """Whether a slanted segment is free: a walk over the cells that it enters.
+
+    to_x and to_y are the distances from the segment's begin to the next vertical and horizontal grid line, along each axis.
+    """
+    step_x = 1 if dx > 0 else -1
+    step_y = 1 if dy > 0 else -1
+    width = abs(dx)
+    height = abs(dy)
+    column = x // scale if dx > 0 else (x - 1) // scale
+    row = y // scale if dy > 0 else (y - 1) // scale
+    to_x = (column + 1) * scale - x if dx > 0 else x - column * scale
+    to_y = (row + 1) * scale - y if dy > 0 else y - row * scale
+    while not cells[row + 1, column + 1]:
+        if to_x >= width and to_y >= height:
+            return True
+        order = to_x * height - to_y * width
+        if order == 0 and closed and cells[row + 1, column + 1 + step_x] and cells[row + 1 + step_y, column + 1]:
+            return False
+        if order <= 0:
+            column += step_x
+            to_x += scale
+        if order >= 0:
+            row += step_y
+            to_y += scale
+    return False

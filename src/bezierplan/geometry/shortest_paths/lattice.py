@@ -1,0 +1,99 @@
+"""Shortest paths over the 8 neighbours of free cells."""
+
+import heapq
+
+import numpy as np
+from numba import njit
+
+from bezierplan.geometry.shortest_paths.graph import Bound, no_path
+from bezierplan.workspaces.lattice import CORNERS, STEPS, Corners
+
+
+def lattice_path(
+    occupied: np.ndarray,
+    start: tuple[int, int],
+    target: tuple[int, int],
+    diagonal_weight: float,
+    corner_rule: Corners,
+) -> Bound:
+    """The shortest path over the 8 neighbours of free cells, by the algorithm A*; length and points (x, y) in cells.
+
+    occupied: bool (rows, columns). start, target: row and column. diagonal_weight: length of a diagonal step; others count 1. corner_rule:
+    how many of the two cells beside a diagonal step may be occupied.
+    Raises ValueError for an unknown rule and for a start or target outside of the grid.
+
+    A diagonal step past an occupied cell is allowed with the rule `free`, and not with the rule `none`:
+
+    >>> from bezierplan.workspaces.grid import from_lines
+    >>> occupied = from_lines(["....", ".##.", "...."], cell=1.0, unit="m").occupied
+    >>> lattice_path(occupied, start=(0, 0), target=(2, 3), diagonal_weight=1.5, corner_rule="free").length
+    4.5
+    >>> lattice_path(occupied, start=(0, 0), target=(2, 3), diagonal_weight=1.5, corner_rule="none").length
+    5.0
+    """
+    if corner_rule not in CORNERS:
+        raise ValueError(f"unknown corner rule {corner_rule!r}; known: {', '.join(CORNERS)}")
+    rows, columns = occupied.shape
+    for name, (row, column) in (("start", start), ("target", target)):
+        if not (0 <= row < rows and 0 <= column < columns):
+            raise ValueError(f"the {name} cell (row {row}, column {column}) is not on the grid of {rows} x {columns} cells")
+    if occupied[start] or occupied[target]:
+        return no_path()
+
+    walled_cells = np.pad(occupied, 1, constant_values=True)
+    length, cells = _least_cells(walled_cells, np.array(start) + 1, np.array(target) + 1, STEPS, diagonal_weight, CORNERS[corner_rule])
+    row, column = np.divmod(cells, columns + 2)
+    return Bound(length, np.column_stack([column - 0.5, row - 0.5]))
+
+
+@njit(cache=True)
+def _least_cells(walled, start, target, steps, diagonal_weight, most_beside):
+    """Length of a shortest path and its cells (n,), numbered row by row; infinite and none if there is no path.
+
+    walled: bool (rows, columns), the cells with a frame of occupied ones. start, target: row and column. most_beside: how many of the two
+    cells beside a diagonal step may be occupied. What is left is estimated by the shortest path without obstacles, so only cells around the
+    shortest paths are looked at.
+    """
+    columns = walled.shape[1]
+    # A step of each kind may be replaced by two of the other kind.
+    straight, diagonal = min(1.0, diagonal_weight), min(diagonal_weight, 2.0)
+    length = np.full(walled.shape, np.inf)
+    came_by = np.full(walled.shape, -1, dtype=np.int8)
+    settled = np.zeros(walled.shape, dtype=np.bool_)
+    length[start[0], start[1]] = 0.0
+    # Estimated length, the part of it that is ahead, and the cell; of equally long ones those nearest to the target come first.
+    heap = [(0.0, 0.0, start[0], start[1])]
+    while len(heap) > 0:
+        _, _, row, column = heapq.heappop(heap)
+        if row == target[0] and column == target[1]:
+            break
+        if settled[row, column]:
+            continue
+        settled[row, column] = True
+        for k in range(len(steps)):
+            next_row, next_column = row + steps[k, 0], column + steps[k, 1]
+            is_diagonal = next_row != row and next_column != column
+            if walled[next_row, next_column] or settled[next_row, next_column]:
+                continue
+            if is_diagonal and walled[next_row, column] + walled[row, next_column] > most_beside:
+                continue
+            so_far = length[row, column] + (diagonal_weight if is_diagonal else 1.0)
+            if so_far < length[next_row, next_column]:
+                length[next_row, next_column] = so_far
+                came_by[next_row, next_column] = k
+                up, right = abs(target[0] - next_row), abs(target[1] - next_column)
+                ahead = diagonal * min(up, right) + straight * abs(up - right)
+                heapq.heappush(heap, (so_far + ahead, ahead, next_row, next_column))
+
+    if length[target[0], target[1]] == np.inf:
+        return np.inf, np.empty(0, dtype=np.int64)
+    row, column = target[0], target[1]
+    cells = [row * columns + column]
+    diagonals = 0
+    while came_by[row, column] >= 0:
+        step = steps[came_by[row, column]]
+        row -= step[0]
+        column -= step[1]
+        cells.append(row * columns + column)
+        diagonals += step[0] != 0 and step[1] != 0
+    return len(cells) - 1 - diagonals + diagonal_weight * diagonals, np.array(cells)[::-1]

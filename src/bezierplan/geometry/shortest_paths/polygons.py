@@ -1,0 +1,111 @@
+"""Shortest paths among polygons: visibility between convex corners."""
+
+import heapq
+import math
+
+import numpy as np
+from numba import njit
+
+from bezierplan.geometry.checker import TOLERANCE, first_collision
+from bezierplan.geometry.region import PolygonRegion
+from bezierplan.geometry.shortest_paths.graph import Bound, along, shortest_in_graph, way_back
+from bezierplan.workspaces.problem import Problem
+
+# With more nodes than this a search that tests pairs when they matter takes the place of the whole graph.
+MOST_POLYGON_NODES = 500
+
+
+def shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
+    """The visibility graph of start, target, the convex corners of the blocked region, and the points at which its corners meet."""
+    begin = blocked.edges[:, :2]
+    corner = np.flatnonzero(blocked.convex)
+    repeated, count = np.unique(begin, axis=0, return_counts=True)
+    anywhere = np.concatenate([[problem.start, problem.target], repeated[count > 1]])
+    nodes = np.concatenate([anywhere, blocked.edges[corner, 2:]])
+    before = np.concatenate([anywhere, begin[corner]])
+    after = np.concatenate([anywhere, blocked.edges[blocked.following[corner], 2:]])
+    if len(nodes) > MOST_POLYGON_NODES:
+        return along(nodes, _search_polygons(nodes, before, after, blocked))
+    return shortest_in_graph(nodes, _visible_among_polygons(nodes, before, after, blocked))
+
+
+@njit(cache=True)
+def _visible_among_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion) -> np.ndarray:
+    """Which pairs i < j of nodes can follow each other on a shortest path: bool (n, n).
+
+    before, after: (n, 2) the neighbours of a corner along the boundary; the node itself where a path may turn in any way.
+    """
+    visible = np.zeros((len(nodes), len(nodes)), dtype=np.bool_)
+    segment = np.empty((1, 2, 2))
+    for i in range(len(nodes)):
+        for j in range(i + 1, len(nodes)):
+            if not (_is_taut(nodes, i, j, before, after) and _is_taut(nodes, j, i, before, after)):
+                continue
+            for axis in range(2):
+                segment[0, 0, axis] = nodes[i, axis]
+                segment[0, 1, axis] = nodes[j, axis]
+            visible[i, j] = not _crosses(nodes[i], nodes[j], region.edges) and first_collision(segment, region)[0] == math.inf
+    return visible
+
+
+@njit(cache=True)
+def _search_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion) -> np.ndarray:
+    """The nodes of a shortest path from node 0 to node 1 by the algorithm A*, none without a path; pairs are tested when they matter:
+    a node's way to all others waits in a heap, and is tested when it is the most promising one.
+    """
+    came_by = np.full(len(nodes), -1)
+    settled = np.zeros(len(nodes), dtype=np.bool_)
+    ahead = np.hypot(nodes[:, 0] - nodes[1, 0], nodes[:, 1] - nodes[1, 1])
+    segment = np.empty((1, 2, 2))
+    heap = [(ahead[0], 0.0, -1, 0)]
+    while len(heap) > 0:
+        _, length, tail, i = heapq.heappop(heap)
+        if settled[i]:
+            continue
+        if tail >= 0:
+            for axis in range(2):
+                segment[0, 0, axis] = nodes[tail, axis]
+                segment[0, 1, axis] = nodes[i, axis]
+            if _crosses(nodes[tail], nodes[i], region.edges) or first_collision(segment, region)[0] < math.inf:
+                continue
+        settled[i] = True
+        came_by[i] = tail
+        if i == 1:
+            return way_back(came_by, length)
+        for j in range(len(nodes)):
+            if settled[j] or not (_is_taut(nodes, i, j, before, after) and _is_taut(nodes, j, i, before, after)):
+                continue
+            so_far = length + math.hypot(nodes[j, 0] - nodes[i, 0], nodes[j, 1] - nodes[i, 1])
+            heapq.heappush(heap, (so_far + ahead[j], so_far, i, j))
+    return np.empty(0, dtype=np.int64)
+
+
+@njit(cache=True)
+def _is_taut(nodes: np.ndarray, i: int, j: int, before: np.ndarray, after: np.ndarray) -> bool:
+    """Whether a shortest path can turn at corner i on its way to or from j: the corner lies on one side of the line."""
+    return not _apart(_offset(nodes[i], nodes[j], before[i]), _offset(nodes[i], nodes[j], after[i]))
+
+
+@njit(cache=True)
+def _crosses(a: np.ndarray, b: np.ndarray, edges: np.ndarray) -> bool:
+    """Whether a segment and an edge lie strictly across each other. What only touches edges is left to the certified check."""
+    for e in range(len(edges)):
+        c, d = edges[e, :2], edges[e, 2:]
+        if _apart(_offset(a, b, c), _offset(a, b, d)) and _apart(_offset(c, d, a), _offset(c, d, b)):
+            return True
+    return False
+
+
+@njit(cache=True)
+def _apart(first: float, second: float) -> bool:
+    """Whether two offsets from a line lie strictly on its two sides."""
+    return min(first, second) < -TOLERANCE and max(first, second) > TOLERANCE
+
+
+@njit(cache=True)
+def _offset(a: np.ndarray, b: np.ndarray, point: np.ndarray) -> float:
+    """Distance of a point from the line through a and b, positive on its left; 0 if a and b are one point."""
+    length = math.hypot(b[0] - a[0], b[1] - a[1])
+    if length == 0.0:
+        return 0.0
+    return ((b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])) / length

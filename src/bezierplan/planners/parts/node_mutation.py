@@ -1,0 +1,136 @@
+"""Mutation operators of paths from cell to cell (meledje, Section 3).
+
+All of them change one inner node of a path in place, and leave the number of nodes.
+"""
+
+from typing import Literal, NamedTuple
+
+import numpy as np
+from numba import njit
+
+from bezierplan.planners.parts.genetic import below
+from bezierplan.workspaces.ground import Ground, edge_energy, free_neighbours, obstacles_met, path_met
+
+Mutation = Literal["random", "random_repair", "ref12", "ref21", "proposed"]
+_RANDOM, _RANDOM_REPAIR, _REF12, _REF21, _PROPOSED = range(5)
+
+# So often random mutation is repeated for a feasible path.
+_MOST_REPAIRS = 50
+# Smaller differences of the energies of two neighbours of a node are rounding.
+_TIE = 1e-12
+
+
+@njit(cache=True)
+def mutate(rng: np.random.Generator, path: np.ndarray, drawn: np.ndarray, ground: Ground, rules: NamedTuple) -> int:
+    """Apply the operator once to a path of cells (n,), n at least 3; returns how many paths it evaluated.
+
+    drawn: the cells that random mutation draws from. rules: `node_genetic.Rules`.
+    """
+    if rules.mutation == _RANDOM:
+        path[1 + below(rng, len(path) - 2)] = drawn[below(rng, len(drawn))]
+        return 0
+    if rules.mutation == _RANDOM_REPAIR:
+        return _random_repair(rng, path, drawn, ground)
+    if rules.mutation == _REF21:
+        return _ref21(rng, path, ground, rules)
+    k = _blocked_node(rng, path, ground, rules.beside_obstacle) if rules.mutation == _PROPOSED else 0
+    if k == 0:
+        if rules.mutation == _PROPOSED and not rules.any_node:
+            return 0
+        k = 1 + below(rng, len(path) - 2)
+    return _best_neighbour(path, k, ground, rules)
+
+
+@njit(cache=True)
+def _random_repair(rng, path, drawn, ground):
+    """Random mutation, repeated until the path is feasible."""
+    for _ in range(_MOST_REPAIRS):
+        k = 1 + below(rng, len(path) - 2)
+        before = path[k]
+        path[k] = drawn[below(rng, len(drawn))]
+        if path_met(path, ground) == 0:
+            return 0
+        path[k] = before
+    return 0
+
+
+@njit(cache=True)
+def _blocked_node(rng, path, ground, beside_obstacle):
+    """A random inner node that encounters an obstacle, 0 if there is none (Table 1, step 1)."""
+    count = 0
+    for k in range(1, len(path) - 1):
+        count += _encounters(path, k, ground, beside_obstacle)
+    if count == 0:
+        return 0
+    chosen = below(rng, count)
+    for k in range(1, len(path) - 1):
+        if _encounters(path, k, ground, beside_obstacle):
+            if chosen == 0:
+                return k
+            chosen -= 1
+    return 0
+
+
+@njit(cache=True)
+def _encounters(path, k, ground, beside_obstacle):
+    """Whether the edge from node k to the next one meets an obstacle, or whether one of the eight cells around the node is occupied."""
+    if not beside_obstacle:
+        return obstacles_met(ground, path[k], path[k + 1]) > 0
+    row, column = divmod(path[k], ground.occupied.shape[1])
+    return ground.occupied[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2].any()
+
+
+@njit(cache=True)
+def _best_neighbour(path, k, ground, rules):
+    """Put the free neighbour cell that gives the best path in the place of node k (Table 1, steps 2 to 4; reference 12).
+
+    Of two that are equally good, the first from the lower left, row by row. Only the two edges of the node change.
+    """
+    neighbours, count = free_neighbours(path[k], ground)
+    best, least = path[k], np.inf
+    if rules.keep_better:
+        least = _cost_through(path, k, path[k], ground, rules.penalty)
+    for cell in neighbours[:count]:
+        cost = _cost_through(path, k, cell, ground, rules.penalty)
+        if cost < least - _TIE:
+            best, least = cell, cost
+    path[k] = best
+    return count
+
+
+@njit(cache=True, inline="always")
+def _cost_through(path, k, cell, ground, penalty):
+    """Energy and penalty of the two edges that node k would have in a cell."""
+    met = obstacles_met(ground, path[k - 1], cell) + obstacles_met(ground, cell, path[k + 1])
+    return edge_energy(ground, path[k - 1], cell) + edge_energy(ground, cell, path[k + 1]) + penalty * met
+
+
+@njit(cache=True)
+def _ref21(rng, path, ground, rules):
+    """Replace a random inner node by the first of its free neighbours, in random order, that lies in the direction of the target and whose
+    two edges are free, or with which the whole path is (reference 21).
+    """
+    k = 1 + below(rng, len(path) - 2)
+    neighbours, count = free_neighbours(path[k], ground)
+    elsewhere = 0
+    if rules.whole_path:
+        elsewhere = path_met(path[:k], ground) + path_met(path[k + 1 :], ground)
+    for tried in range(count):
+        chosen = tried + below(rng, count - tried)
+        neighbours[tried], neighbours[chosen] = neighbours[chosen], neighbours[tried]
+        cell = neighbours[tried]
+        accepted = elsewhere == 0 and _towards(path[0], cell, path[-1], ground.occupied.shape[1], rules.same_signs)
+        if accepted and obstacles_met(ground, path[k - 1], cell) == 0 and obstacles_met(ground, cell, path[k + 1]) == 0:
+            path[k] = cell
+            return tried + 1
+    return count
+
+
+@njit(cache=True)
+def _towards(start, cell, target, columns, same_signs):
+    """Does the way from a cell to the target have the direction of the way from the start to it?"""
+    across, up = target % columns - cell % columns, target // columns - cell // columns
+    whole_across, whole_up = target % columns - start % columns, target // columns - start // columns
+    if same_signs:
+        return np.sign(across) == np.sign(whole_across) and np.sign(up) == np.sign(whole_up)
+    return across * whole_across + up * whole_up > 0
