@@ -216,7 +216,7 @@ def test_paths_side_by_side(tmp_path):
     expected = ["other", "smooth (quadratic pieces)", "shortest path possible", "start", "target"]
     assert [text for text in legend if "cell" not in text] == expected
     length = found.runs["length"].iloc[1]
-    wanted = f"length (unit): other {length + 1:.2f}, smooth (quadratic pieces) {length:.2f}"
+    wanted = f"length (unit): other {round(length + 1, 2):g}, smooth (quadratic pieces) {round(length, 2):g}"
     assert any(wanted in " ".join(text.split()) for text in words(figure))
 
 

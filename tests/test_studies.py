@@ -172,7 +172,10 @@ def test_landscape(world, minima, correlation):
     assert (mark, interval, nodes) == ("-", None, side**2)
     assert effect == pytest.approx(correlation, abs=0.01)
     drawn = tharwat2018.fitness_landscape(found)
-    assert drawn["part"].value_counts().to_dict() == {"node": side**2, "minimum": minima, "lowest": 1, "fixed": 2}
+    assert drawn["part"].value_counts().to_dict() == {"node": side**2, "minimum": 3, "lowest": 1, "fixed": 2}
+    shown = drawn[drawn["part"] == "minimum"].set_index(["x", "y"]).index
+    lowest = surface[tharwat2018.local_minima(values).ravel()].set_index(["x", "y"]).index
+    assert shown.isin(lowest).all()
     assert drawn.loc[drawn["part"] == "lowest", "objective"].item() == values.min()
 
 
