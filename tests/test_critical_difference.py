@@ -109,4 +109,4 @@ def test_far_published_means_stand_at_the_edge(tmp_path):
     assert axes.get_xlim()[0] < 8 < 10.4 < axes.get_xlim()[1] < 11, "what is not far stays in sight"
     frame = boxes.data(found, metric="objective", limits=True).query("method.isna()")
     assert dict(zip(frame["part"], frame["value"])) == {"reference": 2.5, "bound": 2.0}
-    assert {"best known path of the same kind", "shortest path possible"} <= set(words)
+    assert {"best known path of the same kind", "exact shortest path"} <= set(words)

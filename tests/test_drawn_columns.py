@@ -70,7 +70,7 @@ def test_convergence_shows_the_run_the_median_and_the_band(monkeypatch):
     assert labelled(axes, "run shown") == [[0, 1, 2], [9, 7, 6]]
     assert labelled(axes, "median of all runs") == [[0, 1, 2], [19, 17, 16]]
     assert band(axes) == ([0, 1, 2], [4, 3, 2], [29, 28, 27])
-    assert labelled(axes, "shortest path possible")[1] == [1.5, 1.5]
+    assert labelled(axes, "exact shortest path")[1] == [1.5, 1.5]
     assert labelled(axes, "best known path of the same kind")[1] == [1.75, 1.75]
 
 

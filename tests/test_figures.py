@@ -213,7 +213,7 @@ def test_paths_side_by_side(tmp_path):
     panel = {"kind": "paths", "experiment": "routes", "pick": LOWEST, "hue": "method", "where": {"method": ["other", "smooth"]}}
     figure = drawn(both, [panel], 1, tmp_path)
     legend = [text.get_text() for text in figure.legends[0].get_texts()]
-    expected = ["other", "smooth (quadratic pieces)", "shortest path possible", "start", "target"]
+    expected = ["other", "smooth (quadratic pieces)", "exact shortest path", "start", "target"]
     assert [text for text in legend if "cell" not in text] == expected
     length = found.runs["length"].iloc[1]
     wanted = f"length (unit): other {round(length + 1, 2):g}, smooth (quadratic pieces) {round(length, 2):g}"
@@ -477,7 +477,7 @@ def test_bars_count_feasible_runs_and_know_the_bound(tmp_path):
 
 def test_bars_without_a_bound_name_none(tmp_path):
     own = comparing_panels()[5] | {"metric": "feasible", "statistic": "share"}
-    assert "shortest path possible" not in words(drawn(comparison(), [own], 1, tmp_path))
+    assert "exact shortest path" not in words(drawn(comparison(), [own], 1, tmp_path))
 
 
 def test_bars_and_lines_keep_the_order_of_where(tmp_path):

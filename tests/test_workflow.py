@@ -132,10 +132,20 @@ EDITS = {
     "how a job is logged": ("src/bezierplan/running/log.py", "PR_SET_PDEATHSIG = 1", "PR_SET_PDEATHSIG = 1 + 0", {}),
     "a title": ("config/studies/song2016/artefacts.yaml", "title: ", "title: The same, ", {}),
     "a comment": ("src/bezierplan/planners/parts/genetic.py", "# A draw next to 1", "# Hence a draw next to 1", {}),
-    # Convergence shares code with the kind `lines`, which reads the units of metrics.
-    "a metric": ("src/bezierplan/analysis/measures.py", "FINE_SAMPLES = 4001", "FINE_SAMPLES = 4002", TABLES | {"figure figure4": 1}),
-    "a kind of figure": ("src/bezierplan/figures/panels/convergence.py", "return", "0\n    return", {"figure figure4": 1}),
-    "a setting of one method": (EXPERIMENTS, "samples: 701", "samples: 1401", runs(2, ["nonsmooth"]) | TABLES),
+    # Paths and convergence share code with the kind `lines`, which reads the units of metrics.
+    "a metric": (
+        "src/bezierplan/analysis/measures.py",
+        "FINE_SAMPLES = 4001",
+        "FINE_SAMPLES = 4002",
+        TABLES | {"figure figure3": 1, "figure figure4": 1, "figure figure5": 1},
+    ),
+    "a kind of figure": (
+        "src/bezierplan/figures/panels/convergence.py",
+        "from __future__ import annotations",
+        "from __future__ import annotations\n\nNEW = 1",
+        {"figure figure4": 1},
+    ),
+    "a setting of one method": (EXPERIMENTS, "samples: 701}", "samples: 701, population: 202}", runs(2, ["nonsmooth"]) | TABLES),
     "a setting of all methods": (EXPERIMENTS, "penalty: 10.0", "penalty: 11.0", runs(2, GENETIC) | ARTEFACTS_OF_RUNS),
     "a published number": ("config/studies/song2016/published/table1.csv", "225.4982", "225.5982", OF_PUBLISHED),
     "a map": (
@@ -147,7 +157,7 @@ EDITS = {
     "the seed rule": (EXPERIMENTS, "    repeats: {smoke", "    seeds: shared\n    repeats: {smoke", runs(2) | ARTEFACTS_OF_RUNS),
     "more repeats": (EXPERIMENTS, "full: 4,", "full: 6,", runs(1) | ARTEFACTS_OF_RUNS),
     "fewer repeats": (EXPERIMENTS, "full: 4,", "full: 3,", ARTEFACTS_OF_RUNS),
-    "a label": ("config/studies/song2016/artefacts.yaml", "0_15: 0 to 15", "0_15: from 0 to 15", OF_LABELS),
+    "a label": ("config/studies/song2016/artefacts.yaml", "0_15: 0 to 15", "0_15: from 0 to 15", OF_LABELS | {"claims": 1}),
     "a claim": ("config/studies/song2016/claims.yaml", "margin: 0.1,", "margin: 0.2,", {"claims": 1, "summary": 1}),
     "an alternative": ("config/studies/song2016/assumptions.yaml", "[20, 50, 101, 401]", "[20, 50, 401]", {}),
 }

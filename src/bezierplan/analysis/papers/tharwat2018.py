@@ -226,7 +226,7 @@ def best_curves(workspace: Workspace) -> pd.DataFrame:
     problem = Problem("", workspace, START, TARGET)
     numbers = range(1, MOST_POINTS + 1)
     rows = [("best Bezier curve found", n, best_curve(problem, n, SAMPLES)[0]) for n in numbers]
-    rows += [("shortest path possible", n, shortest_paths.shortest_path(problem).length) for n in numbers]
+    rows += [("exact shortest path", n, shortest_paths.shortest_path(problem).length) for n in numbers]
     return pd.DataFrame(rows, columns=["path", "control_points", "length"])
 
 

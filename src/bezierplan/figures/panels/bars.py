@@ -80,7 +80,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     if sum(map(len, names)) > _ONE_LINE:
         names = [name.replace(" ", "\n") for name in names]
     axes.set_xticks(range(len(groups)), names)
-    axes.tick_params(axis="x", length=0, pad=32 if panel.get("below") != "count" else 14)  # below what stands under the bars
+    axes.tick_params(axis="x", length=0, pad=32 if panel.get("below") != "count" else 18)  # below what stands under the bars
     axes.set_xlabel(style.column_name(x, scene.labels))
     axes.set_ylabel(axis_label(panel["metric"], scene, panel.get("statistic", "mean")))
     axes.grid(visible=True, axis="y")
@@ -92,9 +92,9 @@ def _draw_bars(axes: Axes, frame: pd.DataFrame, at: np.ndarray, width: float, co
     axes.bar(at, frame["value"], width, zorder=2, **look)
     if frame["bound"].notna().any():
         ends = at - width / 2, at + width / 2
-        axes.hlines(frame["bound"], *ends, label="shortest path possible", zorder=4, **style.BOUND)
+        axes.hlines(frame["bound"], *ends, label="exact shortest path", zorder=4, **style.BOUND)
     axes.vlines(at, frame["low95"], frame["high95"], color=style.BLACK, linewidth=0.8, zorder=3, label="95 % interval")
     for place, runs, feasible in zip(at, frame["runs"], frame["feasible_runs"]):
         below = {"xycoords": ("data", "axes fraction"), "xytext": (0, -2), "textcoords": "offset points"}
         text = f"{feasible:g}" if counted == "count" else f"{100 * feasible / runs:.0f} %"
-        axes.annotate(text, (place, 0), rotation=0 if counted == "count" else 90, ha="center", va="top", **below)
+        axes.annotate(text, (place, 0), rotation=90, ha="center", va="top", **below)

@@ -107,7 +107,7 @@ def constants(runs: pd.DataFrame) -> dict[str, Any]:
 # Lines that stand beside what is found: the exact shortest length, and the best known path of the methods' own kind.
 LIMITS = {
     "reference": {**style.REFERENCE, "label": "best known path of the same kind"},
-    "bound": {**style.BOUND, "label": "shortest path possible"},
+    "bound": {**style.BOUND, "label": "exact shortest path"},
 }
 
 

@@ -1,4 +1,4 @@
-"""A path with its control points: of one picked run, in its workspace beside the shortest path possible, or one that is given.
+"""A path with its control points: of one picked run, in its workspace beside the exact shortest path, or one that is given.
 
 Or several paths in one workspace, a picked run for each value of a column.
 """
@@ -56,7 +56,7 @@ _LOOK = {
         "zorder": 5.5,
     },
     "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull of the control points", "zorder": 2},
-    "bound": {**style.BOUND, "label": "shortest path possible", "zorder": 4},
+    "bound": {**style.BOUND, "label": "exact shortest path", "zorder": 4},
     "optimum": {"color": style.BLACK, "linestyle": (0, (5, 1.5)), "linewidth": 0.9, "label": "shortest from cell to cell", "zorder": 4},
     "collision": {"color": style.BLACK, "linestyle": "", "marker": "X", "markersize": 8, "label": "first collision", "zorder": 6},
     "start": workspaces.START,
