@@ -193,7 +193,8 @@ def cells8(columns: np.ndarray, rows: np.ndarray) -> float:
 def polyline_length(x: np.ndarray, y: np.ndarray) -> float:
     """Length of a polyline."""
     steps = np.empty(len(x) - 1)
-    # Roots and their sum in two loops: the first one can then use vector instructions, and the order of the sum stays as written.
+    # Square roots and their sum are computed in two loops, so that the first can use vector instructions, and the order of the sum stays as
+    # written.
     for s in range(len(steps)):
         steps[s] = math.sqrt((x[s + 1] - x[s]) ** 2 + (y[s + 1] - y[s]) ** 2)
     length = 0.0

@@ -142,7 +142,7 @@ def bernstein(degree: int, t: np.ndarray) -> np.ndarray:
 def sample_parameters(pieces: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
     """Piece (samples,) and parameter within it (samples,) of values that are uniform over a whole curve, both ends included.
 
-    Joints are met exactly: the parameters are quotients of whole numbers.
+    Joints are met exactly: the parameters are quotients of integers.
     """
     steps = np.arange(samples) * pieces
     piece = np.minimum(steps // (samples - 1), pieces - 1)

@@ -23,7 +23,7 @@ _MOST_DRAWS = 10_000
 
 
 def check(settings: dict) -> None:
-    """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
+    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     check_pairs(settings["population"])
 
 
@@ -43,9 +43,9 @@ def plan(
     mutation_probability: Annotated[float, Range(0, 1)],
     elitism: Annotated[int, Range(0, 1)],
 ) -> Plan:
-    """Shortest path over the 8-connected lattice of a grid; its objective is its length in units, infinite without a path.
+    """Shortest path over the 8-connected lattice of a grid; its objective is its length in units, infinite if there is no path.
 
-    corners: how many of the cells beside a diagonal step may be occupied. genes: free cells of a chromosome by the coding via_cells;
+    corners: how many of the two cells beside a diagonal step may be occupied. genes: free cells of a chromosome by the coding via_cells;
     initial: drawn uniformly, and then perhaps sorted by column + row. longest_join: the most cells of a path, repeated ones included;
     undecodable_length: in units, what a chromosome counts whose cells are not joined within that. crossover_probability: of a pair of
     parents, cut between two genes. mutation_probability: of a chromosome, one gene becomes a random free cell. elitism: how many of the
@@ -54,13 +54,13 @@ def plan(
     The coding rows has no use for genes, initial and undecodable_length: parents are cut in a cell that both have, and by mutation a part
     of a path is joined anew by way of a random cell.
 
-    Raises ValueError for a start or target that is in no free cell.
+    Raises ValueError if start or target is not in a free cell.
     """
     grid = problem.workspace
     places = lattice(grid, problem.start, problem.target, corners)
     starts, moves = rng.spawn(2)
     if places.start == places.target:
-        # Nothing to search: one chromosome, without a gene.
+        # No search needed: one chromosome, without a gene.
         population, generations, genes = 1, 0, 0
     if coding == "via_cells":
         free = np.flatnonzero(~places.occupied)
@@ -115,7 +115,7 @@ def _search(
     mutation_probability,
     elitism,
 ):
-    """Path (n,) of the best chromosome, of no cells if none can be decoded, and the least length so far (generations + 1,).
+    """Path (n,) of the best chromosome, of no cells if none can be decoded, and the shortest length so far (generations + 1,).
 
     cells: (population, genes + 2), with start and target. free: (n,) cells.
     """

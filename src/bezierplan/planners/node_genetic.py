@@ -76,7 +76,7 @@ class _Found(NamedTuple):
 
 
 def check(settings: dict) -> None:
-    """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
+    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     check_pairs(settings["population"])
     if settings["friction"] == 0:
         raise ValueError("friction: 0; climbing is weighed by its reciprocal, so a number above 0 is needed")
@@ -110,7 +110,7 @@ def plan(
     friction: Annotated[float, Range(0)],
     corners: Literal["open", "closed"],
 ) -> Plan:
-    """Path of least energy from cell to cell: its length, plus its climbs divided by the friction (meledje, Sections 2 and 3).
+    """Path of minimum energy from cell to cell: its length, plus its climbs divided by the friction (meledje, Sections 2 and 3).
 
     mutation: the operator, applied with mutation_probability once a path, or as often as the path has inner nodes (mutation_for). stall:
     generations without improvement after which the search stops, before `generations` are done. initial: the first population, of feasible
@@ -126,7 +126,7 @@ def plan(
     share of the optimum by which an optimal path may exceed it. corners: whether an edge through a corner of occupied cells meets them
     (closed).
 
-    The planner's own test: no edge meets an occupied cell. Extra columns: optimum, the least energy of all feasible paths from cell to
+    The planner's own test: no edge meets an occupied cell. Extra columns: optimum, the minimum energy of all feasible paths from cell to
     cell; optimal, near_optimal, infeasible, one of which is true; feasible_last, the share of feasible paths in the last population;
     made_infeasible, the share of mutated feasible paths that became infeasible; node_diversity, the mean over generations of the chance
     that an inner node of one path is no node of another. Raises ValueError if start or target is not the centre of a cell.
@@ -137,7 +137,7 @@ def plan(
     optimum = least_energy(grid, friction, corners == "closed", start, target)
     starts, moves = rng.spawn(2)
     if obstacles_met(ground, start, target) == 0:
-        # Nothing to search: a walk sees its target at once, and paths without inner nodes cannot change.
+        # No search needed: a walk sees its target at once, and paths without inner nodes cannot change.
         energy = edge_energy(ground, start, target)
         found = _Found(np.array([start, target]), energy, 0, np.array([energy]), 1, False, 1.0, math.nan, 0.0)
         stop = "direct"
@@ -199,7 +199,7 @@ def _inner(cells: np.ndarray, start: int, target: int) -> np.ndarray:
 
 
 def serves(problem: Problem) -> None:
-    """Raises ValueError, naming the end and what would be right, unless start and target are centres of cells."""
+    """Raises ValueError, naming the end and what is expected, unless start and target are centres of cells."""
     for end in ("start", "target"):
         _cell_at(problem.workspace, end, getattr(problem, end))
 

@@ -37,7 +37,7 @@ def plan(
     neighbours: Annotated[int, Range(1)],
     d_min: Annotated[float, Range(0)],
 ) -> Plan:
-    """Shortest path along a random roadmap, a polyline; its objective is its length in units, infinite without a path.
+    """Shortest path along a random roadmap, a polyline; its objective is its length in units, infinite if there is no path.
 
     nodes: random points of the free part of the field, beside start and target. links: a node is linked with every node that it sees, or
     with those that it sees of its nearest `neighbours`. d_min: added to every radius, in units; on a grid it has to be 0.

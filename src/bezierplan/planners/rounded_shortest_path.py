@@ -58,7 +58,7 @@ def plan(
     turning_radius: Annotated[float, Range(0)],
     offset: Annotated[float, Range(0)],
 ) -> Plan:
-    """The exact shortest path (`exact.bounds`), rounded; its objective is its length, in units, or infinite without a path.
+    """The exact shortest path (`exact.bounds`), rounded; its objective is its length, in units, or infinite if there is no path.
 
     turning_radius: the least that the path should have, in units; 0 leaves the corners. offset: how far the path should keep from the
     corners that it turns round, in units. Where there is no room, both are less: how much is told by the extra columns.

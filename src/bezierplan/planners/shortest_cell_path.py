@@ -17,7 +17,7 @@ deterministic = True
 
 def plan(problem: Problem, rng: np.random.Generator) -> Plan:
     """A polyline through the centres of free cells, from the cell of the start to that of the target; a step may pass between two occupied
-    cells that meet by a corner. Its objective is its length in cells, times a cell's side, or infinite without a path.
+    cells that meet by a corner. Its objective is its length in cells, times a cell's side, or infinite if there is no path.
     """
     grid = problem.workspace
     start, target = (grid.cell_of(*end) for end in (problem.start, problem.target))

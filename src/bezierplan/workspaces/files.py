@@ -37,7 +37,7 @@ MOST_CIRCLES = 10_000
 def load(description: dict, folder: Path) -> Workspace:
     """The workspace of a description; its file is sought in a folder.
 
-    Raises ValueError, naming the file or the key and what would be right.
+    Raises ValueError, naming the file or the key and what is expected.
     """
     kind, unit = description["kind"], description["unit"]
     if kind == "circles":
@@ -71,7 +71,7 @@ def sources(description: dict, folder: Path) -> list[Path]:
 
 
 def scenario(description: dict, number: int, workspace: Grid, folder: Path) -> moving_ai.Scenario:
-    """A numbered scenario of a workspace of kind `moving_ai`. Raises ValueError, naming the file and what would be right."""
+    """A numbered scenario of a workspace of kind `moving_ai`. Raises ValueError, naming the file and what is expected."""
     if "scenarios" not in description:
         raise ValueError(f"scenario: {number}: the workspace has no scenarios; expected a .scen file there")
     with _naming(description["scenarios"]):

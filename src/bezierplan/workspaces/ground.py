@@ -1,7 +1,7 @@
 """What a grid's ground is to paths from cell to cell: which edges meet obstacles, what they cost, and the cheapest path (meledje).
 
 An edge is the straight way between the centres of two cells. It meets a cell if it passes through its interior; touching a side or a corner
-does not count, unless corners are closed. This is decided in whole numbers.
+does not count, unless corners are closed. This is decided in integers.
 
 Lengths, heights and energies are in cells. Of a map with few cells all edges are measured once, of a larger one when they are asked for;
 the numbers are the same to the last bit.
@@ -142,7 +142,9 @@ def _least_energy(key: tuple, start: int, target: int) -> float:
 
 
 def cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.ndarray]:
-    """Least energy, in cells, of a path from cell to cell that meets no obstacle, and its cells; infinite and none without such a path."""
+    """Minimum energy, in cells, of a path from cell to cell that meets no obstacle, and its cells; infinite and none without such a
+    path.
+    """
     energy, before = _cheapest(ground, start, target)
     if math.isinf(energy):
         return energy, np.empty(0, dtype=np.int64)
@@ -154,7 +156,7 @@ def cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.ndarray
 
 @njit(cache=True)
 def _cheapest(ground, start, target):
-    """Least energy from start to target, and the cell before each cell on its way, by A* with the straight distance.
+    """Minimum energy from start to target, and the cell before each cell on its way, by A* with the straight distance.
 
     An edge is looked at only if it would be a gain: of a large map few are.
     """

@@ -44,7 +44,7 @@ def field(description: dict, problem: dict, name: str) -> Grid:
 
 
 def _centres(rng: np.random.Generator, count: int, side: float, ends: np.ndarray, least: float) -> np.ndarray:
-    """Centres (count, 2), none of them nearer to an end than the least distance."""
+    """Centres (count, 2), none of them nearer to an end than the minimum distance."""
     centres = np.empty((count, 2))
     for i in range(count):
         for _ in range(MOST_DRAWS):

@@ -29,7 +29,7 @@ def read(file: Path, unit: str, robot_radius: float = 0.0, most_pixels: int = MO
 
     robot_radius: in units; cells whose centre lies nearer than that to the centre of an occupied cell count as occupied too.
 
-    Raises ValueError, naming the key and what would be right.
+    Raises ValueError, naming the key and what is expected.
     """
     content = _content(file)
     resolution = content["resolution"]

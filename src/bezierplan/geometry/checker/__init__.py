@@ -30,8 +30,8 @@ class Check(NamedTuple):
     """The verdict on a path.
 
     feasible: it does not enter the blocked region. collision_at: number of the piece plus parameter in it of the first collision; nan when
-    free. depth: largest depth in the blocked region, in units; 0 when free, and where a path cuts a closed corner. Depth is the distance
-    to free space; where discs overlap or reach over the border it is the largest of their depths, a lower bound. clearance: least distance
+    free. depth: largest depth in the blocked region, in units; 0 when free, and where a path cuts a closed corner. Depth is the distance to
+    free space; where discs overlap or reach over the border it is the largest of their depths, a lower bound. clearance: minimum distance
     to the blocked region, in units; 0 when colliding. tolerance: proven error, in units, of `clearance` when free, of `depth` when
     colliding. intervals: how many parameter intervals the verdict needed.
     """

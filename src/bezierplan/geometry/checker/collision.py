@@ -15,7 +15,7 @@ _SHORTEST_INTERVAL = 1e-11
 
 @njit(cache=True)
 def first_collision(pieces: np.ndarray, region: Region) -> tuple[float, int]:
-    """Piece number plus parameter of the first collision (infinite without one), and the number of intervals examined.
+    """Piece number plus parameter of the first collision (infinite if there is none), and the number of intervals examined.
 
     Depth first, left half first: what lies before the interval in hand is certified free.
     """

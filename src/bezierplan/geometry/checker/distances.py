@@ -38,9 +38,9 @@ def largest_depth(pieces: np.ndarray, region: Region, collision_at: float) -> fl
 
 @njit(cache=True)
 def least_clearance(pieces: np.ndarray, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> float:
-    """Least distance of a free path to edges (n, 4) and discs, to `CLEARANCE_TOLERANCE`, by branch and bound.
+    """Minimum distance of a free path to edges (n, 4) and discs, to `CLEARANCE_TOLERANCE`, by branch and bound.
 
-    An edge is no nearer to the curve than to its chord, less what the curve may leave its chord by. Obstacles farther away than the least
+    An edge is no nearer to the curve than to its chord, less what the curve may leave its chord by. Obstacles farther away than the minimum
     distance found are dropped for both halves: they change places with others, behind the number that the halves look at.
     """
     stack = np.empty((STACK, pieces.shape[1], 2))
@@ -73,7 +73,7 @@ def least_clearance(pieces: np.ndarray, edges: np.ndarray, centres: np.ndarray, 
 
 @njit(cache=True)
 def _clearance_of_point(x: float, y: float, obstacles: np.ndarray, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> float:
-    """Least distance of a point to some of the obstacles: numbers of edges, and after them of discs."""
+    """Minimum distance of a point to some of the obstacles: numbers of edges, and after them of discs."""
     least = math.inf
     for obstacle in obstacles:
         disc = obstacle - len(edges)

@@ -1,4 +1,4 @@
-"""Shortest paths on grids: visibility between corners of cells, or between their centres, in whole numbers."""
+"""Shortest paths on grids: visibility between corners of cells, or between their centres, in integers."""
 
 import math
 from fractions import Fraction
@@ -15,7 +15,7 @@ from bezierplan.workspaces.problem import Problem
 # A graph has an entry for every pair of nodes; with more nodes than this a search that keeps no pairs takes its place.
 MOST_NODES = 5000
 
-# Start and target are put on a lattice of at most this many points a cell, so that visibility is decided with whole numbers.
+# Start and target are put on a lattice of at most this many points a cell, so that visibility is decided with integers.
 _FINEST_LATTICE = 2**20
 
 # Products of two coordinates of the lattice must fit in 64 bits.
@@ -137,7 +137,7 @@ def _least_over_cells(problem: Problem) -> float:
 def _search_grid(points, lattice, slopes, cells, scale, most):
     """The nodes of a shortest path from node 0 to node 1 by the algorithm A*, none without a path; pairs are tested when they matter.
 
-    points: (n, 2) in cells, lattice: (n, 2) the same in whole numbers. most: in cells, a length that the path does not exceed.
+    points: (n, 2) in cells, lattice: (n, 2) the same in integers. most: in cells, a length that the path does not exceed.
     """
     ahead = np.hypot(points[:, 0] - points[1, 0], points[:, 1] - points[1, 1])
     length = np.full(len(points), np.inf)
@@ -173,7 +173,7 @@ def _visible_on_grid(
 ) -> np.ndarray:
     """Which pairs i < j of nodes can follow each other on a shortest path: bool (n, n).
 
-    nodes: (n, 2) whole numbers, `scale` a cell. cells: occupied cells with a ring around them.
+    nodes: (n, 2) integers, `scale` a cell. cells: occupied cells with a ring around them.
     """
     visible = np.zeros((len(nodes), len(nodes)), dtype=np.bool_)
     for i in range(len(nodes)):

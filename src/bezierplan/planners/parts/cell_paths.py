@@ -1,7 +1,7 @@
 """Operators on paths over a lattice of cells, and a genetic algorithm of them.
 
 A path is an array (n,) of numbers of cells, each a neighbour of the one before on a lattice (`workspaces.lattice.Lattice`). `marks` is
-scratch (cells,) of whole numbers: all 0 when an operator begins, and when it ends.
+scratch (cells,) of integers: all 0 when an operator begins, and when it ends.
 """
 
 from typing import NamedTuple
@@ -35,7 +35,7 @@ class Rules(NamedTuple):
 
 @njit(cache=True)
 def evolve(rng, lattice, paths, sizes, generations, rules):
-    """The shortest path (n,) found by a genetic algorithm from some paths, and the least length so far (generations + 1,).
+    """The shortest path (n,) found by a genetic algorithm from some paths, and the shortest length so far (generations + 1,).
 
     paths: (population, longest path) with sizes: (population,); overwritten. A child that would be longer stays a copy of its parent.
     """
@@ -319,5 +319,5 @@ def forage(rng, lattice, cell, target, tries, visited):
 
 @njit(cache=True)
 def distance_square(lattice, one, other):
-    """Square of the distance between the centres of two cells, a whole number."""
+    """Square of the distance between the centres of two cells, an integer."""
     return (lattice.row[one] - lattice.row[other]) ** 2 + (lattice.column[one] - lattice.column[other]) ** 2

@@ -1,4 +1,4 @@
-"""Genetic operators on chromosomes of whole-number genes, each gene a number of `bits` bits, most significant bit first.
+"""Genetic operators on chromosomes of integer genes, each gene a number of `bits` bits, most significant bit first.
 
 A chromosome (genes,) is one bit string in the order of its genes. Functions that change a chromosome say so; no function keeps state.
 """
@@ -8,7 +8,7 @@ from numba import njit
 
 
 def check_pairs(population: int) -> None:
-    """Raise ValueError, naming the setting and what would be right, for a population that cannot be crossed in pairs."""
+    """Raise ValueError, naming the setting and what is expected, for a population that cannot be crossed in pairs."""
     if population % 2:
         raise ValueError(f"population: {population}; parents are crossed in pairs, so an even number is needed")
 
