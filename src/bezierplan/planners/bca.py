@@ -29,8 +29,8 @@ Mutation = Literal["bit_flip", "cell", "per_gene"]
 _LENGTH, _REPAIRED, _LITERAL_WEIGHTS, _HARD_SAFETY, _RECIPROCAL_LITERAL, _AS_PRINTED = range(6)
 _BIT_FLIP, _CELL, _PER_GENE = range(3)
 
-# Number of times a bit is drawn until the flipped gene is a free cell, after which the gene stays as it is; and number of times a
-# chromosome is drawn until its curve is free.
+# Maximum number of draws of a bit until the flipped gene is a free cell (after that, the gene stays as it is), and of a chromosome until
+# its curve is free.
 _FLIP_TRIES = 50
 _FEASIBLE_TRIES = 200
 # If a chord crosses two grid lines at parameters that differ by less than this, it crosses them at their common corner.

@@ -128,7 +128,7 @@ def _ref21(rng, path, ground, rules):
 
 @njit(cache=True)
 def _towards(start, cell, target, columns, same_signs):
-    """Whether the direction from a cell to the target agrees with that from the start to the cell."""
+    """Whether the direction from a cell to the target agrees with that from the start to the target."""
     across, up = target % columns - cell % columns, target // columns - cell // columns
     whole_across, whole_up = target % columns - start % columns, target // columns - start // columns
     if same_signs:
