@@ -121,8 +121,9 @@ def _lattice(points: np.ndarray, finest: int) -> int:
 
 
 def _least_over_cells(problem: Problem) -> float:
-    """Length in cells of the shortest way over the centres of free cells, start and target joined to those of their own cells: no shortest
-    path is longer. Infinite without one, for then there is no path at all; but not if start or target lies on an occupied cell's side.
+    """Length in cells of the shortest path over the centres of free cells, with start and target joined to the centres of their own cells:
+    an upper bound of the shortest path. Infinite if there is none, since then there is no path at all; the largest float if start or target
+    lies on the side of an occupied cell.
     """
     grid = problem.workspace
     start, target = (grid.cell_of(*end) for end in (problem.start, problem.target))
