@@ -1,1 +1,1 @@
-"""Exact geometry: curves, the blocked region, the certified check of paths, exact shortest paths, lengths that count cells."""
+"""Exact geometry: curves, the blocked region, the certified check of paths, exact shortest paths, cell-counting lengths."""

@@ -1,8 +1,8 @@
 """The cells that a path touches, and lengths that count cells: 1 for a straight step, 1.5 for a diagonal one (elhoseny2017, Section 4.6).
 
 The paper does not say which cells of a curve it counts. `cells4` counts every cell that the curve touches: a free diagonal of N cells costs
-1.5 N, every other curve that is monotone in x and y costs about 2 N. `cells8` leaves out the corner cells of that sequence, as pictures of
-lines usually do.
+1.5 N, any other curve that is monotone in x and y about 2 N. `cells8` leaves out the corner cells of that sequence, as line rasterisation
+usually does.
 
 In the kernels coordinates are in cells from the grid's lower left corner (`Grid.in_cells`): cell i reaches from i to i + 1.
 """
@@ -19,22 +19,23 @@ from bezierplan.workspaces.problem import Path
 STRAIGHT = 1.0
 DIAGONAL = 1.5
 
-# A coordinate this near to a grid line, in cells, keeps the cell of the sample before it. Otherwise rounding would decide, and the two
-# diagonals of one field would differ in length.
+# A coordinate this close to a grid line, in cells, keeps the cell of the previous sample. Otherwise rounding would decide, and the two
+# diagonals of a field would differ in length.
 _ON_LINE = 1e-9
 
-# Two grid lines that a segment crosses at parameters this near are crossed in their corner.
+# Two grid lines that a segment crosses at parameters this close are crossed at their corner.
 _IN_CORNER = 1e-6
 
-# A path of cells goes through their centres, this near.
+# A path of cells passes this close to their centres.
 _CENTRE = 1e-9
 
 
 @njit(cache=True)
 def parts(points: np.ndarray) -> int:
-    """Number of equal parts of a Bezier piece's parameter (degree + 1, 2), in cells, between whose ends it moves less than one cell.
+    """Number of equal parameter intervals over each of which a Bezier piece (degree + 1, 2), in cells, moves less than one cell.
 
-    A straight piece has parts of at most half a cell. The speed of a curve is at most its degree times the longest leg of its polygon.
+    The parts of a straight piece are at most half a cell long. The speed of a curve is at most its degree times the longest leg of its
+    polygon.
     """
     degree = len(points) - 1
     total = longest = 0.0
@@ -49,7 +50,7 @@ def parts(points: np.ndarray) -> int:
 
 @njit(cache=True)
 def sample(points: np.ndarray, last: int, stride: int) -> tuple[np.ndarray, np.ndarray]:
-    """x and y of a Bezier piece (degree + 1, 2) at the parameters 0, stride / last, 2 stride / last, ..., and at 1 if the stride is 1.
+    """x and y of a Bezier piece (degree + 1, 2) at the parameters 0, stride / last, 2 stride / last, ..., including 1 if the stride is 1.
 
     Horner's rule in Bernstein form, all weights positive, for all samples at once.
     """
@@ -74,7 +75,7 @@ def sample(points: np.ndarray, last: int, stride: int) -> tuple[np.ndarray, np.n
 
 @njit(cache=True)
 def _cell(coordinate: float, before: int) -> int:
-    """Column or row of a coordinate; on a grid line that of the sample before, if it lies beside the line."""
+    """Column or row of a coordinate; on a grid line that of the previous sample, if it is next to the line."""
     line = math.floor(coordinate + 0.5)
     if abs(coordinate - line) <= _ON_LINE and (before == line or before == line - 1):
         return before
@@ -83,9 +84,9 @@ def _cell(coordinate: float, before: int) -> int:
 
 @njit(cache=True)
 def touched_cells(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Columns and rows of the cells that a polyline touches, in order; its vertices are less than a cell apart.
+    """Columns and rows of the cells that a polyline touches, in order; consecutive vertices are less than a cell apart.
 
-    Through a corner of cells, and only there, a step is diagonal.
+    A step is diagonal only where the polyline passes through a corner of cells.
     """
     columns = np.empty(2 * len(x), dtype=np.int64)
     rows = np.empty(2 * len(x), dtype=np.int64)
@@ -111,7 +112,7 @@ def touched_cells(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 @njit(cache=True)
 def occupied_cells(columns: np.ndarray, rows: np.ndarray, occupied: np.ndarray) -> int:
-    """How many cells of a sequence are occupied, cells outside the grid as well; `occupied` is bool (rows, columns)."""
+    """Number of cells of a sequence that are occupied or outside the grid; `occupied` is bool (rows, columns)."""
     count = 0
     for i in range(len(columns)):
         inside = 0 <= rows[i] < occupied.shape[0] and 0 <= columns[i] < occupied.shape[1]
@@ -121,10 +122,10 @@ def occupied_cells(columns: np.ndarray, rows: np.ndarray, occupied: np.ndarray) 
 
 @njit(cache=True)
 def is_free_leg(occupied: np.ndarray, x0: float, y0: float, x1: float, y1: float) -> bool:
-    """Whether all cells that a straight leg touches are free; cells outside the grid are not.
+    """Whether all cells that a straight leg touches are free; cells outside the grid are not free.
 
-    These are the cells of `touched_cells`, found without samples: from grid line to grid line. A leg goes through a corner if it passes so
-    near that no sample could tell, so none is free here that is not free there.
+    These are the cells of `touched_cells`, found without samples: from grid line to grid line. A leg counts as passing through a corner if
+    it comes so close that no sample could tell the difference, so no leg is free here that is not free there.
     """
     rows, columns = occupied.shape
     column, row = math.floor(x0), math.floor(y0)
@@ -135,7 +136,7 @@ def is_free_leg(occupied: np.ndarray, x0: float, y0: float, x1: float, y1: float
         return False
     width, height = abs(x1 - x0), abs(y1 - y0)
     right, up = x1 > x0, y1 > y0
-    # Ways to the next grid lines, as far as x and y go.
+    # Distances to the next grid lines along x and y.
     to_x = column + 1 - x0 if right else x0 - column
     to_y = row + 1 - y0 if up else y0 - row
     in_corner = _ON_LINE * min(width, height)
@@ -155,7 +156,7 @@ def is_free_leg(occupied: np.ndarray, x0: float, y0: float, x1: float, y1: float
 
 @njit(cache=True)
 def _last_cell(first: float, last: float) -> int:
-    """Column or row in which a leg ends; the one before, if it ends on a grid line."""
+    """Column or row in which a leg ends; the previous one if it ends on a grid line."""
     if last > first:
         return max(math.floor(first), math.ceil(last - _ON_LINE) - 1)
     return min(math.floor(first), math.floor(last + _ON_LINE))
@@ -173,7 +174,7 @@ def cells4(columns: np.ndarray, rows: np.ndarray) -> float:
 
 @njit(cache=True)
 def cells8(columns: np.ndarray, rows: np.ndarray) -> float:
-    """Length of a sequence of cells in which two straight steps that make a diagonal one are replaced by it, from the begin on."""
+    """Length of a sequence of cells in which two straight steps that form a diagonal one are replaced by it, from the beginning onwards."""
     length = 0.0
     i = 0
     while i < len(columns) - 1:
@@ -193,7 +194,8 @@ def cells8(columns: np.ndarray, rows: np.ndarray) -> float:
 def polyline_length(x: np.ndarray, y: np.ndarray) -> float:
     """Length of a polyline."""
     steps = np.empty(len(x) - 1)
-    # Roots and their sum in two loops: the first one can then use vector instructions, and the order of the sum stays as written.
+    # Square roots and their sum are computed in two loops, so that the first can use vector instructions, and the order of the sum stays as
+    # written.
     for s in range(len(steps)):
         steps[s] = math.sqrt((x[s + 1] - x[s]) ** 2 + (y[s + 1] - y[s]) ** 2)
     length = 0.0
@@ -220,7 +222,7 @@ def length4(path: Path, grid: Grid) -> float:
 
 
 def length8(path: Path, grid: Grid) -> float:
-    """`cells8` of a path, in units. A path that goes from centre to centre of neighbouring cells is measured on these as they are.
+    """`cells8` of a path, in units. A path that runs from centre to centre of neighbouring cells is measured on exactly these cells.
 
     >>> from bezierplan.workspaces.grid import from_lines
     >>> field = from_lines(["...", "..."], cell=1.0, unit="m")
@@ -232,7 +234,7 @@ def length8(path: Path, grid: Grid) -> float:
 
 
 def _is_cell_path(path: Path, grid: Grid) -> bool:
-    """Whether a path is a polyline through centres of cells, with legs along rows, columns and diagonals."""
+    """Whether a path is a polyline through centres of cells, whose legs run along rows, columns and diagonals."""
     if path.curve != "polyline":
         return False
     points = grid.in_cells(path.points) - 0.5

@@ -1,14 +1,14 @@
 """Every curve kind as one linear map from control points to Bezier pieces; samples, exact length, curvature.
 
-Four kinds are clamped uniform B-splines of n control points and differ in degree only: `polyline` (1), `piecewise_quadratic` (2),
+Four kinds are clamped uniform B-splines of n control points and differ only in degree: `polyline` (1), `piecewise_quadratic` (2),
 `piecewise_cubic` (3), and `bezier` (n - 1, which has one piece). A piece of a B-spline is a Bezier curve whose control points are values of
 the spline's blossom (its polar form).
 
 Two kinds pass through their points. `spline` is the cubic spline through all of them at uniform parameters, with not-a-knot ends.
-`ferguson` is a chain of cubic Hermite pieces (tharwat2018's reference 33); its control points are pairs of a point and the tangent in it,
-the derivative by a piece's own parameter: P0, T0, V, TV, ..., P1, T1.
+`ferguson` is a chain of cubic Hermite pieces (tharwat2018's reference 33); its control points are pairs of a point and its tangent, the
+derivative with respect to the piece's own parameter: P0, T0, V, TV, ..., P1, T1.
 
-A `cubic_chain` is any chain of cubic Bezier pieces, each beginning where the last one ends: 3 k + 1 control points for k pieces.
+A `cubic_chain` is any chain of cubic Bezier pieces, each beginning where the previous one ends: 3 k + 1 control points for k pieces.
 """
 
 import math
@@ -23,8 +23,8 @@ _DEGREE = {"polyline": 1, "piecewise_quadratic": 2, "piecewise_cubic": 3, "bezie
 B_SPLINES = tuple(_DEGREE)
 CURVES = (*B_SPLINES, "spline", "ferguson", "cubic_chain")
 
-# Below this share of the curve's highest speed a point counts as standing still: repeated control points do that, and curvature is not
-# defined there.
+# Below this share of the curve's highest speed a point counts as standing still, as happens with repeated control points; curvature is
+# undefined there.
 STANDSTILL = 1e-3
 
 _NODES_8, _WEIGHTS_8 = np.polynomial.legendre.leggauss(8)
@@ -32,7 +32,7 @@ _NODES_16, _WEIGHTS_16 = np.polynomial.legendre.leggauss(16)
 
 
 def least_points(curve: str) -> int:
-    """Fewest control points that a curve kind can have, start and target included."""
+    """Minimum number of control points of a curve kind, including start and target."""
     if curve in ("ferguson", "cubic_chain"):
         return 4
     return max(2, (_DEGREE.get(curve) or 1) + 1)
@@ -44,7 +44,7 @@ def ends(curve: str) -> tuple[int, int]:
 
 
 def _blossom(knots: np.ndarray, span: int, arguments: np.ndarray) -> np.ndarray:
-    """Weights (degree + 1,) of the control points span - degree .. span in the value of a spline's blossom at `degree` arguments."""
+    """Weights (degree + 1,) of the control points span - degree .. span in a spline's blossom at `degree` arguments."""
     degree = len(arguments)
     rows = np.eye(degree + 1)
     for level, u in enumerate(arguments, start=1):
@@ -60,8 +60,8 @@ def _blossom(knots: np.ndarray, span: int, arguments: np.ndarray) -> np.ndarray:
 def piece_matrix(curve: str, points: int) -> np.ndarray:
     """The linear map from control points to Bezier pieces: (pieces, degree + 1, points). Read-only.
 
-    Raises ValueError for an unknown kind, for too few control points, for an odd number of those of a `ferguson` curve, and for a number of
-    those of a `cubic_chain` that is not 3 k + 1.
+    Raises ValueError for an unknown kind, for too few control points, for an odd number of control points of a `ferguson` curve, and for a
+    number other than 3 k + 1 of a `cubic_chain`.
     """
     if curve not in CURVES:
         raise ValueError(f"unknown curve {curve!r}; known: {', '.join(CURVES)}")
@@ -93,14 +93,14 @@ def _b_spline_pieces(degree: int, points: int) -> np.ndarray:
 def _spline_pieces(points: int) -> np.ndarray:
     from scipy.interpolate import CubicSpline
 
-    # Two and three points leave the line and the parabola through them.
+    # With two or three points these are the line or the parabola through them.
     at = np.arange(float(points))
     slopes = CubicSpline(at, np.eye(points), bc_type="not-a-knot")(at, nu=1)
     return _hermite_pieces(np.eye(points), slopes)
 
 
 def _chained(points: int) -> np.ndarray:
-    """Which of the control points of a `cubic_chain` each of its pieces has: (pieces, 4)."""
+    """Indices of the control points of each piece of a `cubic_chain`: (pieces, 4)."""
     if points % 3 != 1:
         raise ValueError(f"a curve of kind cubic_chain needs 3 k + 1 control points, not {points}")
     return np.arange(0, points - 1, 3)[:, None] + np.arange(4)
@@ -114,12 +114,12 @@ def _ferguson_pieces(points: int) -> np.ndarray:
 
 
 def _hermite_pieces(values: np.ndarray, slopes: np.ndarray) -> np.ndarray:
-    """Cubic pieces between consecutive values (n, points) with the slopes (n, points) in them, by the parameter of a piece."""
+    """Cubic pieces between consecutive values (n, points) with the slopes (n, points) there, with respect to the parameter of a piece."""
     return np.stack([values[:-1], values[:-1] + slopes[:-1] / 3, values[1:] - slopes[1:] / 3, values[1:]], axis=1)
 
 
 def bezier_pieces(path: Path) -> np.ndarray:
-    """The path as Bezier pieces (pieces, degree + 1, 2), in its unit, each piece beginning where the last one ends.
+    """The path as Bezier pieces (pieces, degree + 1, 2), in its unit, each piece beginning where the previous one ends.
 
     A quadratic B-spline has a joint in the middle of each inner leg of its control polygon:
 
@@ -128,7 +128,7 @@ def bezier_pieces(path: Path) -> np.ndarray:
     [[[0.0, 0.0], [1.0, 2.0], [2.0, 2.0]], [[2.0, 2.0], [3.0, 2.0], [4.0, 0.0]]]
     """
     if path.curve == "cubic_chain":
-        return path.points[_chained(len(path.points))]  # without a matrix that grows with the square of the pieces
+        return path.points[_chained(len(path.points))]  # avoids a matrix that grows with the square of the number of pieces
     return piece_matrix(path.curve, len(path.points)) @ path.points
 
 
@@ -140,9 +140,9 @@ def bernstein(degree: int, t: np.ndarray) -> np.ndarray:
 
 
 def sample_parameters(pieces: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
-    """Piece (samples,) and parameter within it (samples,) of values that are uniform over a whole curve, both ends included.
+    """Piece (samples,) and parameter within it (samples,) for parameters that are uniform over a whole curve, both ends included.
 
-    Joints are met exactly: the parameters are quotients of whole numbers.
+    Joints are hit exactly: the parameters are quotients of integers.
     """
     steps = np.arange(samples) * pieces
     piece = np.minimum(steps // (samples - 1), pieces - 1)
@@ -160,7 +160,7 @@ def sample_matrix(curve: str, points: int, samples: int) -> np.ndarray:
 
 
 def point_at(path: Path, at: float) -> np.ndarray:
-    """The point (2,) of a path at a piece's number plus the parameter in the piece, in the path's unit."""
+    """The point (2,) of a path at a piece's number plus the parameter within the piece, in the path's unit."""
     pieces = bezier_pieces(path)
     piece = min(int(at), len(pieces) - 1)
     return bernstein(pieces.shape[1] - 1, np.array([at - piece]))[0] @ pieces[piece]
@@ -198,7 +198,7 @@ def _integral(differences: np.ndarray, low: float, high: float, nodes: np.ndarra
 def _piece_length(piece: np.ndarray) -> float:
     """Arc length of one Bezier piece (degree + 1, 2) to a relative 1e-10, by adaptive Gauss-Legendre quadrature of its speed.
 
-    Orders 8 and 16 are compared on an interval, which is halved where they differ; a cusp only costs some twenty halvings.
+    Orders 8 and 16 are compared on each interval, which is halved if they differ; a cusp costs only about twenty halvings.
     """
     if len(piece) == 2:
         return math.hypot(piece[1, 0] - piece[0, 0], piece[1, 1] - piece[0, 1])
@@ -239,8 +239,8 @@ def length(path: Path) -> float:
 def curvature(path: Path, samples: int) -> tuple[np.ndarray, np.ndarray]:
     """Curvature along a path (song2016, eq. 5): values (samples,) in 1/unit, and the speeds (samples,) at the same parameters.
 
-    A value is not a number where the curve stands still (`STANDSTILL`). song2016's eq. 4 prints a dot over the control points of the
-    second derivative; the formula needs the points themselves.
+    The value is nan where the curve stands still (`STANDSTILL`). song2016's eq. 4 prints a dot over the control points in the second
+    derivative; the formula needs the points themselves.
     """
     pieces = bezier_pieces(path)
     piece, t = sample_parameters(len(pieces), samples)
@@ -263,9 +263,9 @@ def _curvature(pieces: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarra
 
 
 def curvature_jump(path: Path) -> float:
-    """Largest jump of curvature over the joints of a path, in 1/unit, from the end values of the pieces themselves.
+    """Largest jump in curvature across the joints of a path, in 1/unit, from the end values of the pieces.
 
-    Joints where a side stands still are left out; 0 without a joint. Infinite where the tangent turns.
+    Joints where either side stands still are left out; 0 if there are no joints, infinite where the tangent turns.
     """
     pieces = bezier_pieces(path)
     if len(pieces) == 1:

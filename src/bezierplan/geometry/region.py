@@ -1,7 +1,7 @@
-"""The blocked region of a workspace: the one description that the certified check and the exact shortest paths both read.
+"""The blocked region of a workspace: the single description shared by the certified check and the exact shortest paths.
 
 The blocked region is open: the interior of the union of all obstacles and of the outside of the border. A path may touch its boundary. The
-union comes before every test, because a path along the seam of two touching obstacles enters neither of them and still is deep inside their
+union is formed before any test, because a path along the seam of two touching obstacles enters neither of them and yet is deep inside their
 union.
 """
 
@@ -14,7 +14,8 @@ from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Workspace
 
-# Unit vectors whose cross product is at most this count as collinear: a vertex between them is rounding of the union, not a corner.
+# Unit vectors whose cross product is at most this count as collinear: a vertex between them is a rounding artefact of the union, not a
+# corner.
 COLLINEAR = 1e-12
 
 
@@ -22,12 +23,12 @@ class GridRegion(NamedTuple):
     """Occupied cells and the outside of the grid, as elements of the doubled grid.
 
     A doubled grid has an element for every cell, for every open edge between two cells, and for every vertex between four, each in its
-    place: with a ring of cells around the grid that stands for the outside, even indices are cells and odd indices are grid lines.
+    place: with a ring of cells around the grid to represent the outside, even indices are cells and odd indices are grid lines.
 
-    cell: side of a cell, in units. origin: (2,) x and y of the grid's lower left corner, in units; everything else is measured from it,
-    paths as well (`from_origin`). blocked: bool (2 rows + 3, 2 columns + 3), whether all cells that touch an element are occupied.
+    cell: side of a cell, in units. origin: (2,) x and y of the grid's lower left corner, in units; everything else, including paths, is
+    measured from it (`from_origin`). blocked: bool (2 rows + 3, 2 columns + 3), whether all cells that touch an element are occupied.
     counts: (2 rows + 4, 2 columns + 4), prefix sums of `blocked`. edges: (n, 4) boundary of the region as x, y, x, y in units, collinear
-    edges joined. contacts: (m, 3) x and y in units of the inner vertices at which two occupied cells meet only by a corner, and the sign of
+    edges joined. contacts: (m, 3) x and y in units of the inner vertices at which two occupied cells share only a corner, and the sign of
     the slope of the diagonal through their two free cells.
     """
 
@@ -55,7 +56,7 @@ class PolygonRegion(NamedTuple):
     """The union of polygons and of the outside of the border, by its boundary.
 
     edges: (n, 4) as x, y, x, y in units, directed so that free space is on the left, without collinear vertices. normals: (n, 2) unit
-    vectors to the free side. following: (n,) index of the edge that begins where an edge ends. preceding: (n,) its inverse. convex: bool
+    vectors to the free side. following: (n,) index of the edge that begins where this one ends. preceding: (n,) its inverse. convex: bool
     (n,), whether the blocked region is convex at the end of an edge.
     """
 
@@ -70,7 +71,7 @@ Region = GridRegion | CircleRegion | PolygonRegion
 
 
 def region(workspace: Workspace) -> Region:
-    """The blocked region of a workspace; of cells drawn from polygons, that of the polygons. Build it once for many paths."""
+    """The blocked region of a workspace; of cells drawn from polygons, that of the polygons. Build it once and use it for many paths."""
     if isinstance(workspace, Grid) and isinstance(workspace.drawn, Polygons):
         return _polygon_region(workspace.drawn)
     if isinstance(workspace, Grid):
@@ -81,7 +82,9 @@ def region(workspace: Workspace) -> Region:
 
 
 def blocks(region: Region, point: tuple[float, float], tolerance: float = 1e-9) -> bool:
-    """Whether a point, in units, lies in the blocked region, deeper than a tolerance. For single points: it needs no compiled code."""
+    """Whether a point, in units, lies in the blocked region, deeper than a tolerance. Meant for single points: it needs no compiled
+    code.
+    """
     if isinstance(region, GridRegion):
         column, row = (_element(value / region.cell, tolerance) for value in from_origin(np.array(point), region))
         inside = 0 <= row < region.blocked.shape[0] and 0 <= column < region.blocked.shape[1]
@@ -96,19 +99,19 @@ def blocks(region: Region, point: tuple[float, float], tolerance: float = 1e-9) 
     along = end - begin
     share = np.clip(((point - begin) * along).sum(axis=1) / (along**2).sum(axis=1), 0, 1)
     nearest = np.hypot(*(begin + share[:, None] * along - point).T).min(initial=np.inf)
-    # Free space is bounded, so a ray from a free point leaves it: it crosses the boundary an odd number of times.
+    # Free space is bounded, so a ray from a free point leaves it and crosses the boundary an odd number of times.
     across = (begin[:, 1] > y) != (end[:, 1] > y)
     crossing = begin[across, 0] + (y - begin[across, 1]) * along[across, 0] / along[across, 1]
     return nearest > tolerance and int((crossing > x).sum()) % 2 == 0
 
 
 def from_origin(points: np.ndarray, region: Region) -> np.ndarray:
-    """Points (..., 2) in units as the region measures them: on a grid from its lower left corner."""
+    """Points (..., 2) in units, in the region's own frame: on a grid, relative to its lower left corner."""
     return points - region.origin if isinstance(region, GridRegion) else points
 
 
 def _element(coordinate: float, tolerance: float) -> int:
-    """Index in the doubled grid of a coordinate in cells: of a grid line if it lies on one, else of a cell."""
+    """Index in the doubled grid of a coordinate in cells: of a grid line if it lies on one, otherwise of a cell."""
     line = round(coordinate)
     return 2 * line + 1 if abs(coordinate - line) <= tolerance else 2 * int(np.floor(coordinate)) + 2
 
@@ -121,14 +124,14 @@ def border_edges(bounds: tuple[float, float, float, float]) -> np.ndarray:
 
 
 def walled(occupied: np.ndarray) -> np.ndarray:
-    """Occupied cells with a ring of occupied cells around them, which stands for the outside: bool (rows + 2, columns + 2)."""
+    """Occupied cells with a ring of occupied cells around them that represents the outside: bool (rows + 2, columns + 2)."""
     return np.ascontiguousarray(np.pad(occupied, 1, constant_values=True))
 
 
 def occupied_around(cells: np.ndarray) -> np.ndarray:
     """Whether the cells around each inner vertex of `walled` cells are occupied: bool (4, rows + 1, columns + 1).
 
-    First below left, then below right, above left, above right. Vertex [i, j] lies at x = j and y = i, in cells.
+    In the order below left, below right, above left, above right. Vertex [i, j] lies at x = j and y = i, in cells.
     """
     return np.stack([cells[:-1, :-1], cells[:-1, 1:], cells[1:, :-1], cells[1:, 1:]])
 

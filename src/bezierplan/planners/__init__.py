@@ -5,12 +5,12 @@ A planner is a module with a function
     plan(problem, rng, *, <settings>) -> Plan
 
 whose keyword-only arguments are its settings, all without default values: annotated with `bool`, `int`, `float`, `Literal[...]`, or
-`Annotated[int, Range(...)]`. It may also have `workspaces`, the kinds of workspace that it serves; `exact = True`, if its own test of
-feasibility is meant to agree with the certified one; `keeps_best = False`, if its result can be worse than the best path that it met;
-`deterministic = True`, if it draws no random number; `check(settings)`, which raises ValueError for settings that do not fit together;
-`serves(problem)`, which raises it for a problem that it cannot plan; `track(problem, rng, **settings)`, the control points
-(iterations + 1, n, 2) of the best path after each iteration of the run that `plan` makes of the same arguments, for figures that show how
-a run came to its path.
+`Annotated[int, Range(...)]`. It may also have `workspaces`, the kinds of workspace that it supports; `exact = True`, if its own feasibility
+test is meant to agree with the certified check; `keeps_best = False`, if its result can be worse than the best path it found;
+`deterministic = True`, if it uses no random numbers; `check(settings)`, which raises ValueError for incompatible settings;
+`serves(problem)`, which raises ValueError for a problem that the planner cannot solve; `track(problem, rng, **settings)`, the control
+points (iterations + 1, n, 2) of the best path after each iteration of the run that `plan` makes with the same arguments, for figures that
+show how a run arrived at its path.
 """
 
 import importlib
@@ -32,11 +32,11 @@ __all__ = ["Path", "Plan", "Problem", "Range", "known_planners", "planner_module
 
 
 class Plan(NamedTuple):
-    """What a planner answers.
+    """What a planner returns.
 
-    path: None if it found nothing to show. objective: its own final value, in its own rule. claimed_feasible: its own test of the path.
-    evaluations: paths whose objective it asked for. history: its best objective so far after generation 0, 1, ..., (generations + 1,).
-    stop: why it ended. extra: further columns of the runs table, by name.
+    path: None if it found no path to show. objective: its final objective value, by its own definition. claimed_feasible: the result of its
+    own feasibility test. evaluations: number of paths whose objective it evaluated. history: (generations + 1,) best objective so far after
+    generation 0, 1, .... stop: why it ended. extra: additional columns of the runs table, by name.
     """
 
     path: Path | None
@@ -49,7 +49,7 @@ class Plan(NamedTuple):
 
 
 class Range(NamedTuple):
-    """Limits of a setting's value, both included."""
+    """Limits of a setting's value, both inclusive."""
 
     low: float = -math.inf
     high: float = math.inf
@@ -66,8 +66,8 @@ PLACE = ("workspace", "reference", "route", "side", "layout", "obstacles")
 
 @cache
 def planner_module(planner: str) -> ModuleType:
-    """The module of a planner: `name` is planners/name.py of this package, `folder/name.py` a file of the reader's own, which can import
-    the modules beside it, at its top.
+    """The module of a planner: `name` is planners/name.py of this package, `folder/name.py` a user's own file, which can import the modules
+    next to it at the top of the file.
 
     Raises ModuleNotFoundError or FileNotFoundError if there is none.
     """
@@ -77,12 +77,12 @@ def planner_module(planner: str) -> ModuleType:
     module = importlib.util.module_from_spec(spec)
     folder = File(planner).resolve().parent
     known = set(sys.modules)
-    sys.path.append(str(folder))  # last, so that no file of a reader hides a library
+    sys.path.append(str(folder))  # last, so that no user file shadows a library
     try:
         spec.loader.exec_module(module)
     finally:
         sys.path.remove(str(folder))
-        # Modules of the same name may lie beside the planners of another study.
+        # The planners of another study may have modules of the same name next to them.
         beside = {file.stem for file in folder.iterdir()}
         for name in [name for name in sys.modules.keys() - known if name.split(".")[0] in beside]:
             del sys.modules[name]
@@ -96,14 +96,14 @@ def known_planners() -> list[str]:
 
 @cache
 def planner_settings(module: ModuleType) -> dict[str, Any]:
-    """Settings of a planner: name -> annotation, in the order of its signature. Not to be changed."""
+    """Settings of a planner: name -> annotation, in the order of its signature. Do not modify the result."""
     hints = typing.get_type_hints(module.plan, include_extras=True)
     parameters = inspect.signature(module.plan).parameters.values()
     return {p.name: hints[p.name] for p in parameters if p.kind is inspect.Parameter.KEYWORD_ONLY}
 
 
 def setting_fault(annotation: Any, value: Any) -> str | None:
-    """What would be right instead of a setting's value, or None if the value is right."""
+    """What is expected instead of a setting's value, or None if the value is valid."""
     limits = Range()
     if type(None) in typing.get_args(annotation):
         annotation = next(part for part in typing.get_args(annotation) if part is not type(None))

@@ -1,11 +1,11 @@
-"""Artificial bee colony and evolutionary programming (ABC-EP): the colony finds a way from point to point, evolution shortens it.
+"""Artificial bee colony and evolutionary programming (ABC-EP): the colony builds a path point by point, evolution shortens it.
 
-The baseline of elhoseny2017 and tharwat2018 that is called so there (Contreras-Cruz, Ayala-Ramirez and Hernandez-Belmonte, 2015). Neither
-paper gives its parameters or operators; these are textbook ones. A colony of bees looks for the next point of the path in a square around
-the last one; points once chosen are repelled from, which leads out of dead ends. As soon as the target is in sight the path is complete.
-It is then made shorter by leaving out what is not needed, and by mutations of a population of copies.
+The baseline of that name in elhoseny2017 and tharwat2018 (Contreras-Cruz, Ayala-Ramirez and Hernandez-Belmonte, 2015). Neither paper gives
+its parameters or operators; these are textbook ones. A colony of bees searches for the next point of the path in a square around the last
+one; points already chosen repel, which leads out of dead ends. The path is complete as soon as the target is in sight. It is then shortened
+by dropping unnecessary points and by mutating a population of copies.
 
-A leg is free if no cell that it touches is occupied. Lengths and points in the kernels are in cells.
+A leg is free if it touches no occupied cell. Lengths and points in the kernels are in cells.
 """
 
 from typing import Annotated, NamedTuple
@@ -22,12 +22,12 @@ from bezierplan.workspaces.problem import Path, Problem
 workspaces = ("grid",)
 exact = True
 
-# The cost of a point that cannot be seen from the last one: above every other, and all such points are alike.
+# The cost of a point that cannot be seen from the last one: above all others, and the same for all such points.
 _UNSEEN = 1e9
 
 
 def check(settings: dict) -> None:
-    """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
+    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     shares = settings["move_share"] + settings["removal_share"]
     if shares > 1:
         raise ValueError(f"move_share: with removal_share {shares:g}; expected at most 1, the rest inserts points")
@@ -53,19 +53,20 @@ def plan(
     opponents: Annotated[int, Range(1)],
     blocked_penalty: Annotated[float, Range(0)],
 ) -> Plan:
-    """Shortest polyline found; its objective is its length in units, infinite without a path.
+    """Shortest polyline found; its objective is its length in units, infinite if there is no path.
 
-    The colony: sources, each with an employed and an onlooking bee, for so many cycles; a source that failed to improve trial_limit times
-    is drawn again. reach: half the side of the square around the last point, as a share of the workspace's smaller side. The cost of a
-    point is step_weight times its distance from the last point, plus its distance to the target, plus visited_weight times the height there
-    of cones around the points chosen so far, each as high and as wide as the reach. most_points: chosen before the search is given up.
+    The colony: sources, each with an employed and an onlooker bee, for the given number of cycles; a source that failed to improve
+    trial_limit times is redrawn. reach: half the side of the square around the last point, as a share of the workspace's smaller side. The
+    cost of a point is step_weight times its distance from the last point, plus its distance to the target, plus visited_weight times the
+    height there of cones around the points chosen so far, each as high and as wide as the reach. most_points: number of points chosen
+    before the search is abandoned.
 
-    Evolution: of a population of copies each has one child a generation, which moves an inner point (move_share) by a Gaussian step in both
-    coordinates, leaves one out (removal_share), or puts the midpoint of a leg in between. spread: standard deviation of a move, as a share
+    Evolution: each member of a population of copies has one child per generation, which moves an inner point (move_share) by a Gaussian
+    step in both coordinates, drops one (removal_share), or inserts the midpoint of a leg. spread: standard deviation of a move, as a share
     of the smaller side; insertion_spread: that of a midpoint, as a share of the spread. opponents: drawn for each of parents and children;
-    who is not worse than most of them survives. blocked_penalty: in units, for each leg that touches an occupied cell.
+    those that are not worse than most of them survive. blocked_penalty: in units, for each leg that touches an occupied cell.
 
-    Extra columns: first_length, that of the path before evolution, in units, and turns, inner points of the final one.
+    Extra columns: first_length, the length of the path before evolution, in units; turns, the number of inner points of the final path.
     """
     grid = problem.workspace
     start, target = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
@@ -122,7 +123,7 @@ class _Evolution(NamedTuple):
 
 @njit(cache=True)
 def _search(colony_rng, evolution_rng, occupied, start, target, colony, evolution):
-    """Points (points, 2) of the path, none if the colony found no way, and the shortest length so far (generations + 1,)."""
+    """Points (points, 2) of the path, empty if the colony found none, and the shortest length so far (generations + 1,)."""
     path = _first_path(colony_rng, occupied, start, target, colony)
     if len(path) == 0:
         return path, np.full(1, np.inf)
@@ -135,7 +136,9 @@ def _search(colony_rng, evolution_rng, occupied, start, target, colony, evolutio
 
 @njit(cache=True)
 def _first_path(rng, occupied, start, target, colony):
-    """A free path (points, 2), point by point until the target is in sight; none if no free point is found, or not in so many points."""
+    """A free path (points, 2), point by point until the target is in sight; empty if no free point is found or most_points do not
+    suffice.
+    """
     path = np.empty((colony.most_points + 2, 2))
     path[0] = start
     for count in range(1, colony.most_points + 2):
@@ -150,7 +153,7 @@ def _first_path(rng, occupied, start, target, colony):
 
 @njit(cache=True)
 def _next_point(rng, occupied, target, path, count, colony):
-    """Put the best point that a colony finds behind the first `count` points of a path, in place. Returns its cost."""
+    """Append the best point that a colony finds after the first `count` points of a path, in place. Returns its cost."""
     sides = np.array([occupied.shape[1], occupied.shape[0]])
     low, high = np.empty(2), np.empty(2)
     for k in range(2):
@@ -165,7 +168,7 @@ def _next_point(rng, occupied, target, path, count, colony):
         cost[i] = _cost(occupied, target, path, count, x[i], colony)
 
     for cycle in range(colony.cycles + 1):
-        # The best is remembered before a source that it came from can be drawn again.
+        # The best point is recorded before its source can be redrawn.
         for i in range(sources):
             if cost[i] < best_cost:
                 best[0], best[1] = x[i]
@@ -207,7 +210,9 @@ def _draw(rng, low, high, point):
 
 @njit(cache=True)
 def _cost(occupied, target, path, count, point, colony):
-    """What the next point costs: the way to it and from it to the target, and cones over the cells around the points chosen before."""
+    """Cost of the next point: the distance to it, the distance from it to the target, and cones over the cells around the points chosen
+    before.
+    """
     last = path[count - 1]
     if not is_free_leg(occupied, last[0], last[1], point[0], point[1]):
         return _UNSEEN
@@ -229,7 +234,7 @@ def _length(x0, y0, x1, y1):
 
 @njit(cache=True)
 def _cut_short(occupied, path):
-    """A path without the points that can be left out: from each point on to the last one that it sees."""
+    """A path without unnecessary points: each point is joined to the last one that it sees."""
     kept = np.zeros(len(path), dtype=np.int64)
     count = 1
     while kept[count - 1] < len(path) - 1:
@@ -250,13 +255,13 @@ def _cut_short(occupied, path):
 def _evolve(rng, occupied, path, evolution):
     """The cheapest path of the last generation (points, 2), and the lowest cost so far (generations + 1,).
 
-    Every path keeps the lengths of its legs, longer by the penalty where they are blocked: a mutation changes two of them at most.
+    Every path keeps the lengths of its legs, plus the penalty where they are blocked: a mutation changes at most two of them.
     """
     population, generations = evolution.population, evolution.generations
     room = len(path) + generations
     points, legs = np.empty((2 * population, room, 2)), np.empty((2 * population, room))
     counts, cost = np.full(2 * population, len(path)), np.empty(2 * population)
-    slots = np.arange(2 * population)  # parents first, the cheapest foremost; the others are free for children
+    slots = np.arange(2 * population)  # parents first, starting with the cheapest; the other slots are for children
     for i in range(population):
         for p in range(len(path)):
             points[i, p, 0], points[i, p, 1] = path[p]
@@ -278,10 +283,12 @@ def _evolve(rng, occupied, path, evolution):
 
 @njit(cache=True)
 def _mutated(rng, occupied, points, legs, count, child, child_legs, evolution):
-    """Make a child of a path, in place: an inner point is moved or left out, or a midpoint put in. Returns the child's number of points."""
+    """Make a child of a path, in place: an inner point is moved or dropped, or a midpoint is inserted. Returns the child's number of
+    points.
+    """
     kind = rng.random()
     if count == 2 or kind >= evolution.move_share + evolution.removal_share:
-        changed = rng.integers(1, count)  # the child's new point, behind which the parent's are one further
+        changed = rng.integers(1, count)  # the child's new point; the parent's points after it move up by one
         kept = changed
         for k in range(2):
             child[changed, k] = 0.5 * (points[changed - 1, k] + points[changed, k])
@@ -311,7 +318,7 @@ def _mutated(rng, occupied, points, legs, count, child, child_legs, evolution):
 
 @njit(cache=True)
 def _shift(rng, occupied, point, spread):
-    """Move a point by a Gaussian step in both coordinates, in place; at most to the centres of the outermost cells."""
+    """Move a point by a Gaussian step in both coordinates, in place; it stays within the centres of the outermost cells."""
     for k in range(2):
         side = occupied.shape[1 - k]
         point[k] = min(max(point[k] + spread * rng.standard_normal(), 0.5), side - 0.5)
@@ -319,7 +326,7 @@ def _shift(rng, occupied, point, spread):
 
 @njit(cache=True)
 def _leg(occupied, points, p, blocked_penalty):
-    """Length of the leg behind point p, longer by the penalty if it is blocked."""
+    """Length of the leg after point p, plus the penalty if it is blocked."""
     x0, y0 = points[p]
     x1, y1 = points[p + 1]
     length = _length(x0, y0, x1, y1)
@@ -328,7 +335,7 @@ def _leg(occupied, points, p, blocked_penalty):
 
 @njit(cache=True)
 def _wins(rng, cost, opponents):
-    """How many of its opponents, random others, each path (n,) is not worse than."""
+    """For each path (n,), the number of random opponents that it is not worse than."""
     wins = np.zeros(len(cost), dtype=np.int64)
     for i in range(len(cost)):
         for _ in range(opponents):
@@ -340,6 +347,6 @@ def _wins(rng, cost, opponents):
 
 @njit(cache=True)
 def _rank(slots, wins, cost):
-    """Sort slots in place, stably: most wins first, of equal ones the cheapest. The cheapest of all loses to nobody, so it comes first."""
+    """Sort slots in place, stably: most wins first, ties by lowest cost. The cheapest of all loses to none, so it comes first."""
     cheapest_first = slots[ascending(cost[slots])]
     slots[:] = cheapest_first[ascending(-wins[cheapest_first])]

@@ -1,8 +1,8 @@
-"""Ant colony optimisation over the cells of a grid (ACO), a rival in ma2020 (Section 4.1; its reference 28, without any parameters).
+"""Ant colony optimisation over the cells of a grid (ACO), a rival in ma2020 (Section 4.1; its reference 28, no parameters given).
 
-Ants walk from cell to cell, drawn by trails that earlier ants laid and by the nearness of the target. By the trail update `ant_system` all
-ants of an iteration lay trails (Dorigo, Maniezzo and Colorni 1996). By `ant_colony_system` only the best path so far gets one, and ants may
-also wear trails off and take the most attractive step outright (Dorigo and Gambardella 1997).
+Ants walk from cell to cell, attracted by the trails of earlier ants and by the closeness of the target. With the trail update `ant_system`
+all ants of an iteration lay trails (Dorigo, Maniezzo and Colorni 1996). With `ant_colony_system` only the best path so far receives one;
+ants may also erode trails and take the most attractive step outright (Dorigo and Gambardella 1997).
 """
 
 from typing import Annotated, Literal, NamedTuple
@@ -22,8 +22,8 @@ exact = True
 class Colony(NamedTuple):
     """What a colony found.
 
-    best: (n,) cells of the shortest path, none if no ant arrived. history: (iterations,) the least length so far, in cells. paths: (ants,
-    cells) those of the last iteration's ants, with sizes (ants,), 0 for an ant that died.
+    best: (n,) cells of the shortest path, empty if no ant arrived. history: (iterations,) the shortest length so far, in cells. paths:
+    (ants, cells) those of the last iteration's ants; sizes: (ants,), 0 for an ant that died.
     """
 
     best: np.ndarray
@@ -49,18 +49,19 @@ def plan(
     exploitation: Annotated[float, Range(0, 1)],
     local_evaporation: Annotated[float, Range(0, 1)],
 ) -> Plan:
-    """Shortest path over the 8-connected lattice of a grid; its objective is its length in units, infinite without a path.
+    """Shortest path over the 8-connected lattice of a grid; its objective is its length in units, infinite if there is no path.
 
-    corners: how many of the cells beside a diagonal step may be occupied. An ant draws its next cell among the unvisited neighbours, in
+    corners: how many of the two cells beside a diagonal step may be occupied. An ant draws its next cell from the unvisited neighbours, in
     proportion to trail**trail_weight * heuristic**heuristic_weight. The heuristic is 1 over the distance to the target in cells, and
-    target_heuristic for the target itself. An ant without a neighbour left dies. initial_trail: on every step. evaporation: share that a
-    trail loses in an iteration. deposit: an ant adds it, divided by its path's length in cells, to each step of its path, both ways.
+    target_heuristic for the target itself. An ant with no neighbour left dies. initial_trail: the trail on every step at first.
+    evaporation: share of a trail lost per iteration. deposit: an ant adds it, divided by its path's length in cells, to each step of its
+    path, both ways.
 
-    trail_update: ant_system, or ant_colony_system, by which evaporation and deposit, this one times the evaporation, are for the steps of
-    the best path so far only. exploitation: probability q0 of taking the most attractive step. local_evaporation: share by which an ant
-    brings the trail of its step back to the initial one.
+    trail_update: ant_system, or ant_colony_system, in which only the steps of the best path so far evaporate and receive the deposit,
+    multiplied by the evaporation. exploitation: probability q0 of taking the most attractive step. local_evaporation: share by which an ant
+    moves the trail of its step back towards the initial one.
 
-    Raises ValueError for a start or target that is in no free cell.
+    Raises ValueError if start or target is not in a free cell.
     """
     grid = problem.workspace
     rules = Rules(
@@ -90,7 +91,7 @@ def plan(
 
 
 class Rules(NamedTuple):
-    """Settings of `plan`; best_only is the trail update ant_colony_system."""
+    """Settings of `plan`; best_only: the trail update is ant_colony_system."""
 
     ants: int
     iterations: int
@@ -106,7 +107,7 @@ class Rules(NamedTuple):
 
 
 def search(places: Lattice, rng: np.random.Generator, rules: Rules) -> Colony:
-    """The search behind `plan`. One iteration if start and target lie in one cell."""
+    """The search behind `plan`. One iteration if start and target lie in the same cell."""
     distance = np.hypot(places.row - places.row[places.target], places.column - places.column[places.target])
     distance[places.target] = 1.0
     heuristic = 1.0 / distance
@@ -118,7 +119,7 @@ def search(places: Lattice, rng: np.random.Generator, rules: Rules) -> Colony:
 
 @njit(cache=True)
 def _colony(rng, lattice, heuristic, rules):
-    """Best path, history, and the last iteration's paths with their sizes, as in `Colony`. heuristic: (cells,) with its weight."""
+    """Best path, history, and the last iteration's paths with their sizes, as in `Colony`. heuristic: (cells,), with its weight applied."""
     cells = len(lattice.row)
     trail = np.full((cells, 8), rules.initial_trail)
     visits = np.full(cells, -1)
@@ -154,7 +155,9 @@ def _colony(rng, lattice, heuristic, rules):
 
 @njit(cache=True)
 def _walk(rng, lattice, trail, heuristic, rules, path, visits, ant):
-    """Let an ant walk. Returns the size of its path, which is set, or 0 if it dies. visits: (cells,) the number of the last ant there."""
+    """Let an ant walk. Writes its path and returns the size, or 0 if the ant dies. visits: (cells,) the number of the last ant that visited
+    each cell.
+    """
     steps, attraction = np.empty(8, dtype=np.int64), np.empty(8)
     cell = lattice.start
     path[0] = cell
@@ -167,7 +170,7 @@ def _walk(rng, lattice, trail, heuristic, rules, path, visits, ant):
             if other >= 0 and visits[other] != ant:
                 steps[open_steps] = step
                 weighted = trail[cell, step]
-                # A power takes as long as all the rest of a step.
+                # Taking the power costs as much as the rest of a step.
                 if rules.trail_weight != 1.0:
                     weighted **= rules.trail_weight
                 attraction[open_steps] = weighted * heuristic[other]
@@ -186,7 +189,9 @@ def _walk(rng, lattice, trail, heuristic, rules, path, visits, ant):
 
 @njit(cache=True)
 def _choose(rng, attraction, exploitation):
-    """A random place of an array (n,), in proportion to what stands there, or uniformly if all is 0; by exploitation, the largest one's."""
+    """A random index of an array (n,), in proportion to its values, or uniform if all are 0; with the probability `exploitation`, that of
+    the largest.
+    """
     if exploitation > 0 and rng.random() < exploitation:
         return np.argmax(attraction)
     total = attraction.sum()
@@ -202,7 +207,7 @@ def _choose(rng, attraction, exploitation):
 
 @njit(cache=True)
 def _lay(lattice, trail, one, other, kept, added):
-    """Keep a share of the trail of a step, in both directions, and add to it."""
+    """Keep a share of a step's trail and add to it, in both directions."""
     there, back = step_between(lattice, one, other), step_between(lattice, other, one)
     trail[one, there] = kept * trail[one, there] + added
     trail[other, back] = kept * trail[other, back] + added

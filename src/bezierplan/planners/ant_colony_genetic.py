@@ -1,7 +1,7 @@
 """Ant colony optimisation followed by a genetic algorithm over the cells of a grid (ACO-GA), one of ma2020's rivals (Section 4.1).
 
-Its reference 30 (SmartPATH) gives the scheme: ants find the first paths, and a genetic algorithm with a crossover of its own betters them.
-Of two parents that share a cell the first child gets the shorter head and the shorter tail; the second child is the second parent.
+Its reference 30 (SmartPATH) gives the scheme: ants find the first paths, and a genetic algorithm with its own crossover improves them. If
+two parents share a cell, the first child gets the shorter head and the shorter tail; the second child is the second parent.
 """
 
 from typing import Annotated, Literal
@@ -19,7 +19,7 @@ exact = True
 
 
 def check(settings: dict) -> None:
-    """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
+    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     check_pairs(settings["population"])
 
 
@@ -47,14 +47,14 @@ def plan(
     longest_join: Annotated[int, Range(2)],
     elitism: Annotated[int, Range(0, 1)],
 ) -> Plan:
-    """Shortest path over the 8-connected lattice of a grid; its objective is its length in units, infinite without a path.
+    """Shortest path over the 8-connected lattice of a grid; its objective is its length in units, infinite if there is no path.
 
-    corners to local_evaporation: those of `ant_colony`. The first population is the best path of all ants and those of the last iteration's
-    ants, repeated in turn. crossover_probability: of a pair of parents. mutation_probability: of a child; mutation: a random inner cell of
-    its path becomes another one beside the same cells (one_cell), or a part is joined anew by way of a random cell, within longest_join
-    cells (reconnect). Children lose their loops. elitism: whether the best so far replaces a child.
+    corners to local_evaporation: as in `ant_colony`. The first population consists of the best path of all ants and the paths of the last
+    iteration's ants, repeated in turn. crossover_probability: of a pair of parents. mutation_probability: of a child; mutation: a random
+    inner cell of its path is replaced by another one next to the same two cells (one_cell), or a section is reconnected through a random
+    cell, within longest_join cells (reconnect). Children lose their loops. elitism: whether the best so far replaces a child.
 
-    The history has the iterations of the ants, then the generations. Raises ValueError for a start or target that is in no free cell.
+    The history covers the iterations of the ants, then the generations. Raises ValueError if start or target is not in a free cell.
     """
     grid = problem.workspace
     places = lattice(grid, problem.start, problem.target, corners)

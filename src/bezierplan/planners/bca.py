@@ -2,9 +2,9 @@
 distance from the obstacles (BCA-Q) (ma2020, Section 3).
 
 A chromosome is the sequence of the free control points, each gene the binary number of a free cell; cells are numbered row by row from the
-top left (ma2020, eqs. 10 and 11, whose signs as printed lie outside the map). Lengths in the kernels are in cells.
+top left (ma2020, eqs. 10 and 11, whose signs as printed lead outside the map). Lengths in the kernels are in cells.
 
-All forms of the fitness are told as a cost, the reciprocal of the fitness: the roulette takes 1 / cost, and the least cost is the best.
+Every form of the fitness is expressed as a cost, its reciprocal: the roulette uses 1 / cost, and the lowest cost is the best.
 """
 
 import math
@@ -29,15 +29,16 @@ Mutation = Literal["bit_flip", "cell", "per_gene"]
 _LENGTH, _REPAIRED, _LITERAL_WEIGHTS, _HARD_SAFETY, _RECIPROCAL_LITERAL, _AS_PRINTED = range(6)
 _BIT_FLIP, _CELL, _PER_GENE = range(3)
 
-# Draws of a bit until the flipped gene is a free cell; then the gene stays. Draws of a chromosome until its curve is free.
+# Maximum number of draws of a bit until the flipped gene is a free cell (after that, the gene stays as it is), and of a chromosome until
+# its curve is free.
 _FLIP_TRIES = 50
 _FEASIBLE_TRIES = 200
-# Two grid lines crossed at parameters of a chord that differ by less are crossed in their common corner.
+# If a chord crosses two grid lines at parameters that differ by less than this, it crosses them at their common corner.
 _AT_CORNER = 1e-12
 
 
 def check(settings: dict) -> None:
-    """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
+    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     check_pairs(settings["population"])
     least = curves.least_points(settings["curve"]) - 2
     if settings["control_points"] < least:
@@ -71,15 +72,16 @@ def plan(
     collision_factor: Annotated[float, Range(0)],
     collision_surcharge: Annotated[float, Range(0)],
 ) -> Plan:
-    """Curve with `control_points` free control points in centres of free cells (ma2020, Sections 3.2 to 3.4).
+    """Curve with `control_points` free control points at centres of free cells (ma2020, Sections 3.2 to 3.4).
 
-    curve: one Bezier curve, or a chain of quadratic pieces. samples: points of it that are tested and measured, uniform in the parameter,
-    both ends included. initial: genes are free cells drawn uniformly; the same `sorted` by x + y; or drawn again until the curve is free of
-    collisions, at most 200 times (`feasible`). crossover_probability: of a pair of parents, cut between two genes. mutation_probability: of
-    a chromosome, one random bit of one gene is flipped, so that the gene stays a free cell (`bit_flip`), or the gene becomes a random free
-    `cell`; or of each gene, a bit is flipped (`per_gene`). elitism: how many of the best so far replace a chromosome.
+    curve: one Bezier curve, or a chain of quadratic pieces. samples: points of the curve that are tested and measured, uniform in the
+    parameter, both ends included. initial: genes are free cells drawn uniformly; the same, `sorted` by x + y; or redrawn until the curve is
+    collision-free, at most 200 times (`feasible`). crossover_probability: of a pair of parents, cut between two genes.
+    mutation_probability: that of a chromosome, in which one random bit of one gene is flipped such that the gene is still a free cell
+    (`bit_flip`), or the gene becomes a random free `cell`; or that of each gene, of which a bit is flipped (`per_gene`). elitism: how many
+    of the best so far replace a chromosome.
 
-    fitness: 1 / cost. With the length L, c of n samples colliding, G = L (1 + collision_factor c / n) + collision_surcharge [c > 0], the
+    fitness: 1 / cost. With the length L, c of n samples in collision, G = L (1 + collision_factor c / n) + collision_surcharge [c > 0], the
     weights w1 = length_weight and w2 = safety_weight, the straight distance D and the safety term F of eq. 14 (1 for c > 0), the cost is
 
         length              G (BCA)
@@ -89,20 +91,20 @@ def plan(
         reciprocal_literal  L of a feasible path, w1 L + w2 F of the others
         as_printed          1 / L of a feasible path, w1 L + w2 F of the others (eq. 12)
 
-    fitness_feasible: what feasible means in the last two: collision_free, or in addition nowhere nearer to an obstacle than the safety
+    fitness_feasible: what feasible means in the last two forms: collision_free, or also nowhere closer to an obstacle than the safety
     distance (clearance). safety_distance and collision_surcharge are in units of length.
 
-    The planner's own test: no colliding sample. Extra columns: bad_samples, the number of colliding samples; safety_term, F of the path.
+    The planner's own test: no sample collides. Extra columns: bad_samples, the number of colliding samples; safety_term, the path's F.
 
-    Raises ValueError for a map without a free cell.
+    Raises ValueError if the map has no free cell.
     """
     grid = problem.workspace
     if problem.start == problem.target:
-        # A point: no length to search for, and no distance to divide by.
+        # Start and target coincide: there is no length to minimise and no distance to divide by.
         point = Path("bezier", np.array([problem.start, problem.target]))
         return Plan(point, 0.0, True, 1, np.zeros(1), "generations", {"bad_samples": 0, "safety_term": 0.0})
     if control_points == 0:
-        # Nothing to search: one chromosome, the straight line.
+        # No search needed: one chromosome, the straight line.
         population, generations = 1, 0
     rules = _Rules(
         crossover_probability=float(crossover_probability),
@@ -146,9 +148,9 @@ def plan(
 class _Cells(NamedTuple):
     """The grid for the kernels, x along columns and y along rows, in cells.
 
-    occupied: bool (rows, columns), the bottom row first. centres: (cells, 2), by code. legal: bool (2**bits,), whether a code is a free
+    occupied: bool (rows, columns), bottom row first. centres: (cells, 2), by code. legal: bool (2**bits,), whether a code stands for a free
     cell. free: the codes of the free cells. near: (n, 2), column and row of occupied cells; those that may lie within the safety distance
-    of a point of the cell (row, column) are near[first[i] : first[i + 1]] with i = columns row + column.
+    of a point in the cell (row, column) are near[first[i] : first[i + 1]] with i = columns row + column.
     """
 
     occupied: np.ndarray
@@ -160,15 +162,17 @@ class _Cells(NamedTuple):
 
 
 class _Curve(NamedTuple):
-    """ends: (2, samples), x and y of what start and target give to the samples, in cells. free: (control points, samples), the weights of
-    the free control points."""
+    """ends: (2, samples), x and y contributions of start and target to the samples, in cells. free: (control points, samples), the weights
+    of the free control points."""
 
     ends: np.ndarray
     free: np.ndarray
 
 
 class _Rules(NamedTuple):
-    """Settings of `plan` for the kernels, choices by their numbers, lengths in cells; straight: from start to target; cell: its side."""
+    """Settings of `plan` for the kernels, choices as numbers, lengths in cells; straight: distance from start to target; cell: side of a
+    cell.
+    """
 
     crossover_probability: float
     mutation_probability: float
@@ -194,7 +198,7 @@ def code_centres(rows: int, columns: int) -> np.ndarray:
 
 
 def _cells(grid: Grid, reach: int) -> _Cells:
-    """The grid for the kernels; near are the occupied cells at most `reach` columns and rows away."""
+    """The grid for the kernels; near holds the occupied cells at most `reach` columns and rows away."""
     rows, columns = grid.occupied.shape
     legal = np.zeros(1 << (rows * columns - 1).bit_length(), dtype=bool)
     legal[: rows * columns] = ~grid.occupied[::-1].ravel()
@@ -215,16 +219,16 @@ def _sampled(problem: Problem, curve: str, control_points: int, samples: int) ->
 
 @cache
 def _basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
-    """Weights of start and target (2, samples) and of the free control points (n, samples) in the samples of a curve."""
+    """Weights of start and target (2, samples) and of the free control points (n, samples) at the samples of a curve."""
     basis = curves.sample_matrix(curve, control_points + 2, samples).T
     return basis[[0, -1]], np.ascontiguousarray(basis[1:-1])
 
 
 @njit(cache=True)
 def _search(rng, codes, cells, curve, rules, generations):
-    """Genes (control points,) of the best chromosome, and the least cost so far (generations + 1,).
+    """Genes (control points,) of the best chromosome, and the lowest cost so far (generations + 1,).
 
-    codes: (population, control points), the first generation, which is changed.
+    codes: (population, control points), the first generation; overwritten.
     """
     population, genes = codes.shape
     bits = int(np.log2(len(cells.legal)) + 0.5)
@@ -236,7 +240,7 @@ def _search(rng, codes, cells, curve, rules, generations):
 
     for generation in range(generations + 1):
         for i in range(population):
-            # A child that is equal to one of its parents has its cost, which leaves every result as it is.
+            # A child equal to one of its parents takes over its cost, which changes no result.
             mother, father = drawn[i - i % 2], drawn[min(i | 1, population - 1)]
             if generation > 0 and _same(codes[i], parents[mother]):
                 cost[i] = parent_cost[mother]
@@ -268,7 +272,7 @@ def _search(rng, codes, cells, curve, rules, generations):
 
 @njit(cache=True)
 def _redraw(rng, codes, cells, curve):
-    """Draw every chromosome anew, in place, until its curve is free of collisions."""
+    """Redraw every chromosome, in place, until its curve is collision-free."""
     scratch = np.empty((3, curve.ends.shape[1]))
     for i in range(len(codes)):
         for _ in range(_FEASIBLE_TRIES):
@@ -294,7 +298,7 @@ def _mutate(rng, genes, bits, cells, rules):
 
 @njit(cache=True)
 def _flip(rng, genes, gene, bits, legal):
-    """Flip a random bit of a gene in place; a bit that makes it no free cell is drawn again."""
+    """Flip a random bit of a gene in place; a bit that leaves the free cells is redrawn."""
     before = genes[gene]
     for _ in range(_FLIP_TRIES):
         complement_bit(genes, gene * bits + rng.integers(0, bits), bits)
@@ -305,7 +309,7 @@ def _flip(rng, genes, gene, bits, legal):
 
 @njit(cache=True)
 def _cost(genes, cells, curve, rules, scratch):
-    """Cost of a chromosome, the reciprocal of its fitness (`plan` has the forms)."""
+    """Cost of a chromosome, the reciprocal of its fitness (`plan` lists the forms)."""
     length, bad, clearance = _measure(genes, cells, curve, scratch, rules.fitness != _LENGTH)
     priced = length * (1.0 + rules.collision_factor * bad / curve.ends.shape[1]) + rules.collision_surcharge * (bad > 0)
     if rules.fitness == _LENGTH:
@@ -324,7 +328,7 @@ def _cost(genes, cells, curve, rules, scratch):
 
 @njit(cache=True)
 def _safety_term(bad, clearance, safety_distance):
-    """How much the safety distance is undercut, from 0 to 1 (ma2020, eq. 14; 1 for a path that collides)."""
+    """How far the path undercuts the safety distance, from 0 to 1 (ma2020, eq. 14; 1 for a path that collides)."""
     if safety_distance == 0 or (bad == 0 and clearance >= safety_distance):
         return 0.0
     return 1.0 if bad > 0 else (1.0 - clearance / safety_distance) ** 2
@@ -332,8 +336,8 @@ def _safety_term(bad, clearance, safety_distance):
 
 @njit(cache=True)
 def _measure(genes, cells, curve, scratch, with_clearance):
-    """Length in cells of the polyline through a curve's samples, the number of colliding samples, and the least distance of the samples to
-    the occupied cells nearby: infinite without one, 0 for a path that collides or if it is not asked for.
+    """Length in cells of the polyline through a curve's samples, the number of colliding samples, and the minimum distance of the samples
+    to the occupied cells nearby: infinite if there are none, 0 for a path that collides or if it is not requested.
 
     scratch: (3, samples).
     """
@@ -346,7 +350,7 @@ def _measure(genes, cells, curve, scratch, with_clearance):
         for s in range(samples):
             x[s] += column * curve.free[k, s]
             y[s] += row * curve.free[k, s]
-    # Roots and their sum in two loops: the first one can then use vector instructions.
+    # Square roots and their sum are computed in two loops, so that the first can use vector instructions.
     for s in range(samples - 1):
         dx, dy = x[s + 1] - x[s], y[s + 1] - y[s]
         chords[s] = np.sqrt(dx * dx + dy * dy)
@@ -359,7 +363,7 @@ def _measure(genes, cells, curve, scratch, with_clearance):
 
 @njit(cache=True)
 def _collisions(x, y, occupied):
-    """How many samples lie inside an occupied cell, or end a chord that passes through one between its two ends. Touching is allowed."""
+    """Number of samples that lie inside an occupied cell or end a chord that passes through one between its ends. Touching is allowed."""
     rows, columns = occupied.shape
     bad = 0
     column, row = min(int(x[0]), columns - 1), min(int(y[0]), rows - 1)
@@ -381,9 +385,10 @@ def _inside(value, cell):
 
 @njit(cache=True)
 def _cuts(x, y, x_end, y_end, occupied):
-    """Whether a chord passes through an occupied cell on its way between the cells of its ends.
+    """Whether a chord passes through an occupied cell between the cells of its ends.
 
-    It is divided so that no part crosses two grid lines of a kind; a part that crosses one of each passes through one more cell.
+    The chord is divided so that no part crosses two grid lines of the same kind; a part that crosses one of each kind passes through one
+    more cell.
     """
     rows, columns = occupied.shape
     parts = int(max(abs(x_end - x), abs(y_end - y))) + 1
@@ -407,7 +412,7 @@ def _cuts(x, y, x_end, y_end, occupied):
 
 @njit(cache=True)
 def _clearance(x, y, cells):
-    """Least distance in cells of the samples to the occupied cells listed as near their own; infinite without one."""
+    """Minimum distance in cells of the samples to the occupied cells listed as near to theirs; infinite if there are none."""
     rows, columns = cells.occupied.shape
     least = np.inf
     for s in range(len(x)):
@@ -431,6 +436,6 @@ def _same(one, other):
 
 @njit(cache=True)
 def _copy(source, target):
-    """Copy an array of one dimension. Compiles in no time, unlike numpy's assignment to a slice."""
+    """Copy a one-dimensional array. Compiles much faster than numpy's slice assignment."""
     for k in range(len(source)):
         target[k] = source[k]

@@ -1,11 +1,11 @@
 """Genetic algorithm over the cells of a grid, each control point a binary cell number (song2016, Section III).
 
 A chromosome is the sequence of the free control points between start and target. Every control point is the centre of a cell, free or
-occupied; only the samples of the curve are tested. Cells are numbered so that every bit string is a cell (`grid.embed`), so no operator
-can leave the workspace. Lengths in the kernels are in cells.
+occupied; only the samples of the curve are tested. Cells are numbered so that every bit string is a cell (`grid.embed`); no operator can
+leave the workspace. Lengths in the kernels are in cells.
 
-The objective is a sum over stretches of the curve: runs of samples that depend on the same few control points (three of eight for
-quadratic pieces). A stretch that a child inherits whole from a parent keeps its parent's length, which leaves every result as it is.
+The objective is a sum over stretches of the curve: runs of samples that depend on the same few control points (three of eight for quadratic
+pieces). A stretch that a child inherits whole from a parent keeps the parent's length, which changes no result.
 """
 
 from typing import Annotated, Literal, NamedTuple, get_args
@@ -26,7 +26,7 @@ _ONE_BIT, _EACH_GENE, _EACH_BIT = range(3)
 
 
 def check(settings: dict) -> None:
-    """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
+    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     least = curves.least_points(settings["curve"]) - 2
     if settings["genes"] < least:
         raise ValueError(f"genes: {settings['genes']}; a curve of kind {settings['curve']} needs at least {least}")
@@ -61,23 +61,24 @@ def plan(
 ) -> Plan:
     """Shortest penalised curve through `genes` free control points (song2016, Sections III and IV).
 
-    curve: its kind, with genes + 2 control points. samples: points of the curve that are tested and measured, both ends included;
-    spacing: uniform in the parameter, or (polylines) along the path. crossover_probability: of a pair of parents; cut: the single point
-    lies before any bit, or between genes. mutation_probability: of a chromosome, whose one_bit is complemented; of each_gene, likewise;
-    or of each_bit. elitism: how many of the best so far replace a chromosome. penalty: in units of length, for each_sample in an occupied
-    cell, or once for a path that has any. occupied_point_penalty: in units of length, for each control point in an occupied cell.
+    curve: the curve kind, with genes + 2 control points. samples: points of the curve that are tested and measured, both ends included;
+    spacing: uniform in the parameter, or (polylines) along the path. crossover_probability: of a pair of parents; cut: the crossover point
+    lies before any bit, or only between genes. mutation_probability: of a chromosome, in which one_bit is complemented; of each_gene,
+    likewise; or of each_bit. elitism: how many of the best so far replace a chromosome. penalty: in units of length, for each_sample in an
+    occupied cell, or once for a path with any such sample. occupied_point_penalty: in units of length, for each control point in an
+    occupied cell.
 
-    The planner's own test: no sample in an occupied cell. Extra column: bad_samples, the number of samples that are.
+    The planner's own test: no sample in an occupied cell. Extra column: bad_samples, the number of samples in occupied cells.
     """
     grid = problem.workspace
     occupied = embed(grid.occupied)
-    # Start and target, which need not be centres of cells, are two further cells with numbers of their own.
+    # Start and target need not be centres of cells: they are two additional cells with their own numbers.
     row, column = np.indices(occupied.shape).reshape(2, -1)
     places = np.vstack([np.column_stack([column, row]) + 0.5, grid.in_cells(np.array([problem.start, problem.target]))])
     ends = [occupied.size, occupied.size + 1]
     starts, moves = rng.spawn(2)
     if genes == 0 or problem.start == problem.target:
-        # Nothing to search: one chromosome, the straight line or the point.
+        # No search needed: one chromosome, the straight line or the point.
         population = 1
         generations = 0
         cells = np.full((1, genes + 2), ends[0])
@@ -155,9 +156,10 @@ class _Rules(NamedTuple):
 
 @njit(cache=True)
 def _search(rng, cells, occupied, places, curve, rules):
-    """Cells (control points,) of the best chromosome, its samples in occupied cells, and the best objective so far (generations + 1,).
+    """Cells (control points,) of the best chromosome, the number of its samples in occupied cells, and the best objective so far
+    (generations + 1,).
 
-    cells: (population, control points) numbers of cells. places: (cells + 2, 2) their centres, and start and target, in cells.
+    cells: (population, control points) numbers of cells. places: (cells + 2, 2) the cells' centres, then start and target, in cells.
     """
     population, points = cells.shape
     genes = points - 2
@@ -215,14 +217,14 @@ def _search(rng, cells, occupied, places, curve, rules):
 
 @njit(cache=True)
 def _copy(source, target):
-    """Copy an array of one dimension. Compiles in no time, unlike numpy's assignment to a slice."""
+    """Copy a one-dimensional array. Compiles much faster than numpy's slice assignment."""
     for k in range(len(source)):
         target[k] = source[k]
 
 
 @njit(cache=True)
 def _same(cells, others, first, last):
-    """Whether two chromosomes agree in the control points first .. last."""
+    """Whether two chromosomes have the same control points first .. last."""
     for p in range(first, last + 1):
         if cells[p] != others[p]:
             return False
@@ -231,7 +233,7 @@ def _same(cells, others, first, last):
 
 @njit(cache=True)
 def _mutate(rng, genes, bits, probability, mutation):
-    """Complement random bits of a chromosome in place (song2016, Section III-E reads as `one_bit`)."""
+    """Complement random bits of a chromosome in place (song2016, Section III-E describes `one_bit`)."""
     if mutation == _ONE_BIT:
         if rng.random() < probability:
             complement_bit(genes, rng.integers(0, bits * len(genes)), bits)
@@ -247,9 +249,9 @@ def _mutate(rng, genes, bits, probability, mutation):
 
 @njit(cache=True)
 def _measure(cells, occupied, places, basis, stretch, x, y):
-    """Length in cells of one stretch of a curve and the number of its samples in occupied cells, its first sample not counted.
+    """Length in cells of one stretch of a curve and the number of its samples in occupied cells, not counting the first.
 
-    basis: (control points, samples). x, y: (samples,) scratch. Start and target lie in free cells, so no sample goes uncounted.
+    basis: (control points, samples). x, y: (samples,) scratch. Start and target lie in free cells, so no sample is missed.
     """
     first_point, last_point, first, last = stretch
     samples = last - first + 1
@@ -264,7 +266,8 @@ def _measure(cells, occupied, places, basis, stretch, x, y):
     bad = 0
     for s in range(1, samples):
         bad += occupied[int(y[s] + ON_LINE), int(x[s] + ON_LINE)]
-    # Roots and their sum in two loops: the first one can then use vector instructions, and the order of the sum stays as written.
+    # Square roots and their sum are computed in two loops, so that the first can use vector instructions, and the order of summation is as
+    # written.
     for s in range(samples - 1):
         x[s] = np.sqrt((x[s + 1] - x[s]) ** 2 + (y[s + 1] - y[s]) ** 2)
     length = 0.0
@@ -275,7 +278,7 @@ def _measure(cells, occupied, places, basis, stretch, x, y):
 
 @njit(cache=True)
 def _measure_by_arc_length(cells, occupied, places, samples):
-    """Length in cells of a polyline and the number of its occupied samples, which are equally spaced along it."""
+    """Length in cells of a polyline and the number of samples, equally spaced along it, that lie in occupied cells."""
     points = len(cells)
     x, y, passed = np.empty(points), np.empty(points), np.zeros(points)
     for p in range(points):

@@ -1,11 +1,11 @@
-"""Particle swarm optimisation of a path's control points, plain (PSO) or with a chaotic sequence in place of one of its two random numbers:
-of the cognitive term (CPSO-I) or of the social term (CPSO-II) (tharwat2018, Sections 3.2 and 4).
+"""Particle swarm optimisation of a path's control points, plain (PSO) or with a chaotic sequence instead of one of its two random numbers:
+that of the cognitive term (CPSO-I) or of the social term (CPSO-II) (tharwat2018, Sections 3.2 and 4).
 
-A particle is (x_1, ..., x_n, y_1, ..., y_n), the coordinates of the n free control points of one curve. The curve is linear in them, so
-every kind of curve is the same constant matrix to the kernels. Obstacles are tested at samples of the curve.
+A particle is (x_1, ..., x_n, y_1, ..., y_n), the coordinates of the n free control points of one curve. The curve is linear in them, so to
+the kernels every curve kind is a constant matrix. Obstacles are tested at samples of the curve.
 
-All methods draw the same numbers: positions, moves and the start of the chaotic sequence come from three generators; the positions particle
-by particle, and for a move r1 before r2, of which the one that the chaotic sequence replaces is drawn and thrown away.
+All methods draw the same numbers: positions, moves and the start of the chaotic sequence come from three generators; positions are drawn
+particle by particle, and for each move r1 before r2; the number that the chaotic sequence replaces is drawn and discarded.
 """
 
 import logging
@@ -35,13 +35,13 @@ _MIRROR, _CLAMP, _STOP, _NO_BOUND = range(4)
 
 
 class Swarm(NamedTuple):
-    """What a swarm did in `done` iterations.
+    """Result of a swarm after `done` iterations.
 
-    positions: (done + 1, 2 n) and fitness: (done + 1,) of its best path after iteration 0, 1, ..., done. violation: of the last of them.
-    infeasible, colliding_samples: evaluated paths that collide, and colliding samples of all evaluated paths, summed over obstacles.
-    best_colliding_samples: those of the best path, added over the iterations. best_infeasible: after how many iterations, the initial one
-    included, the best path collides. zeta_clipped: clipped numbers of the chaotic sequence. zeta_collapsed_at: the iteration at which it
-    collapsed, or 0.
+    positions: (done + 1, 2 n) and fitness: (done + 1,) of its best path after iteration 0, 1, ..., done. violation: that of the last of
+    them. infeasible: number of evaluated paths that collide; colliding_samples: colliding samples of all evaluated paths, summed over
+    obstacles. best_colliding_samples: those of the best path, summed over the iterations. best_infeasible: number of iterations, including
+    the initial one, after which the best path collides. zeta_clipped: number of clipped values of the chaotic sequence. zeta_collapsed_at:
+    the iteration at which the sequence collapsed, or 0.
     """
 
     positions: np.ndarray
@@ -56,7 +56,7 @@ class Swarm(NamedTuple):
 
 
 class Settings(NamedTuple):
-    """The settings of `plan`, by the same names."""
+    """The settings of `plan`, under the same names."""
 
     curve: str
     control_points: int
@@ -90,7 +90,7 @@ class Settings(NamedTuple):
 
 
 def check(settings: dict) -> None:
-    """Rules over several settings. Raises ValueError, naming the setting and what would be right; warns of a swarm that cannot move."""
+    """Rules across several settings. Raises ValueError naming the setting and what is expected; warns if the swarm cannot move."""
     try:
         curves.piece_matrix(settings["curve"], settings["control_points"] + 2)
     except ValueError as error:
@@ -135,29 +135,30 @@ def plan(
     sinusoidal_a: Annotated[float, Range(0, 4)],
     count_collisions: bool,
 ) -> Plan:
-    """Shortest penalised curve from start to target with a number of free control points (tharwat2018, Algorithm 1, eqs. 7, 8, 17 to 22).
+    """Shortest penalised curve from start to target with the given number of free control points (tharwat2018, Algorithm 1, eqs. 7, 8, 17
+    to 22).
 
-    control_points: free ones, beside start and target; those of a `ferguson` curve are tangents and points by turns. samples: points of the
-    curve that are tested and measured, uniform in the parameter, both ends included. penalty: the fitness of a path with the length L and
-    the violation V is L (1 + beta V), L + beta V, or (death) L, but beta if it is infeasible. d_min: added to every radius, in units
-    (eq. 21).
+    control_points: number of free ones, in addition to start and target; those of a `ferguson` curve alternate between tangents and points.
+    samples: points of the curve that are tested and measured, uniform in the parameter, both ends included. penalty: the fitness of a path
+    of length L and violation V is L (1 + beta V), L + beta V, or (death) L if it is feasible and beta otherwise. d_min: added to every
+    radius, in units (eq. 21).
 
-    stall_limit: iterations without a better path after which the search ends; 0 for never. straight_line_particle: whether the first
-    particle starts as the straight line. c1, c2: C1 and C2, the cognition and social learning factors. inertia: w of the first iteration;
-    inertia_damping: its factor from one iteration to the next. velocity_limit: largest change of a coordinate in an iteration, as a share
-    of the field's side; infinite for none. bound_rule: a coordinate that leaves the field is put on its border, and its velocity is
-    mirrored, kept (clamp), or set to zero (stop); or it stays outside (none). random_numbers: what gets an r1 and r2 of its own. update:
-    the swarm's best path is replaced as soon as a particle finds a better one, or after all have moved.
+    stall_limit: number of iterations without improvement after which the search stops; 0 for never. straight_line_particle: whether the
+    first particle starts as the straight line. c1, c2: C1 and C2, the cognition and social learning factors. inertia: w of the first
+    iteration; inertia_damping: its factor from one iteration to the next. velocity_limit: largest change of a coordinate per iteration, as
+    a share of the field's side; infinite for no limit. bound_rule: a coordinate that leaves the field is moved to its border, and its
+    velocity is mirrored, kept (clamp), or set to zero (stop); or it stays outside (none). random_numbers: what gets its own r1 and r2.
+    update: the swarm's best path is replaced as soon as a particle finds a better one, or once all have moved.
 
-    chaotic_term: the one in which the chaotic sequence replaces the random number. chaotic_start: the sequence's first number by the rule
-    `fixed`; of the map `constant`, all of them. zeta_for: what gets a number of the sequence of its own. singer_mu, ..., sinusoidal_a: see
-    `chaotic_maps.Parameters`. count_collisions: false saves the test of a path that is too long to be better anyway, which changes no
-    result; collisions_a, _b and _f are then not numbers.
+    chaotic_term: the term in which the chaotic sequence replaces the random number. chaotic_start: first number of the sequence under the
+    rule `fixed`; for the map `constant`, every number. zeta_for: what gets its own number of the sequence. singer_mu, ..., sinusoidal_a:
+    see `chaotic_maps.Parameters`. count_collisions: if false, paths too long to be an improvement are not tested, which changes no result;
+    collisions_a, _b and _f are then nan.
 
-    The planner's own test: V at most `FEASIBLE`. Extra columns: violation, V of the path; zeta_collapsed_at and zeta_clipped as in `Swarm`;
-    and six readings of the paper's undefined number of collisions: of particles in an iteration (a), of samples of an evaluated path (b),
-    of samples of the best path, added over the iterations (c), of iterations whose best path collides (d), of final paths, 0 or 1 (e), of
-    evaluated paths in the run (f).
+    The planner's own test: V at most `FEASIBLE`. Extra columns: violation, the path's V; zeta_collapsed_at and zeta_clipped as in `Swarm`;
+    and six readings of the paper's undefined number of collisions: particles per iteration (a), samples per evaluated path (b), samples of
+    the best path, summed over the iterations (c), iterations whose best path collides (d), final paths, 0 or 1 (e), evaluated paths in the
+    run (f).
     """
     settings = Settings(
         curve=curve,
@@ -217,7 +218,7 @@ def plan(
 
 
 def track(problem: Problem, rng: np.random.Generator, **settings: Any) -> np.ndarray:
-    """Control points (iterations done + 1, control points, 2) of the best path after every iteration of the run that `plan` makes of the
+    """Control points (iterations done + 1, control points, 2) of the best path after every iteration of the run that `plan` makes with the
     same generator and settings, in units (tharwat2018, Figure 12)."""
     positions = search(problem, rng, Settings(**settings)).positions
     return np.array([_points(position, settings["curve"], problem) for position in positions])
@@ -237,7 +238,7 @@ def search(problem: Problem, rng: np.random.Generator, settings: Settings) -> Sw
     zeta, clipped, collapsed_at = _zeta(chaos, (iterations, particles, dimensions), settings)
     rules = _Rules(
         stall_limit=settings.stall_limit,
-        c1=float(settings.c1),  # a whole number would compile kernels anew
+        c1=float(settings.c1),  # an integer would recompile the kernels
         c2=float(settings.c2),
         inertia=float(settings.inertia),
         inertia_damping=float(settings.inertia_damping),
@@ -251,7 +252,7 @@ def search(problem: Problem, rng: np.random.Generator, settings: Settings) -> Sw
 
 
 class _Rules(NamedTuple):
-    """Settings of `plan` for the kernels, choices by their numbers."""
+    """Settings of `plan` for the kernels, choices as numbers."""
 
     stall_limit: int
     c1: float
@@ -281,14 +282,14 @@ def _objective(problem: Problem, settings: Settings) -> Objective:
 
 @cache
 def _basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
-    """Weights of start and target (2, samples) and of the free control points (n, samples) in the samples of a curve."""
+    """Weights of start and target (2, samples) and of the free control points (n, samples) at the samples of a curve."""
     basis = curves.sample_matrix(curve, control_points + 2, samples).T
     return basis[list(curves.ends(curve))], np.ascontiguousarray(basis[_free(curve, control_points)])
 
 
 @cache
 def _free(curve: str, control_points: int) -> np.ndarray:
-    """Which control points of a curve are the free ones (n,)."""
+    """Which control points of a curve are free (n,)."""
     return np.delete(np.arange(control_points + 2), curves.ends(curve))
 
 
@@ -302,7 +303,7 @@ def _points(position: np.ndarray, curve: str, problem: Problem) -> np.ndarray:
 
 
 def _straight_line(problem: Problem, curve: str, control_points: int) -> np.ndarray:
-    """The particle (2 n,) whose curve is the straight line, passed at a constant speed."""
+    """The particle (2 n,) whose curve is the straight line, traversed at constant speed."""
     start, way = np.array(problem.start), np.subtract(problem.target, problem.start)
     points = np.empty((control_points + 2, 2))
     if curve == "ferguson":
@@ -314,7 +315,7 @@ def _straight_line(problem: Problem, curve: str, control_points: int) -> np.ndar
 
 
 def _zeta(chaos: np.random.Generator, size: tuple[int, int, int], settings: Settings) -> chaotic_maps.Sequence:
-    """The chaotic sequence; its values (iterations, particles or 1, dimensions or 1), the iteration at which it collapsed."""
+    """The chaotic sequence: its values (iterations, particles or 1, dimensions or 1) and the iteration at which it collapsed."""
     shape = size[: {"iteration": 1, "particle": 2, "dimension": 3}[settings.zeta_for]]
     shape += (1,) * (3 - len(shape))
     if settings.chaotic_term == "none":
@@ -336,9 +337,9 @@ def _zeta(chaos: np.random.Generator, size: tuple[int, int, int], settings: Sett
 
 @njit(cache=True)
 def _swarm(rng, x, zeta, low, high, limit, objective, rules):
-    """Algorithm 1 of tharwat2018; the first fields of a `Swarm`.
+    """Algorithm 1 of tharwat2018; returns the first fields of a `Swarm`.
 
-    x: (particles, dimensions), the initial positions, which are moved. zeta: (iterations, particles or 1, dimensions or 1). low, high,
+    x: (particles, dimensions), the initial positions; moved in place. zeta: (iterations, particles or 1, dimensions or 1). low, high,
     limit: (dimensions,), the field and the largest velocity.
     """
     iterations = len(zeta)
@@ -405,7 +406,7 @@ def _draw(rng, r):
 def _move(rng, r, x, v, p, g, zeta, w, limit, rules):
     """Velocity and position of one particle, in place (tharwat2018, eqs. 8 and 7; CPSO-I: eq. 17, CPSO-II: eq. 18).
 
-    zeta: (dimensions or 1,), this particle's number or numbers of the chaotic sequence.
+    zeta: (dimensions or 1,), this particle's number(s) of the chaotic sequence.
     """
     for d in range(len(x)):
         if rules.random_numbers == _EACH_DIMENSION:

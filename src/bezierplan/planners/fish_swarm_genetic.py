@@ -1,7 +1,7 @@
 """Artificial fish swarm followed by a genetic algorithm over the cells of a grid (ASFA-GA), one of ma2020's rivals (Section 4.1).
 
-Its reference 31 is known by its title alone. Fish forage from cell to cell, now and then drawn to one of them that is nearer to the target;
-the paths of those that arrive are the first population of a genetic algorithm, which mutates a path by foraging a part of it anew.
+Of its reference 31 only the title is known. Fish forage from cell to cell and occasionally follow one that is closer to the target; the
+paths of those that arrive form the first population of a genetic algorithm, which mutates a path by foraging a section of it again.
 """
 
 from typing import Annotated, NamedTuple
@@ -20,7 +20,7 @@ exact = True
 
 
 def check(settings: dict) -> None:
-    """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
+    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     check_pairs(settings["population"])
 
 
@@ -43,25 +43,25 @@ def plan(
     mutation_probability: Annotated[float, Range(0, 1)],
     elitism: Annotated[int, Range(0, 1)],
 ) -> Plan:
-    """Shortest path over the 8-connected lattice of a grid; its objective is its length in units, infinite without a path.
+    """Shortest path over the 8-connected lattice of a grid; its objective is its length in units, infinite if there is no path.
 
-    corners: how many of the cells beside a diagonal step may be occupied. A swarm of fish is released at the start until there are as many
-    paths as the population, at most so many releases. A fish enters no cell twice. tries: random neighbours that it looks at to find one
-    nearer to the target, before it takes any. Every follow_every steps it looks for others within sight, in cells, those that have arrived
-    included: if fewer than crowding times fish are there and the one nearest to the target is nearer than itself, it goes to the neighbour
-    nearest to that one. A fish without a neighbour left, or with longest_path cells behind it, dies. Fewer paths than the population are
-    repeated in turn.
+    corners: how many of the two cells beside a diagonal step may be occupied. Swarms of fish are released at the start until there are
+    enough paths for the population, at most the given number of releases. A fish enters no cell twice. tries: number of random neighbours
+    it examines for one closer to the target before it takes any. Every follow_every steps it looks for others within sight, in cells,
+    including those that have arrived: if there are fewer than crowding times fish of them and the one nearest to the target is nearer than
+    itself, it moves to the neighbour nearest to that one. A fish with no neighbour left, or with longest_path cells behind it, dies. If
+    there are fewer paths than the population, they are repeated in turn.
 
-    crossover_probability: of a pair of parents. mutation_probability: of a child, a part of its path is foraged anew, within longest_walk
-    cells. Children lose their loops. elitism: whether the best so far replaces a child.
+    crossover_probability: of a pair of parents. mutation_probability: of a child, a section of whose path is foraged again, within
+    longest_walk cells. Children lose their loops. elitism: whether the best so far replaces a child.
 
-    Raises ValueError for a start or target that is in no free cell.
+    Raises ValueError if start or target is not in a free cell.
     """
     grid = problem.workspace
     places = lattice(grid, problem.start, problem.target, corners)
     first, moves = rng.spawn(2)
     if places.start == places.target:
-        # Nothing to search: all fish are there.
+        # No search needed: all fish have arrived.
         generations = 0
         paths, sizes, released = np.array([[places.start]]), np.array([1]), 1
     else:
@@ -102,7 +102,7 @@ _SWIMMING, _ARRIVED, _DEAD = range(3)
 
 @njit(cache=True)
 def _release(rng, lattice, swarm, wanted, releases):
-    """The first paths (n, longest path) of fish that arrive, at most as many as wanted, their sizes (n,), and the number of releases."""
+    """The first paths (n, longest path) of fish that arrive, at most `wanted` of them, their sizes (n,), and the number of releases."""
     found, found_sizes = np.empty((wanted, swarm.longest_path), dtype=np.int64), np.empty(wanted, dtype=np.int64)
     paths, sizes = np.empty((swarm.fish, swarm.longest_path), dtype=np.int64), np.empty(swarm.fish, dtype=np.int64)
     visited = np.empty((swarm.fish, len(lattice.row)), dtype=np.int64)
@@ -144,7 +144,7 @@ def _release(rng, lattice, swarm, wanted, releases):
 def _follow(lattice, i, cells, states, visited, swarm):
     """The unvisited neighbour of a fish's cell that is nearest to its leader, the fish in sight nearest to the target; -1 if there is none.
 
-    Nor is there one if the leader is not nearer to the target than the fish itself, or if too many are in sight.
+    There is also none if the leader is no nearer to the target than the fish itself, or if too many fish are in sight.
     """
     in_sight, leader, near = 0, -1, cell_paths.distance_square(lattice, cells[i], lattice.target)
     for j in range(swarm.fish):

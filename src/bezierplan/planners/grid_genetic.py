@@ -1,8 +1,8 @@
-"""Genetic algorithm over paths of cells: a chromosome is a path from free cell to free neighbour (the rival GA of elhoseny2017).
+"""Genetic algorithm over paths of cells: a chromosome is a path of neighbouring free cells (the rival GA of elhoseny2017).
 
-The baseline of elhoseny2017 that is called GA in its Tables 2, 3 and 6 (Alajlan et al., 2013), which gives no parameters or operators;
-these are usual ones. First paths are greedy walks by way of random cells. A crossover joins the head of one path and the tail of another
-at a cell that both have; a mutation walks anew between two cells of a path. Loops are cut out of every path.
+The baseline called GA in Tables 2, 3 and 6 of elhoseny2017 (Alajlan et al., 2013), which gives no parameters or operators; these are common
+ones. First paths are greedy walks through random cells. A crossover joins the head of one path and the tail of another at a shared cell; a
+mutation makes a new walk between two cells of a path. Loops are removed from every path.
 
 A cell has eight neighbours; a diagonal step may pass between two occupied cells. In the kernels a cell is its index in the grid with a
 frame of occupied cells around it, so that no step leaves the grid. Costs in the kernels are in cells.
@@ -21,7 +21,7 @@ from bezierplan.workspaces.problem import Path, Problem
 workspaces = ("grid",)
 exact = True
 
-# Of the eight neighbours, as steps of column and row: the straight ones first.
+# Steps of column and row to the eight neighbours, straight ones first.
 _COLUMN_STEPS = (1, 0, -1, 0, 1, -1, -1, 1)
 _ROW_STEPS = (0, 1, 0, -1, 1, 1, -1, -1)
 
@@ -41,16 +41,16 @@ def plan(
     detour_share: Annotated[float, Range(0)],
     straight_on: Annotated[float, Range(0, 1)],
 ) -> Plan:
-    """Cheapest path of cells found, a polyline through their centres; its objective is its cost in units, infinite without a path.
+    """Cheapest path of cells found, a polyline through their centres; its objective is its cost in units, infinite if there is no path.
 
     diagonal_cost: of a diagonal step; a straight one costs 1, both times a cell's side. The best of parents and children survive.
 
     A walk goes to the free neighbour nearest to its goal. Where none is nearer, it makes a detour of random steps: at least least_detour,
-    at most detour_share of the columns beyond that, less one; each goes straight_on with this probability, if that cell is free. A walk of
-    more than longest_walk times rows and columns together is given up. attempts: first walks for each chromosome; those still missing then
-    are copies of those found.
+    and at most detour_share of the number of columns more than that, minus one; each continues in the same direction with the probability
+    straight_on, if that cell is free. A walk longer than longest_walk times the sum of rows and columns is abandoned. attempts: number of
+    first walks tried for each chromosome; any still missing are copies of those found.
 
-    Extra column: first_walks, how many first paths were found.
+    Extra column: first_walks, the number of first paths found.
     """
     grid = problem.workspace
     walled = np.pad(grid.occupied, 1, constant_values=True)
@@ -93,16 +93,16 @@ def plan(
 
 
 def _turns(column: np.ndarray, row: np.ndarray) -> np.ndarray:
-    """Whether (n,) a cell of a path is its first, its last, or one in which the direction changes."""
+    """Whether (n,) a cell of a path is its first, its last, or one at which the direction changes."""
     steps = np.column_stack([np.diff(column), np.diff(row)])
     inner = (steps[1:] != steps[:-1]).any(axis=1)
     return np.concatenate([[True], inner, [True]])[-len(column) :]
 
 
 def _through(problem: Problem, centres: np.ndarray) -> np.ndarray:
-    """Points from start to target through centres of cells; start and target lie in the first and the last of these cells."""
+    """Points from start to target through centres of cells; start and target lie in the first and last of these cells."""
     points = [problem.start, *centres.tolist(), problem.target]
-    # An end that is a centre, up to rounding, stands for it.
+    # An end that coincides with a centre, up to rounding, replaces it.
     first, last = (np.allclose(points[i], points[j], rtol=0, atol=1e-9 * problem.workspace.cell) for i, j in ((0, 1), (-1, -2)))
     del points[1 : 1 + first]
     if last and len(points) > 2:
@@ -111,8 +111,8 @@ def _through(problem: Problem, centres: np.ndarray) -> np.ndarray:
 
 
 class _Walker(NamedTuple):
-    """What a walk depends on, settings of `plan` among it. walled: bool (cells,), the framed grid row by row, with so many columns.
-    longest_walk: in steps; least_detour, most_detour: steps of a detour, both included.
+    """What a walk depends on, including settings of `plan`. walled: bool (cells,), the framed grid row by row; columns: of the framed grid.
+    longest_walk: in steps; least_detour, most_detour: steps of a detour, both inclusive.
     """
 
     walled: np.ndarray
@@ -124,7 +124,7 @@ class _Walker(NamedTuple):
 
 
 class _Rules(NamedTuple):
-    """Settings of `plan` for the search; attempts: first walks in all."""
+    """Settings of `plan` for the search; attempts: total number of first walks."""
 
     population: int
     generations: int
@@ -138,7 +138,7 @@ class _Rules(NamedTuple):
 def _search(walks_rng, moves_rng, walker, start, target, rules):
     """Cells (n,) of the cheapest path, the number of first walks found, and the lowest cost so far (generations + 1,)."""
     size, columns, population = len(walker.walled), walker.columns, rules.population
-    # A path visits a cell once; a child joins at most two paths and a walk before its loops are cut.
+    # A path visits a cell once; before its loops are removed, a child consists of at most two paths and a walk.
     walk, last_visit = np.empty(2 * size + 2 * walker.longest_walk + 2, dtype=np.int64), np.empty(size, dtype=np.int64)
     place, common = np.full(size, -1), np.empty(size, dtype=np.int64)
 
@@ -174,7 +174,9 @@ def _search(walks_rng, moves_rng, walker, start, target, rules):
 
 @njit(cache=True)
 def _best(paths, costs, population):
-    """The cheapest paths, the cheapest first, of equal ones the first; and their costs (2 population,), with room for children."""
+    """The cheapest paths in ascending order of cost, ties in their original order; and their costs (2 population,), with room for
+    children.
+    """
     order = ascending(costs[: len(paths)])
     best = np.empty(2 * population)
     for k in range(population):
@@ -184,7 +186,7 @@ def _best(paths, costs, population):
 
 @njit(cache=True)
 def _first_walks(rng, walker, start, target, rules, walk, last_visit):
-    """Up to `population` paths, and their costs (2 population,): the first one straight to the target, the others by way of a free cell."""
+    """Up to `population` paths, and their costs (2 population,): the first one directly to the target, the others through a free cell."""
     paths = [walk[:0]]
     paths.clear()
     costs = np.empty(2 * rules.population)
@@ -209,13 +211,15 @@ def _first_walks(rng, walker, start, target, rules, walk, last_visit):
 
 @njit(cache=True)
 def _extend(rng, walker, walk, count, goal):
-    """Continue a walk of `count` cells to a goal, in place. Returns the new number of cells, 0 if it becomes too long or cannot move."""
+    """Continue a walk of `count` cells to a goal, in place. Returns the new number of cells, or 0 if the walk becomes too long or cannot
+    move.
+    """
     walled, columns = walker.walled, walker.columns
     end = count + walker.longest_walk
     goal_row, goal_column = goal // columns, goal % columns
     cell = walk[count - 1]
     row, column = cell // columns, cell % columns
-    step = -1  # the last one taken
+    step = -1  # the last step taken
     detour = 0
     while cell != goal:
         if count == end:
@@ -265,7 +269,9 @@ def _random_step(rng, walled, columns, cell):
 
 @njit(cache=True)
 def _cut_loops(walk, count, last_visit):
-    """Cut the loops out of a walk, in place: from each cell it goes on where it left that cell for the last time. Returns what is left."""
+    """Remove the loops of a walk, in place: after each cell it continues as after its last visit there. Returns the remaining number of
+    cells.
+    """
     for k in range(count):
         last_visit[walk[k]] = k
     kept = 0
@@ -279,7 +285,8 @@ def _cut_loops(walk, count, last_visit):
 
 @njit(cache=True)
 def _join(rng, head, tail, place, common, walk):
-    """Write the head of one path and the tail of another, joined at a random inner cell of both. Returns its length, 0 without such a cell.
+    """Write the head of one path and the tail of another, joined at a random inner cell of both. Returns its length, or 0 if there is no
+    such cell.
 
     place: (cells,) scratch, all -1 before and after.
     """
@@ -302,12 +309,12 @@ def _join(rng, head, tail, place, common, walk):
 
 @njit(cache=True)
 def _walk_anew(rng, walker, path, count, last_visit):
-    """Replace what lies between two random cells of a path by a new walk, in place; a walk that fails changes nothing."""
+    """Replace the section between two random cells of a path by a new walk, in place; a failed walk changes nothing."""
     one = rng.integers(0, count)
     other = rng.integers(0, count - 1)
     other += other >= one
     first, last = min(one, other), max(one, other)
-    # The new walk is made behind the path, followed by the path's tail; then both are drawn up.
+    # The new walk is written after the path, followed by the path's tail; then both are moved forward.
     path[count] = path[first]
     end = _extend(rng, walker, path, count + 1, path[last])
     if end == 0:
@@ -318,7 +325,7 @@ def _walk_anew(rng, walker, path, count, last_visit):
 
 @njit(cache=True)
 def _copy(source, first, last, target, place):
-    """Copy the cells first .. last - 1 of one path to a place in another. Returns the place behind them."""
+    """Copy the cells first .. last - 1 of one path to a place in another. Returns the place after them."""
     for k in range(first, last):
         target[place + k - first] = source[k]
     return place + last - first

@@ -1,7 +1,7 @@
-"""Genetic algorithm for paths over the cells of a grid (GA), a rival in ma2020 (Section 4.1; its reference 29, without any parameters).
+"""Genetic algorithm for paths over the cells of a grid (GA), a rival in ma2020 (Section 4.1; its reference 29, no parameters given).
 
-By the coding `via_cells` a chromosome is a number of free cells, and inserted midpoints join them to a path: the algorithm of BCA without
-the Bezier curve. By `rows` a chromosome is a path itself, at first one through a random free cell of each row.
+With the coding `via_cells` a chromosome is a sequence of free cells, joined to a path by inserted midpoints: the algorithm of BCA without
+the Bezier curve. With `rows` a chromosome is itself a path, initially one through a random free cell of each row.
 """
 
 from typing import Annotated, Literal
@@ -18,12 +18,12 @@ from bezierplan.workspaces.problem import Path, Problem
 workspaces = ("grid",)
 exact = True
 
-# Draws of one cell in each row until these can be joined.
+# Number of times one cell is drawn in each row until these can be joined.
 _MOST_DRAWS = 10_000
 
 
 def check(settings: dict) -> None:
-    """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
+    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     check_pairs(settings["population"])
 
 
@@ -43,24 +43,24 @@ def plan(
     mutation_probability: Annotated[float, Range(0, 1)],
     elitism: Annotated[int, Range(0, 1)],
 ) -> Plan:
-    """Shortest path over the 8-connected lattice of a grid; its objective is its length in units, infinite without a path.
+    """Shortest path over the 8-connected lattice of a grid; its objective is its length in units, infinite if there is no path.
 
-    corners: how many of the cells beside a diagonal step may be occupied. genes: free cells of a chromosome by the coding via_cells;
-    initial: drawn uniformly, and then perhaps sorted by column + row. longest_join: the most cells of a path, repeated ones included;
-    undecodable_length: in units, what a chromosome counts whose cells are not joined within that. crossover_probability: of a pair of
-    parents, cut between two genes. mutation_probability: of a chromosome, one gene becomes a random free cell. elitism: how many of the
-    best so far replace a chromosome.
+    corners: how many of the two cells beside a diagonal step may be occupied. genes: number of free cells of a chromosome with the coding
+    via_cells; initial: drawn uniformly, or also sorted by column + row. longest_join: the most cells a path may have, repeated ones
+    included; undecodable_length: length, in units, assigned to a chromosome whose cells cannot be joined within that limit.
+    crossover_probability: of a pair of parents, cut between two genes. mutation_probability: of a chromosome, one gene of which becomes a
+    random free cell. elitism: how many of the best so far replace a chromosome.
 
-    The coding rows has no use for genes, initial and undecodable_length: parents are cut in a cell that both have, and by mutation a part
-    of a path is joined anew by way of a random cell.
+    The coding rows does not use genes, initial and undecodable_length: parents are cut at a shared cell, and mutation reconnects a section
+    of a path through a random cell.
 
-    Raises ValueError for a start or target that is in no free cell.
+    Raises ValueError if start or target is not in a free cell.
     """
     grid = problem.workspace
     places = lattice(grid, problem.start, problem.target, corners)
     starts, moves = rng.spawn(2)
     if places.start == places.target:
-        # Nothing to search: one chromosome, without a gene.
+        # No search needed: one chromosome without genes.
         population, generations, genes = 1, 0, 0
     if coding == "via_cells":
         free = np.flatnonzero(~places.occupied)
@@ -115,9 +115,9 @@ def _search(
     mutation_probability,
     elitism,
 ):
-    """Path (n,) of the best chromosome, of no cells if none can be decoded, and the least length so far (generations + 1,).
+    """Path (n,) of the best chromosome, empty if none can be decoded, and the shortest length so far (generations + 1,).
 
-    cells: (population, genes + 2), with start and target. free: (n,) cells.
+    cells: (population, genes + 2), including start and target. free: (n,) cells.
     """
     population, genes = cells.shape[0], cells.shape[1] - 2
     bits = 1 + int(np.log2(len(lattice.row)))
@@ -175,9 +175,9 @@ def _first_paths(
 
 @njit(cache=True)
 def _fill(rng, lattice, choices, counts, paths, sizes):
-    """Set paths and their sizes, in place, until one of them cannot be found.
+    """Fill in paths and their sizes, in place, until one cannot be found.
 
-    choices: (rows, n) the free cells of each row, with counts: (rows,).
+    choices: (rows, n) the free cells of each row; counts: (rows,) how many.
     """
     marks = np.zeros(len(lattice.row), dtype=np.int64)
     cells = np.empty(len(counts) + 2, dtype=np.int64)

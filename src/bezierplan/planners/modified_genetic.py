@@ -1,12 +1,13 @@
-"""Modified genetic algorithm (MGA): which points of a field are control points of a Bezier curve (elhoseny2017, Section 3).
+"""Modified genetic algorithm (MGA): selects the points of a field that are control points of a Bezier curve (elhoseny2017, Section 3).
 
 A chromosome has one gene for each point of a lattice of cells: 1 makes the point a control point, 0 leaves it out, and -1 marks an occupied
-cell, which is never set. It is kept as the ascending list of the genes that are 1. A chromosome whose points are too near to each other or
-whose curve touches an occupied cell is deleted, and a random one drawn in its place (Section 3.2.2). Beside the plain algorithm the paper
-watches the Q statistic of the pool (Section 3.3). In the kernels coordinates and lengths are in cells.
+cell, which is never set. It is stored as the ascending list of the genes that are 1. A chromosome whose points are too close to each other
+or whose curve touches an occupied cell is deleted and replaced by a random one (Section 3.2.2). On top of the plain algorithm the paper
+monitors the Q statistic of the pool (Section 3.3). In the kernels coordinates and lengths are in cells.
 
-In a maze the algorithm as printed finds no path. So that it can, a first population can come from small roadmaps, control points can be
-joined in the order in which a walk from the start reaches them, and a mutation can shift a control point; none of this is in the paper.
+In a maze the algorithm as printed finds no path. To make that possible, the first population can come from small roadmaps, control points
+can be joined in the order in which a walk from the start reaches them, and a mutation can shift a control point; none of this is in the
+paper.
 """
 
 import math
@@ -28,10 +29,10 @@ workspaces = ("grid",)
 CurveKind = Literal["single", "composite"]
 PATH_KINDS = {"single": "bezier", "composite": "piecewise_quadratic"}
 
-# Places in a list of genes: two chromosomes crossed have at most twice as many.
+# Capacity of a list of genes: a crossover of two chromosomes yields at most twice as many.
 _ROOM = 2 * MOST_POINTS + 1
 
-# Fitness of a chromosome that holds a place in the first population because no valid one was found.
+# Fitness of a chromosome that fills a place in the first population because no valid one was found.
 _UNFIT = 1e-9
 
 Mutation = Literal["gene", "chromosome", "one_flip", "shift"]
@@ -39,12 +40,14 @@ Diversity = Literal["none", "more_offspring", "relaxing", "unique"]
 _EACH_GENE, _CHROMOSOME, _ONE_FLIP, _SHIFT = range(4)
 _NO_DIVERSITY, _MORE_OFFSPRING, _RELAXING, _UNIQUE = range(4)
 
-# A shift moves a control point by at most this share of the places of a side.
+# A shift moves a control point by at most this share of the lattice points of a side.
 _SHIFT_REACH = 0.1
 
 
 class Rules(NamedTuple):
-    """Settings of `plan` that the search needs, by the same names; words by their number. pairs: of parents crossed in a batch."""
+    """Settings of `plan` that the search needs, under the same names; choices as numbers. pairs: number of pairs of parents crossed in a
+    batch.
+    """
 
     population: int
     iterations: int
@@ -69,11 +72,11 @@ class Rules(NamedTuple):
 
 
 class Found(NamedTuple):
-    """What a search found. ones: of the best chromosome, none if there is none. cost: its length.
+    """Result of a search. ones: those of the best chromosome, empty if there is none. cost: its length.
 
-    history: (iterations + 1,) best cost so far. distinct: (iterations + 1,) different chromosomes in the population. q: (iterations,) mean
-    Q of the pool at an iteration's end, where it is asked for. batches: further batches of offspring. evaluations: chromosomes that were
-    validated. valid_share: of the children.
+    history: (iterations + 1,) best cost so far. distinct: (iterations + 1,) number of distinct chromosomes in the population. q:
+    (iterations,) mean Q of the pool at the end of an iteration, where requested. batches: number of extra batches of offspring.
+    evaluations: number of chromosomes validated. valid_share: share of valid children.
     """
 
     ones: np.ndarray
@@ -87,7 +90,7 @@ class Found(NamedTuple):
 
 
 def check(settings: dict) -> None:
-    """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
+    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     check_pairs(settings["population"])
     if settings["first_points"] > MOST_POINTS:
         raise ValueError(f"first_points: {settings['first_points']}; a curve has at most {MOST_POINTS} control points between its ends")
@@ -130,24 +133,24 @@ def plan(
     """Shortest curve through control points on a lattice of cells (elhoseny2017, Algorithms 1 and 2).
 
     mutation: every gene changes with the probability mutation_rate, one gene of a chromosome does, or one gene always does (one_flip); or a
-    chromosome, with that probability, loses a control point, gets another one, or has one shifted (shift). diversity: no rule at all (the
-    plain algorithm); more offspring as long as the mean Q of the pool is above eta, at most most_batches times an iteration (Algorithm 2);
-    only children whose mean Q to the pool is at most 1 - eta (relaxing); no child equal to another chromosome of the pool (unique). eta
-    changes by the factor eta_decay from one iteration to the next. gene_lattice: 21 x 21 points, or every cell; gene_order: genes are
-    numbered column by column from the left, or row by row from below. point_order: control points are joined in the order of their
-    projection on the line from start to target, ties from its left to its right, in the order of the genes, or in that of their distance
-    from the start over free cells (geodesic). first_population: random chromosomes, or the inner nodes of ways along random roadmaps
-    (`prm`) of roadmap_nodes and roadmap_neighbours, of which there are at most most_roadmaps; random chromosomes stand in for those that
-    are missing. first_points: the most control points of a random chromosome. first_draws: for each of the first population. replacements:
-    draws for an invalid child. least_distance: between two control points, in cells. curve: a single Bezier curve, or quadratic pieces that
-    meet half-way between the points (composite). fitness_length: what the fitness is the inverse of, the length of the sampled curve or a
-    length that counts cells (`cell_length`). invalid: what becomes of a curve that touches occupied cells; with penalty cells each are
-    added to its length. survival: the best of parents and offspring, or of the offspring alone (generational). offspring: what joins the
-    pool, the children of a crossover and beside them their mutants (both), or the mutants alone; children_per_parent: how many children a
-    batch has for each chromosome of the population.
+    chromosome, with that probability, loses a control point, gains one, or has one shifted (shift). diversity: no rule (the plain
+    algorithm); more offspring as long as the mean Q of the pool is above eta, at most most_batches times per iteration (Algorithm 2); only
+    children whose mean Q to the pool is at most 1 - eta (relaxing); no child equal to another chromosome of the pool (unique). eta changes
+    by the factor eta_decay from one iteration to the next. gene_lattice: 21 x 21 points, or every cell; gene_order: genes are numbered
+    column by column from the left, or row by row from the bottom. point_order: control points are joined in the order of their projection
+    on the line from start to target (ties from its left to its right), in the order of the genes, or by their distance from the start over
+    free cells (geodesic). first_population: random chromosomes, or the inner nodes of paths through random roadmaps (`prm`) with
+    roadmap_nodes and roadmap_neighbours, at most most_roadmaps of them; random chromosomes fill any remaining places. first_points: maximum
+    number of control points of a random chromosome. first_draws: draws for each member of the first population. replacements: draws for an
+    invalid child. least_distance: between two control points, in cells. curve: a single Bezier curve, or quadratic pieces that meet
+    half-way between the points (composite). fitness_length: the inverse of the fitness, either the length of the sampled curve or a length
+    that counts cells (`cell_length`). invalid: what happens to a curve that touches occupied cells; with `penalty`, that many cells are
+    added to its length for each. survival: the best of parents and offspring, or of the offspring alone (generational). offspring: what
+    joins the pool, the children of a crossover together with their mutants (both), or the mutants alone; children_per_parent: number of
+    children in a batch for each chromosome of the population.
 
     The planner's own test: no cell that the sampled curve touches is occupied. Extra columns: distinct_chromosomes in the population and
-    mean_q of the pool, means over the iterations; extra_batches of offspring; valid_share of the children.
+    mean_q of the pool, both averaged over the iterations; extra_batches of offspring; valid_share of the children.
     """
     grid = problem.workspace
     ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
@@ -201,8 +204,8 @@ def plan(
 def _from_roadmaps(
     problem: Problem, rng: np.random.Generator, field: Field, wanted: int, most: int, nodes: int, neighbours: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Chromosomes of the inner nodes of ways along roadmaps, at most as many as wanted, and their numbers of ones; straight ways and those
-    of too many nodes left out. The genes are all cells.
+    """Chromosomes made of the inner nodes of paths through roadmaps, at most `wanted`, and their numbers of ones; straight paths and those
+    with too many nodes are left out. Every cell is a gene.
     """
     ones, counts = np.zeros((wanted, _ROOM), dtype=np.int64), []
     for _ in range(most):
@@ -221,9 +224,9 @@ def _from_roadmaps(
 
 @njit(cache=True)
 def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarray, counts: np.ndarray) -> Found:
-    """Algorithm 2; without a rule for diversity the plain algorithm.
+    """Algorithm 2; without a diversity rule, the plain algorithm.
 
-    first: (n, `_ROOM`) chromosomes that the first population begins with, and counts: (n,) of their ones.
+    first: (n, `_ROOM`) chromosomes with which the first population begins; counts: (n,) their numbers of ones.
     """
     batches = 1 + (rules.most_batches if rules.diversity == _MORE_OFFSPRING else 0)
     size = rules.population
@@ -278,7 +281,7 @@ def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarr
                 lost += invalid
                 further += 1
             q[iteration] = pairs / (filled * (filled - 1) / 2)
-        # Where a rule for diversity refuses so many children that places are left, the last parents keep them.
+        # Where a diversity rule rejects so many children that places remain free, the last parents keep them.
         gene_lists.select(pool, min(size, filled - size) if rules.generational else 0, filled, spare)
         eta *= rules.eta_decay
     return Found(best, best_cost, history, distinct, q, further, evaluations, 1.0 - lost / bred)
@@ -286,9 +289,10 @@ def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarr
 
 @njit(cache=True)
 def _add_offspring(rng, pool, filled, wheel, eta, child, field, rules):
-    """Add a batch of offspring of the pool's first chromosomes (Algorithm 2, lines 6 and 7) behind those that fill it.
+    """Add a batch of offspring of the pool's first chromosomes (Algorithm 2, lines 6 and 7) after those already in it.
 
-    wheel: (population,) running sum of the parents' fitness. Returns how many fill the pool now, chromosomes validated, invalid children.
+    wheel: (population,) running sum of the parents' fitness. Returns the number of chromosomes now in the pool, of chromosomes validated,
+    and of invalid children.
     """
     tried = invalid = 0
     for _ in range(rules.pairs):
@@ -312,7 +316,7 @@ def _add_offspring(rng, pool, filled, wheel, eta, child, field, rules):
                 if cost == np.inf:
                     if not rules.generational:
                         continue
-                    # No parent survives, so the place is held as in the first population.
+                    # No parent survives, so the place is filled as in the first population.
                     cost = 1.0 / _UNFIT
                 if _is_too_alike(child[:count], cost, pool, filled, eta, field, rules):
                     continue
@@ -332,14 +336,14 @@ def _parents(rng, wheel):
     other = np.searchsorted(wheel, drawn if drawn < begin else drawn + share, side="right")
     other = min(other, len(wheel) - 1)
     if other == one:
-        # Rounding on the edge of the share left out.
+        # Rounding at the edge of the omitted share.
         other = one - 1 if one > 0 else one + 1
     return one, other
 
 
 @njit(cache=True)
 def _mutate(rng, child, count, field, rules):
-    """Change random genes, but for those that may not be set; returns how many are 1."""
+    """Change random genes, except those that must not be set; returns how many are 1."""
     genes = len(field.points)
     if rules.mutation == _EACH_GENE:
         # From one gene that changes to the next: the gaps of independent trials of equal probability.
@@ -360,7 +364,9 @@ def _mutate(rng, child, count, field, rules):
 
 @njit(cache=True)
 def _change_point(rng, child, count, field):
-    """Take a control point away, but for the only one, add one, or shift one, each as likely; returns how many there are."""
+    """Remove a control point (unless it is the only one), add one, or shift one, each with equal probability; returns how many there
+    are.
+    """
     change = rng.integers(0, 3)
     if change == 1:
         gene = field.choices[rng.integers(0, len(field.choices))]
@@ -383,7 +389,7 @@ def _change_point(rng, child, count, field):
 
 @njit(cache=True)
 def _random_chromosome(rng, child, field, rules):
-    """Write a chromosome of random genes, from 1 to `first_points` of them; returns how many."""
+    """Write a chromosome of 1 to `first_points` random genes; returns how many."""
     wanted = min(rng.integers(1, rules.first_points + 1), len(field.choices))
     count = 0
     while count < wanted:
@@ -395,7 +401,7 @@ def _random_chromosome(rng, child, field, rules):
 
 @njit(cache=True)
 def _is_too_alike(ones, cost, pool, filled, eta, field, rules):
-    """Whether a rule for diversity refuses a child (Section 3.3)."""
+    """Whether a diversity rule rejects a child (Section 3.3)."""
     if rules.diversity == _UNIQUE:
         for i in range(filled):
             if cost == pool.cost[i] and gene_lists.same(ones, pool.ones[i, : pool.count[i]]):

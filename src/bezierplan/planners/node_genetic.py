@@ -1,7 +1,6 @@
-"""Genetic algorithm over sequences of cells of any length, with five mutation operators (meledje).
+"""Genetic algorithm over cell sequences of any length, with five mutation operators (meledje).
 
-A chromosome is a path: the numbers of the cells from start to target, joined by straight edges between the centres of the cells
-(`workspaces.ground`).
+A chromosome is a path: the numbers of its cells from start to target, joined by straight edges between their centres (`workspaces.ground`).
 
 Lengths, heights and energies in the kernels are in cells.
 """
@@ -28,14 +27,14 @@ Selection = Literal["linear_rank", "best_half", "tournament", "roulette"]
 _FEASIBLE, _REJECTION, _UNRESTRICTED = range(3)
 _LINEAR_RANK, _BEST_HALF, _TOURNAMENT, _ROULETTE = range(4)
 
-# So many walks, or random paths, are begun for one path of the first population before it counts as out of reach.
+# Walks, or random paths, tried for one path of the first population before it counts as unreachable.
 _MOST_TRIES = 1_000_000
-# Smaller differences of the energies of a path and of the best so far are rounding.
+# Smaller differences between the energy of a path and the best so far are rounding errors.
 _IMPROVEMENT = 1e-9
 
 
 class Rules(NamedTuple):
-    """The settings of `plan` as the kernels read them, words as their places in `Mutation`, `Initial` and `Selection`."""
+    """The settings of `plan` as the kernels read them, choices as their indices in `Mutation`, `Initial` and `Selection`."""
 
     mutation: int
     population: int
@@ -59,9 +58,9 @@ class Rules(NamedTuple):
 
 
 class _Found(NamedTuple):
-    """path: the cells of the result, empty if there was no first population. objective: its energy and penalty. met: occupied cells it
-    meets. history: lowest objective so far, by generation. feasible_last: share of feasible paths in the last population.
-    made_infeasible: share of the mutated feasible paths that a mutation made infeasible. diversity: mean of `node_diversity`.
+    """path: the cells of the result, empty if there was no first population. objective: its energy plus penalty. met: number of occupied
+    cells it meets. history: lowest objective so far, by generation. feasible_last: share of feasible paths in the last population.
+    made_infeasible: share of mutated feasible paths that the mutation made infeasible. diversity: mean of `node_diversity`.
     """
 
     path: np.ndarray
@@ -76,7 +75,7 @@ class _Found(NamedTuple):
 
 
 def check(settings: dict) -> None:
-    """Rules over several settings. Raises ValueError, naming the setting and what would be right."""
+    """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     check_pairs(settings["population"])
     if settings["friction"] == 0:
         raise ValueError("friction: 0; climbing is weighed by its reciprocal, so a number above 0 is needed")
@@ -110,26 +109,27 @@ def plan(
     friction: Annotated[float, Range(0)],
     corners: Literal["open", "closed"],
 ) -> Plan:
-    """Path of least energy from cell to cell: its length, plus its climbs divided by the friction (meledje, Sections 2 and 3).
+    """Path of minimum energy from cell to cell: its length, plus its climbs divided by the friction (meledje, Sections 2 and 3).
 
-    mutation: the operator, applied with mutation_probability once a path, or as often as the path has inner nodes (mutation_for). stall:
-    generations without improvement after which the search stops, before `generations` are done. initial: the first population, of feasible
-    walks from cell to visible cell; of random paths, of which only feasible ones are kept (rejection); or of all of them; at most
-    most_nodes inner nodes each. selection: how parents are drawn from the population; by roulette in proportion to the reciprocal of the
-    objective. crossover_probability: of a pair of parents; cut: behind the same number of nodes in both, or not. without_obstacle: what
-    `proposed` does to a path that meets no obstacle: any node is changed as by ref12, or none. obstacle_node: which nodes it takes for
-    encountering an obstacle, those whose edge to the next node meets one, or those in a cell beside an occupied one. keep_better: whether
+    mutation: the operator, applied with mutation_probability once per path, or once per inner node (mutation_for). stall: generations
+    without improvement after which the search stops early. initial: the first population, of feasible walks from cell to visible cell; of
+    random paths of which only feasible ones are kept (rejection); or of random paths without restriction; each with at most most_nodes
+    inner nodes. selection: how parents are drawn from the population; roulette draws them in proportion to the reciprocal of the objective.
+    crossover_probability: of a pair of parents; cut: after the same number of nodes in both, or independently. without_obstacle: what
+    `proposed` does to a path that meets no obstacle: any node is changed as in ref12, or none. obstacle_node: which nodes it considers to
+    encounter an obstacle, those whose edge to the next node meets one, or those in a cell next to an occupied one. keep_better: whether
     ref12 and proposed keep a node that is better than all its neighbours. direction: which steps towards the target `ref21` accepts, within
     a right angle of the straight line to it, or with the same signs; ref21_test: whether it tests the two edges of the new node or the
     whole path. random_node: which cells `random` draws from. penalty: in units of length, for each occupied cell that an edge meets.
-    elitism: how many of the best so far replace a path. result: the best path of the last generation, or the best so far. optimal_within:
-    share of the optimum by which an optimal path may exceed it. corners: whether an edge through a corner of occupied cells meets them
-    (closed).
+    elitism: how many of the best so far replace a path. result: the best path of the last generation, or the best found in the run.
+    optimal_within: share of the optimum by which a path may exceed it and still count as optimal. corners: whether an edge through a corner
+    of occupied cells meets them (closed).
 
-    The planner's own test: no edge meets an occupied cell. Extra columns: optimum, the least energy of all feasible paths from cell to
-    cell; optimal, near_optimal, infeasible, one of which is true; feasible_last, the share of feasible paths in the last population;
-    made_infeasible, the share of mutated feasible paths that became infeasible; node_diversity, the mean over generations of the chance
-    that an inner node of one path is no node of another. Raises ValueError if start or target is not the centre of a cell.
+    The planner's own test: no edge meets an occupied cell. Extra columns: optimum, the minimum energy of all feasible paths from cell to
+    cell; optimal, near_optimal, infeasible, exactly one of which is true; feasible_last, the share of feasible paths in the last
+    population; made_infeasible, the share of mutated feasible paths that became infeasible; node_diversity, the mean over generations of
+    the probability that an inner node of one path is not a node of another. Raises ValueError if start or target is not the centre of a
+    cell.
     """
     grid = problem.workspace
     ground = ground_of(grid, friction, corners == "closed")
@@ -137,7 +137,7 @@ def plan(
     optimum = least_energy(grid, friction, corners == "closed", start, target)
     starts, moves = rng.spawn(2)
     if obstacles_met(ground, start, target) == 0:
-        # Nothing to search: a walk sees its target at once, and paths without inner nodes cannot change.
+        # No search needed: a walk sees its target immediately, and paths without inner nodes cannot change.
         energy = edge_energy(ground, start, target)
         found = _Found(np.array([start, target]), energy, 0, np.array([energy]), 1, False, 1.0, math.nan, 0.0)
         stop = "direct"
@@ -193,13 +193,13 @@ _NOTHING = _Found(np.empty(0, dtype=np.int64), math.inf, 0, np.array([math.inf])
 
 
 def _inner(cells: np.ndarray, start: int, target: int) -> np.ndarray:
-    """Numbers of cells (rows, columns), true or false, without start and target."""
+    """Numbers of the cells marked in a bool array (rows, columns), without start and target."""
     numbers = np.flatnonzero(cells)
     return numbers[(numbers != start) & (numbers != target)]
 
 
 def serves(problem: Problem) -> None:
-    """Raises ValueError, naming the end and what would be right, unless start and target are centres of cells."""
+    """Raise ValueError, naming the end and what is expected, unless start and target are centres of cells."""
     for end in ("start", "target"):
         _cell_at(problem.workspace, end, getattr(problem, end))
 
@@ -218,7 +218,7 @@ def _cell_at(grid: Grid, end: str, point: tuple[float, float]) -> int:
 
 @njit(cache=True)
 def _search(starts, moves, ground, start, target, free, drawn, rules):
-    """The genetic algorithm. free: the free cells without start and target; drawn: those that random mutation draws from."""
+    """The genetic algorithm. free: the free cells without start and target; drawn: the cells from which random mutation draws."""
     population = rules.population
     paths, lengths = np.empty((population, rules.most_nodes + 2), dtype=np.int64), np.empty(population, dtype=np.int64)
     for i in range(population):
@@ -307,9 +307,9 @@ def _copy(source, target, length):
 
 @njit(cache=True)
 def join(head: np.ndarray, cut: int, tail: np.ndarray, tail_cut: int, tail_length: int, child: np.ndarray) -> int:
-    """The first `cut` nodes of one path and those behind the first `tail_cut` of another (meledje, Section 2.6), written to a child.
+    """Write to a child the first `cut` nodes of one path and those after the first `tail_cut` of another (meledje, Section 2.6).
 
-    Returns its length. Cuts behind the last node leave the head as it is.
+    Returns its length. Cuts after the last node leave the head unchanged.
     """
     for k in range(cut):
         child[k] = head[k]
@@ -320,7 +320,7 @@ def join(head: np.ndarray, cut: int, tail: np.ndarray, tail_cut: int, tail_lengt
 
 @njit(cache=True)
 def _evaluate(path, ground, penalty):
-    """Energy of a path with its penalty, and the occupied cells that its edges meet (meledje, eqs. 1 to 3)."""
+    """Energy of a path plus its penalty, and the number of occupied cells that its edges meet (meledje, eqs. 1 to 3)."""
     energy = 0.0
     for k in range(len(path) - 1):
         energy += edge_energy(ground, path[k], path[k + 1])
@@ -330,7 +330,7 @@ def _evaluate(path, ground, penalty):
 
 @njit(cache=True)
 def node_diversity(paths: np.ndarray, lengths: np.ndarray, cells: int) -> float:
-    """Chance that an inner node of one path (n, ...) is no node of another one, of so many cells; 0 without inner nodes."""
+    """Probability that an inner node of one path (n, ...) is not a node of another; 0 without inner nodes. cells: number of cells."""
     having, last = np.zeros(cells, dtype=np.int64), np.full(cells, -1)
     for i in range(len(paths)):
         for k in range(1, lengths[i] - 1):
@@ -349,7 +349,7 @@ def node_diversity(paths: np.ndarray, lengths: np.ndarray, cells: int) -> float:
 
 @njit(cache=True)
 def _first_path(rng, path, target, free, ground, rules):
-    """A random path, written behind its start; returns its number of nodes, 0 if none was found."""
+    """A random path, written after its start; returns its number of nodes, or 0 if none was found."""
     for _ in range(_MOST_TRIES):
         length = _walk(rng, path, target, free, ground) if rules.initial == _FEASIBLE else _random_path(rng, path, target, free)
         if length and (rules.initial != _REJECTION or path_met(path[:length], ground) == 0):
@@ -359,7 +359,9 @@ def _first_path(rng, path, target, free, ground, rules):
 
 @njit(cache=True)
 def _walk(rng, path, target, free, ground):
-    """A walk from cell to visible cell, none of them twice, until the target is visible; 0 if it gets too long, or sees no new cell."""
+    """A walk from cell to visible cell, none visited twice, until the target is visible; returns 0 if it becomes too long or sees no new
+    cell.
+    """
     length = 1
     while obstacles_met(ground, path[length - 1], target) > 0:
         if length == len(path) - 1:
@@ -381,7 +383,9 @@ def _walk(rng, path, target, free, ground):
 
 @njit(cache=True)
 def _one_of_few(rng, path, length, free, ground):
-    """A uniformly drawn cell that is visible from the last one of a path and not among its cells, after a look at all; -1 without any."""
+    """A uniformly drawn cell that is visible from the last cell of a path and not yet part of it, found by checking all cells; -1 if there
+    is none.
+    """
     seen, count = np.empty_like(free), 0
     for cell in free:
         if obstacles_met(ground, path[length - 1], cell) == 0 and not _among(cell, path, length):
@@ -400,7 +404,7 @@ def _among(cell, path, length):
 
 @njit(cache=True)
 def _random_path(rng, path, target, free):
-    """Any number of inner nodes that fits, each any free cell."""
+    """A random number of inner nodes within the limit, each a random free cell."""
     inner = below(rng, len(path) - 1)
     for k in range(1, inner + 1):
         path[k] = free[below(rng, len(free))]
@@ -413,7 +417,7 @@ def _random_path(rng, path, target, free):
 
 @njit(cache=True)
 def _select(rng, order, ranks, selection):
-    """As many parents as paths, with replacement. order: paths, the best first; ranks: their weights for a linear ranking."""
+    """As many parents as there are paths, drawn with replacement. order: paths, best first; ranks: their weights for a linear ranking."""
     if selection == _LINEAR_RANK:
         return order[roulette(rng, ranks, len(order))]
     parents = np.empty_like(order)

@@ -1,4 +1,4 @@
-"""Probabilistic roadmap: random free points, linked where they see each other, and the shortest way along the links.
+"""Probabilistic roadmap: random free points, linked where they see each other, and the shortest path along the links.
 
 The baseline PRM of tharwat2018's Figure 22 (its reference 48) and of elhoseny2017's Tables 2, 3 and 6, which give no parameters. Among
 circles a link is a segment that enters none; on a grid, one that touches no occupied cell.
@@ -21,10 +21,11 @@ from bezierplan.workspaces.problem import Path, Problem
 workspaces = ("circles", "grid")
 exact = True
 
-# Points drawn for one free node before the field counts as full.
+# Number of points drawn for one free node before the field counts as full.
 _MOST_DRAWS = 10_000
 
-# A segment may be this deep in a circle, in units: rounding errors of one that touches it, as from a start on its edge.
+# A segment may be this deep in a circle, in units: to allow for rounding errors of a segment that touches it, such as one from a start on
+# its edge.
 _TOUCHING = 1e-9
 
 
@@ -37,12 +38,12 @@ def plan(
     neighbours: Annotated[int, Range(1)],
     d_min: Annotated[float, Range(0)],
 ) -> Plan:
-    """Shortest path along a random roadmap, a polyline; its objective is its length in units, infinite without a path.
+    """Shortest path along a random roadmap, a polyline; its objective is its length in units, infinite if there is no path.
 
-    nodes: random points of the free part of the field, beside start and target. links: a node is linked with every node that it sees, or
-    with those that it sees of its nearest `neighbours`. d_min: added to every radius, in units; on a grid it has to be 0.
+    nodes: random points of the free part of the field, in addition to start and target. links: a node is linked with every node that it
+    sees, or with those that it sees of its nearest `neighbours`. d_min: added to every radius, in units; must be 0 on a grid.
 
-    Fewer nodes of one generator are the first of more. Extra column: roads, the number of links.
+    With the same generator, the nodes of a smaller roadmap are the first nodes of a larger one. Extra column: roads, the number of links.
     """
     length, way, roads = road_map(problem, rng, nodes, None if links == "visible" else neighbours, d_min)
     path = Path("polyline", way) if len(way) else None
@@ -54,9 +55,9 @@ def plan(
 def road_map(
     problem: Problem, rng: np.random.Generator, nodes: int, neighbours: int | None, d_min: float = 0.0
 ) -> tuple[float, np.ndarray, int]:
-    """Length and points (n, 2) of the shortest way along a random roadmap, infinite and none if there is no way, and the number of links.
+    """Length and points (n, 2) of the shortest path along a random roadmap, infinite and empty if there is none, and the number of links.
 
-    neighbours: how many of a node's nearest it may be linked with, None for all.
+    neighbours: how many of its nearest nodes a node may be linked with, None for all.
     """
     workspace = problem.workspace
     low, high, is_free, sees = _on_grid(workspace, d_min) if isinstance(workspace, Grid) else _among_circles(workspace, d_min)
@@ -69,7 +70,7 @@ def road_map(
 
 
 class _Field(NamedTuple):
-    """What the roadmap asks of a workspace: (2,) corners between which nodes are drawn, and which points and segments (n,) are free."""
+    """What the roadmap needs from a workspace: (2,) corners between which nodes are drawn, and which points and segments (n,) are free."""
 
     low: np.ndarray
     high: np.ndarray
@@ -94,7 +95,7 @@ def _on_grid(grid: Grid, d_min: float) -> _Field:
 def _free_points(
     rng: np.random.Generator, nodes: int, low: np.ndarray, high: np.ndarray, is_free: Callable[[np.ndarray], np.ndarray]
 ) -> np.ndarray:
-    """Points (nodes or fewer, 2), uniform in the free part of a field; fewer if next to nothing of it is free."""
+    """Points (nodes or fewer, 2), uniform in the free part of a field; fewer if almost none of it is free."""
     free = np.empty((0, 2))
     tries = 0
     while len(free) < nodes and tries < _MOST_DRAWS * nodes:
@@ -129,7 +130,9 @@ def _free_legs(occupied, starts, targets):
 
 
 def _pairs(points: np.ndarray, neighbours: int | None) -> tuple[np.ndarray, np.ndarray]:
-    """Pairs of different nodes, as two index arrays (pairs,), each pair once: all, or those of which one is among the other's nearest."""
+    """Pairs of different nodes, as two index arrays (pairs,), each pair once: all pairs, or those in which one node is among the other's
+    nearest.
+    """
     count = len(points)
     if neighbours is None or neighbours >= count - 1:
         return np.triu_indices(count, 1)
@@ -140,7 +143,7 @@ def _pairs(points: np.ndarray, neighbours: int | None) -> tuple[np.ndarray, np.n
 
 @njit(cache=True)
 def _nearest(points, neighbours):
-    """Indices (n, neighbours) of the nearest other points of each point (n, 2), the nearest first; of equally near ones the first."""
+    """Indices (n, neighbours) of the nearest other points of each point (n, 2), nearest first, ties in their original order."""
     nearest = np.empty((len(points), neighbours), dtype=np.int64)
     square = np.empty(neighbours)  # of the distance to each of them
     for i in range(len(points)):
@@ -161,7 +164,7 @@ def _nearest(points, neighbours):
 def _visible(starts: np.ndarray, targets: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> np.ndarray:
     """Whether the segments between two arrays of points (n, 2) enter no circle; touching is allowed."""
     way = targets - starts
-    square = np.maximum((way**2).sum(axis=1), np.finfo(float).tiny)  # of a point, any share along it is right
+    square = np.maximum((way**2).sum(axis=1), np.finfo(float).tiny)  # for a single point any share along it is valid
     visible = np.ones(len(way), dtype=bool)
     for centre, radius in zip(centres, radii):
         share = np.clip(((centre - starts) * way).sum(axis=1) / square, 0, 1)
@@ -171,7 +174,7 @@ def _visible(starts: np.ndarray, targets: np.ndarray, centres: np.ndarray, radii
 
 
 def _shortest_way(points: np.ndarray, one: np.ndarray, other: np.ndarray) -> tuple[float, list[int]]:
-    """Length of the shortest way from node 0 to node 1 along links, and its nodes; infinite and none if they are not connected."""
+    """Length of the shortest path from node 0 to node 1 along links, and its nodes; infinite and empty if they are not connected."""
     from scipy.sparse import csr_array
     from scipy.sparse.csgraph import dijkstra
 

@@ -1,9 +1,9 @@
 """A baseline: what a practitioner would drive, the exact shortest path with its corners rounded.
 
-At each obstacle that the shortest path turns round stands a circle of the turning radius, so that the obstacle's corner lies inside it; the
-path is the string pulled tight round these circles, of straight legs and arcs. Corners that are too near to each other for two circles, as
-those of a wall's end, are one turn of two circles side by side. The path is then shown to the certified check. Where an arc or a leg enters
-an obstacle, or there is no room for the circles, those beside it shrink, in the end to the corner itself: the shortest path is free, so
+At each obstacle corner around which the shortest path turns, a circle of the turning radius is placed so that the corner lies inside it;
+the path is a string of straight legs and arcs pulled tight around these circles. Corners too close together for two circles, such as those
+at the end of a wall, form one turn of two circles side by side. The certified check then judges the path. Where an arc or a leg enters an
+obstacle, or there is no room for the circles, the adjacent circles shrink, in the end to the corner itself: the shortest path is free, so
 this always ends in a free path.
 """
 
@@ -23,25 +23,25 @@ from bezierplan.workspaces.problem import Path, Problem
 exact = True
 deterministic = True
 
-# A vertex of the shortest path at which it turns by less, in radians, is no corner.
+# A vertex at which the shortest path turns by less than this, in radians, is not a corner.
 _STRAIGHT = 1e-9
 
-# A circle shrinks by this factor at a time, and to its corner below this share of the turning radius.
+# A circle shrinks by this factor at each step, and to its corner once below the given share of the turning radius.
 _SHRINKING = 0.8
 _SMALLEST = 0.01
 
-# An arc of at most this angle is one cubic piece, which lies outside of its circle by at most 4e-6 of the radius.
+# An arc of at most this angle is one cubic piece, which deviates outwards from its circle by at most 4e-6 of the radius.
 _PIECE_ANGLE = math.pi / 4
 
-# A point of the shortest path this near to a circle, in units, lies on it.
+# A point of the shortest path this close to a circle, in units, lies on it.
 _ON_CIRCLE = 1e-3
 
 
 class Turns(NamedTuple):
-    """What the path turns round, from start to target, each (n,) or (n, 2).
+    """What the path turns around, from start to target, each (n,) or (n, 2).
 
     corner: the obstacle's corner, or the centre of a circular obstacle; radius: that of the obstacle, 0 for a corner. before, after: unit
-    vectors, the path's direction. side: 1 for a turn to the left, -1 to the right.
+    vectors, the path's direction before and after the turn. side: 1 for a turn to the left, -1 to the right.
     """
 
     corner: np.ndarray
@@ -58,13 +58,13 @@ def plan(
     turning_radius: Annotated[float, Range(0)],
     offset: Annotated[float, Range(0)],
 ) -> Plan:
-    """The exact shortest path (`exact.bounds`), rounded; its objective is its length, in units, or infinite without a path.
+    """The exact shortest path (`exact.bounds`), rounded; its objective is its length, in units, or infinite if there is no path.
 
-    turning_radius: the least that the path should have, in units; 0 leaves the corners. offset: how far the path should keep from the
-    corners that it turns round, in units. Where there is no room, both are less: how much is told by the extra columns.
+    turning_radius: the smallest that the path should have, in units; 0 leaves the corners. offset: distance that the path should keep from
+    the corners around which it turns, in units. Where there is no room, both are smaller; the extra columns report by how much.
 
-    Extra columns: turns, the number of corners; tight_turns, those with less than the turning radius; least_radius, the smallest radius of
-    a turn, in units: 0 where a corner is left, infinite without a turn.
+    Extra columns: turns, the number of corners; tight_turns, those with a smaller radius than the turning radius; least_radius, the
+    smallest radius of a turn, in units: 0 where a corner is left, infinite if there are no turns.
     """
     bound = shortest_paths.shortest_path(problem)
     if math.isinf(bound.length):
@@ -108,7 +108,7 @@ def turns_of(points: np.ndarray, workspace: object) -> Turns:
 
 
 def _runs(begins: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """First and last places (m,) of the runs that begin at some places, the first one among them: bool (n,)."""
+    """First and last indices (m,) of the runs that begin where `begins`, bool (n,), is true; the first element is always true."""
     first = np.flatnonzero(begins)
     return first, np.append(first[1:], len(begins))[: len(first)] - 1
 
@@ -118,14 +118,14 @@ def _unit(vectors: np.ndarray) -> np.ndarray:
 
 
 def _rounded(problem: Problem, turns: Turns, turning_radius: float, offset: float) -> tuple[np.ndarray, np.ndarray, int]:
-    """Control points of the rounded path, radius (n,) of each turn, and how many paths were tried.
+    """Control points of the rounded path, radius (n,) of each turn, and the number of paths tried.
 
-    Where two circles of the same sense get into each other's way, they become one turn: they are pulled inwards the same way. Where that
-    does not help, circles are pulled inwards less far, and only then shrink.
+    Where two circles of the same sense get in each other's way, they become one turn and are pulled inwards in the same direction. Where
+    that does not help, circles are pulled inwards less, and only then shrink.
     """
     count = len(turns.side)
     blocked = region(problem.workspace)
-    # Of the wanted radius, and of the way inwards up to the corner's clearance; whether a turn begins at a corner.
+    # Share of the desired radius, share of the way inwards up to the corner's clearance, and whether a turn begins at a corner.
     share, pulled, begins = np.ones(count), np.ones(count), np.ones(count, dtype=bool)
     tries = 0
     while True:
@@ -151,14 +151,14 @@ def _rounded(problem: Problem, turns: Turns, turning_radius: float, offset: floa
 
 
 def _shrink(share: np.ndarray, which: np.ndarray, begins: np.ndarray) -> None:
-    """Make the circles smaller that are marked, with all of their turns."""
+    """Shrink the marked circles, along with the rest of their turns."""
     turn = np.cumsum(begins)
     which = np.isin(turn, turn[which])
     share[which] = np.where(share[which] > _SMALLEST, share[which] * _SHRINKING, 0.0)
 
 
 def _join(begins: np.ndarray, bent_back: np.ndarray, turns: Turns) -> bool:
-    """Make corners at which the string is bent back one turn with the nearer neighbour of the same sense; false if there is none."""
+    """Merge corners at which the string bends back into one turn with the nearer neighbour of the same sense; false if there is none."""
     joined = False
     gap = np.hypot(*np.diff(turns.corner, axis=0).T)
     gap = np.where((turns.side[1:] == turns.side[:-1]) & begins[1:], gap, np.inf)
@@ -171,7 +171,7 @@ def _join(begins: np.ndarray, bent_back: np.ndarray, turns: Turns) -> bool:
 
 
 def _beside(marked: np.ndarray) -> np.ndarray:
-    """Those that are marked (n,), and their neighbours."""
+    """The marked ones (n,) and their neighbours."""
     wide = np.concatenate([[False], marked, [False]])
     return wide[:-2] | wide[1:-1] | wide[2:]
 
@@ -179,7 +179,7 @@ def _beside(marked: np.ndarray) -> np.ndarray:
 def _circles(
     turns: Turns, begins: np.ndarray, share: np.ndarray, pulled: np.ndarray, turning_radius: float, offset: float
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Radii (n,) and centres (n, 2) of the circles that the path goes round; the corners lie inside, as deep as the offset."""
+    """Radii (n,) and centres (n, 2) of the circles around which the path runs; the corners lie inside them, at the depth of the offset."""
     margin = turns.radius + share * offset
     radii = np.maximum(margin, share * turning_radius)
     first, last = _runs(begins)
@@ -190,8 +190,8 @@ def _circles(
 def _string(
     problem: Problem, turns: Turns, centres: np.ndarray, radii: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Legs (n + 1, 2, 2) of the string round circles, sweeps (n,) of its arcs in their own sense, whether (n,) the string is bent back at
-    a circle, and whether a circle overlaps a neighbour so that no leg fits between them.
+    """Legs (n + 1, 2, 2) of the string around circles, sweeps (n,) of its arcs in their own sense, whether (n,) the string bends back at a
+    circle, and whether a circle overlaps a neighbour so that no leg fits between them.
     """
     ends = np.vstack([problem.start, centres, problem.target])
     signed = np.concatenate([[0.0], turns.side * radii, [0.0]])
@@ -208,8 +208,8 @@ def _string(
 
 
 def _chain(legs: np.ndarray, sweeps: np.ndarray, centres: np.ndarray, radii: np.ndarray, turns: Turns) -> tuple[np.ndarray, np.ndarray]:
-    """Control points (3 k + 1, 2) of legs and arcs as cubic pieces, and for each piece the two ends or turns, numbered from the start at 0,
-    that it lies between (k, 2); for an arc twice its turn.
+    """Control points (3 k + 1, 2) of legs and arcs as cubic pieces, and for each piece (k, 2) the two ends or turns between which it lies,
+    numbered from 0 at the start; for an arc, its turn twice.
     """
     points, owner = [legs[0, :1]], []
     for number, (begin, end) in enumerate(legs):
@@ -234,7 +234,7 @@ def _turned(vector: np.ndarray, angle: float) -> np.ndarray:
 
 
 def _quarter(vector: np.ndarray) -> np.ndarray:
-    """A vector turned to the left by a right angle."""
+    """A vector rotated counterclockwise by a right angle."""
     return np.array([-vector[1], vector[0]])
 
 

@@ -1,5 +1,5 @@
-"""A baseline: the shortest path over free cells, 1 for a straight step and 1.5 for a diagonal one. No length that counts cells falls below
-its own (`cell_length`).
+"""A baseline: the shortest path over free cells, counting 1 for a straight step and 1.5 for a diagonal one. No cell-counting length
+(`cell_length`) can be smaller.
 """
 
 import math
@@ -17,7 +17,7 @@ deterministic = True
 
 def plan(problem: Problem, rng: np.random.Generator) -> Plan:
     """A polyline through the centres of free cells, from the cell of the start to that of the target; a step may pass between two occupied
-    cells that meet by a corner. Its objective is its length in cells, times a cell's side, or infinite without a path.
+    cells that share only a corner. Its objective is its length in cells times the side of a cell, or infinite if there is no path.
     """
     grid = problem.workspace
     start, target = (grid.cell_of(*end) for end in (problem.start, problem.target))
@@ -27,7 +27,7 @@ def plan(problem: Problem, rng: np.random.Generator) -> Plan:
     path = None
     if found:
         points = _without_straight_vertices(grid.in_units(bound.points))
-        # A centre of a cell that is computed can differ from the given one in the last bit.
+        # A computed cell centre can differ from the given one in the last bit.
         points[[0, -1]] = problem.start, problem.target
         path = Path("polyline", points)
     return Plan(path, length, claimed_feasible=found, evaluations=1, history=np.array([length]), stop="exact", extra={})

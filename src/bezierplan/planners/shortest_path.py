@@ -14,9 +14,9 @@ deterministic = True
 
 
 def plan(problem: Problem, rng: np.random.Generator) -> Plan:
-    """The shortest path that touches obstacles but enters none; its objective is its length, in units, or infinite without a path.
+    """The shortest path that touches obstacles but enters none; its objective is its length, in units, or infinite if there is no path.
 
-    Round circles it is a polyline at most 1e-6 units longer.
+    Around circles it is a polyline at most 1e-6 units longer.
     """
     bound = shortest_paths.shortest_path(problem)
     found = math.isfinite(bound.length)

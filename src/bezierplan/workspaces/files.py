@@ -1,15 +1,15 @@
-"""Workspaces from their descriptions and files, with every fault told in one line; and as JSON text for tables.
+"""Workspaces from their descriptions and files, with every fault reported in one line; and as JSON text for tables.
 
-A description is a mapping with `kind` and `unit` and, by kind,
+A description is a mapping with `kind` and `unit` and, depending on the kind,
 
-    grid      file (lines of . and #, top row first), cell (side of a cell), perhaps heights (a file of numbers, top row first)
+    grid      file (lines of . and #, top row first), cell (side of a cell), optionally heights (a file of numbers, top row first)
     circles   bounds [x low, x high, y low, y high], circles [[x, y, radius], ...]
     polygons  file (`geojson`: features with properties.role `border`, one rectangle, and `obstacle`)
-    raster    file as of polygons, cell (side of a cell), rule (`overlap` or `centre`: which cells are occupied)
-    ros_map   file (YAML of ROS's map_server, beside its image), perhaps robot_radius, most_pixels
-    moving_ai file (`.map`), perhaps scenarios (`.scen`)
+    raster    file as for polygons, cell (side of a cell), rule (`overlap` or `centre`: which cells are occupied)
+    ros_map   file (YAML of ROS's map_server, next to its image), optionally robot_radius, most_pixels
+    moving_ai file (`.map`), optionally scenarios (`.scen`)
 
-Coordinates are numbers of the unit, at most 1e5 in size.
+Coordinates are in the unit, at most 1e5 in absolute value.
 """
 
 import json
@@ -35,9 +35,9 @@ MOST_CIRCLES = 10_000
 
 
 def load(description: dict, folder: Path) -> Workspace:
-    """The workspace of a description; its file is sought in a folder.
+    """The workspace of a description; its files are looked up in a folder.
 
-    Raises ValueError, naming the file or the key and what would be right.
+    Raises ValueError, naming the file or the key and what is expected.
     """
     kind, unit = description["kind"], description["unit"]
     if kind == "circles":
@@ -62,7 +62,7 @@ def load(description: dict, folder: Path) -> Workspace:
 
 
 def sources(description: dict, folder: Path) -> list[Path]:
-    """The files that a workspace is read from. Raises ValueError for a YAML file of `ros_map` that names no image."""
+    """The files from which a workspace is read. Raises ValueError if the YAML file of a `ros_map` names no image."""
     named = [folder / description[key] for key in ("file", "heights", "scenarios") if key in description]
     if description["kind"] == "ros_map":
         with _naming(description["file"]):
@@ -71,7 +71,7 @@ def sources(description: dict, folder: Path) -> list[Path]:
 
 
 def scenario(description: dict, number: int, workspace: Grid, folder: Path) -> moving_ai.Scenario:
-    """A numbered scenario of a workspace of kind `moving_ai`. Raises ValueError, naming the file and what would be right."""
+    """A numbered scenario of a workspace of kind `moving_ai`. Raises ValueError, naming the file and what is expected."""
     if "scenarios" not in description:
         raise ValueError(f"scenario: {number}: the workspace has no scenarios; expected a .scen file there")
     with _naming(description["scenarios"]):
@@ -86,7 +86,7 @@ def _text(description: dict, key: str, folder: Path) -> str:
 
 @contextmanager
 def _naming(file: str) -> Iterator[None]:
-    """Put the name of a file, or a key and it, before what a ValueError says."""
+    """Prefix the message of a ValueError with the name of a file, or with a key and the file."""
     try:
         yield
     except ValueError as error:
@@ -112,7 +112,9 @@ def _circles(bounds: list[float], circles: list[list[float]], unit: str) -> Circ
 
 
 def to_json(workspace: Workspace) -> str:
-    """A workspace as text; `from_json` gives it back, bit by bit. A random field is its circles, whatever the number of its cells."""
+    """A workspace as text; `from_json` restores it bit by bit. A random field is stored as its circles, whatever the number of its
+    cells.
+    """
     if isinstance(workspace, Grid) and isinstance(workspace.drawn, Circles):
         content = _circles_content(workspace.drawn) | {"kind": "random_field"}
     elif isinstance(workspace, Grid) and workspace.drawn:

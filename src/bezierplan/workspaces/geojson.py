@@ -1,7 +1,7 @@
-"""Polygons from GeoJSON (RFC 7946), read strictly: what is not understood is refused by name, for an obstacle must not vanish.
+"""Polygons from GeoJSON (RFC 7946), read strictly: anything not understood is rejected by name, since no obstacle may be lost.
 
-A feature is a Polygon with `properties.role` `border` (one, a rectangle) or `obstacle`. Features with the role
-`start` or `target` are left out: a study's problems say where they are.
+A feature is a Polygon with `properties.role` `border` (one, a rectangle) or `obstacle`. Features with the role `start` or `target` are
+ignored: a study's problems define them.
 """
 
 import json
@@ -23,9 +23,9 @@ Rings = tuple[np.ndarray, ...]
 def polygons_from_geojson(text: str, unit: str) -> Polygons:
     """Polygons from the text of a GeoJSON file.
 
-    Raises ValueError, naming the feature, for text that is no feature collection, an unknown role, another geometry than a Polygon, a ring
-    that is not closed, positions that are not [x, y], coordinates out of range, a border that is no rectangle, an obstacle that is invalid
-    or reaches over the border, and gaps that are neither closed nor open.
+    Raises ValueError, naming the feature, for text that is not a feature collection, an unknown role, a geometry other than Polygon, a ring
+    that is not closed, positions that are not [x, y], coordinates out of range, a border that is not a rectangle, an obstacle that is
+    invalid or extends beyond the border, and gaps that are neither closed nor open.
     """
     shapes = [shape for number, feature in enumerate(_features(text)) if (shape := _shape(number, feature))]
     borders = [rings for role, _, rings in shapes if role == "border"]
@@ -55,7 +55,7 @@ def _features(text: str) -> list:
 
 
 def _shape(number: int, feature: Any) -> tuple[str, str, Rings] | None:
-    """Role, name for messages, and rings of a feature, their last positions left out; None for a role that is no part of a workspace."""
+    """Role, name for messages, and rings of a feature, without their last positions; None for a role that is not part of a workspace."""
     properties, geometry = (feature.get(key) if isinstance(feature, dict) else None for key in ("properties", "geometry"))
     if not isinstance(properties, dict) or "role" not in properties:
         raise ValueError(f"feature {number}: properties: role: missing; expected border or obstacle")

@@ -1,7 +1,7 @@
 """A grid of square cells, each free or occupied.
 
-Cells are numbered row by row from the bottom left, from 0: number = column + columns * row (song2016, Section III; other papers number
-differently and convert where they read or print numbers).
+Cells are numbered row by row from the bottom left, from 0: number = column + columns * row (song2016, Section III; code for papers that
+number differently converts where it reads or prints numbers).
 """
 
 from dataclasses import dataclass
@@ -11,8 +11,8 @@ import numpy as np
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.polygons import Polygons
 
-# A coordinate this close below a grid line, in cells, counts as on it. Centres of cells put many samples of a curve exactly on grid
-# lines, where rounding alone would decide; with this margin every program gives the same cell: the one above or to the right.
+# A coordinate this close below a grid line, in cells, counts as on it. Control points at cell centres put many samples of a curve exactly
+# on grid lines, where rounding alone would decide; with this margin every program finds the same cell: the one above or to the right.
 ON_LINE = 1e-9
 
 MOST_CELLS = 4_000_000
@@ -24,9 +24,9 @@ class Grid:
     """Cells of a rectangle.
 
     occupied: bool (rows, columns), row 0 at the bottom. cell: side of a cell, in units. unit: name of the unit of length. origin: x, y of
-    the lower left corner, in units. drawn: what the cells were drawn from, if they were: circles, which only pictures show, or polygons,
-    which then are the obstacles of the certified check and of the exact bounds (`raster`).
-    heights: of the ground of each cell, in units (rows, columns), where it is not flat; only some planners look at them.
+    the lower left corner, in units. drawn: the shapes from which the cells were drawn, if any: circles, which only pictures show, or
+    polygons, which are then the obstacles of the certified check and of the exact bounds (`raster`). heights: (rows, columns) height of the
+    ground in each cell, in units, where it is not flat; only some planners use them.
     """
 
     occupied: np.ndarray
@@ -61,7 +61,7 @@ class Grid:
         return min(row, rows - 1), min(column, columns - 1)
 
     def centre(self, number: int) -> tuple[float, float]:
-        """Centre of a cell in units (song2016, eq. 7). Raises ValueError for a number that is not on the grid."""
+        """Centre of a cell in units (song2016, eq. 7). Raises ValueError for a number outside the grid."""
         rows, columns = self.occupied.shape
         if not 0 <= number < rows * columns:
             raise ValueError(f"cell {number} is not on the grid; its cells are numbered 0 to {rows * columns - 1}")
@@ -70,9 +70,10 @@ class Grid:
 
 
 def embed(occupied: np.ndarray) -> np.ndarray:
-    """The grid in the smallest one of a power of two of rows and of columns, the surplus cells occupied (song2016, Remark 1).
+    """The grid embedded in the smallest one whose numbers of rows and columns are powers of two, with the surplus cells occupied (song2016,
+    Remark 1).
 
-    occupied: bool (rows, columns) -> bool (2**i, 2**j). With it every binary cell number is a cell.
+    occupied: bool (rows, columns) -> bool (2**i, 2**j). Every binary cell number is then a cell.
     """
     rows, columns = (1 << (count - 1).bit_length() for count in occupied.shape)
     embedded = np.ones((rows, columns), dtype=bool)
@@ -108,9 +109,9 @@ def from_lines(lines: list[str], cell: float, unit: str) -> Grid:
 
 
 def heights_from_lines(lines: list[str], shape: tuple[int, int]) -> np.ndarray:
-    """Heights (rows, columns) of a grid of that shape from text: a number for each cell, with spaces between, the top row first.
+    """Heights (rows, columns) of a grid of that shape from text: one number per cell, separated by spaces, top row first.
 
-    Raises ValueError, naming the line, for another number of rows or cells and for what is no finite number.
+    Raises ValueError, naming the line, for a wrong number of rows or cells and for anything that is not a finite number.
     """
     rows, columns = shape
     if len(lines) != rows:

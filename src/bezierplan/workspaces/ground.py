@@ -1,10 +1,10 @@
-"""What a grid's ground is to paths from cell to cell: which edges meet obstacles, what they cost, and the cheapest path (meledje).
+"""The ground of a grid for paths from cell to cell: which edges meet obstacles, what they cost, and the cheapest path (meledje).
 
-An edge is the straight way between the centres of two cells. It meets a cell if it passes through its interior; touching a side or a corner
-does not count, unless corners are closed. This is decided in whole numbers.
+An edge is the straight line between the centres of two cells. It meets a cell if it passes through its interior; touching a side or a
+corner does not count, unless corners are closed. This is decided in integer arithmetic.
 
-Lengths, heights and energies are in cells. Of a map with few cells all edges are measured once, of a larger one when they are asked for;
-the numbers are the same to the last bit.
+Lengths, heights and energies are in cells. On a map with few cells all edges are measured once, on a larger one when they are needed; the
+numbers are identical to the last bit.
 """
 
 import math
@@ -16,16 +16,16 @@ from numba import njit
 
 from bezierplan.workspaces.grid import Grid
 
-# Of a map with more cells than this no table of all edges is made: it would grow with the square of their number.
+# For a map with more cells than this no table of all edges is made: it would grow with the square of their number.
 TABLE_CELLS = 1024
 
 
 class Ground(NamedTuple):
-    """What edges are measured on, all of it in cells. Cells are numbered row by row from the bottom left.
+    """The ground on which edges are measured, in cells. Cells are numbered row by row from the bottom left.
 
-    occupied: bool (rows, columns). heights: (rows, columns), or (0, 0) on flat ground. friction: of the ground, at most 1 on most.
-    closed: whether an edge through a common corner of four cells meets the two beside its way.
-    met, energy: (cells, cells) of the edge from a cell to another, the occupied cells that it meets and what it costs; or (0, 0).
+    occupied: bool (rows, columns). heights: (rows, columns), or (0, 0) on flat ground. friction: that of the ground, at most 1 on most
+    kinds of ground. closed: whether an edge through a common corner of four cells meets the two next to it. met, energy: (cells, cells) for
+    the edge from one cell to another, the number of occupied cells it meets and its cost; or (0, 0).
     """
 
     occupied: np.ndarray
@@ -37,17 +37,17 @@ class Ground(NamedTuple):
 
 
 def ground_of(grid: Grid, friction: float, closed: bool = False) -> Ground:
-    """The ground of a grid, with all its edges measured if it has no more than `TABLE_CELLS` cells. Not to be changed."""
+    """The ground of a grid, with all its edges measured if it has at most `TABLE_CELLS` cells. Do not modify the result."""
     return _ground(*_key(grid, friction, closed))
 
 
 def least_energy(grid: Grid, friction: float, closed: bool, start: int, target: int) -> float:
-    """The energy of `cheapest` on the ground of a grid, kept for the next who asks."""
+    """The energy of `cheapest` on the ground of a grid, cached."""
     return _least_energy(_key(grid, friction, closed), start, target)
 
 
 def _key(grid: Grid, friction: float, closed: bool) -> tuple:
-    """What the ground of a grid follows from, so that it is made once a map."""
+    """What determines the ground of a grid, so that it is built once per map."""
     heights = b"" if grid.heights is None else (grid.heights / grid.cell).tobytes()
     return grid.occupied.shape, grid.occupied.tobytes(), heights, float(friction), closed, TABLE_CELLS
 
@@ -73,7 +73,7 @@ def _tables(ground):
 
 @njit(cache=True, inline="always")
 def obstacles_met(ground: Ground, one: int, other: int) -> int:
-    """How many occupied cells the edge between two cells meets, these included (meledje, eq. 3: beta)."""
+    """Number of occupied cells that the edge between two cells meets, including the two (meledje, eq. 3: beta)."""
     if ground.met.size:
         return int(ground.met[one, other])
     return _passed(ground, one, other)[0]
@@ -81,7 +81,7 @@ def obstacles_met(ground: Ground, one: int, other: int) -> int:
 
 @njit(cache=True)
 def path_met(path: np.ndarray, ground: Ground) -> int:
-    """How many occupied cells the edges of a path of cells (n,) meet; a cell counts for every edge that meets it."""
+    """Number of occupied cells that the edges of a path of cells (n,) meet; a cell counts once for every edge that meets it."""
     met = 0
     for k in range(len(path) - 1):
         met += obstacles_met(ground, path[k], path[k + 1])
@@ -90,7 +90,7 @@ def path_met(path: np.ndarray, ground: Ground) -> int:
 
 @njit(cache=True, inline="always")
 def edge_energy(ground: Ground, one: int, other: int) -> float:
-    """What the edge from a cell to another costs: its length, and what it climbs divided by the friction (meledje, eq. 2: epsilon)."""
+    """Cost of the edge from one cell to another: its length plus its climb divided by the friction (meledje, eq. 2: epsilon)."""
     if ground.energy.size:
         return ground.energy[one, other]
     length = distance(ground, one, other)
@@ -107,10 +107,10 @@ def distance(ground: Ground, one: int, other: int) -> float:
 
 @njit(cache=True)
 def _passed(ground, one, other):
-    """Occupied cells that an edge meets, and the sum of its climbs from cell to cell.
+    """Number of occupied cells that an edge meets, and the sum of its climbs from cell to cell.
 
-    The edge crosses its next upright grid line after (2 i + 1) / (2 across) of its way, its next level one after (2 j + 1) / (2 up);
-    through a corner it leads from cell to cell without a third, but meets the two beside it if corners are closed.
+    The edge crosses its next vertical grid line after (2 i + 1) / (2 across) of its length, its next horizontal one after (2 j + 1) / (2
+    up); through a corner it leads from cell to cell without a third, but meets the two next to the corner if corners are closed.
     """
     columns = ground.occupied.shape[1]
     row, column = one // columns, one % columns
@@ -142,7 +142,9 @@ def _least_energy(key: tuple, start: int, target: int) -> float:
 
 
 def cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.ndarray]:
-    """Least energy, in cells, of a path from cell to cell that meets no obstacle, and its cells; infinite and none without such a path."""
+    """Minimum energy, in cells, of a path from cell to cell that meets no obstacle, and its cells; infinite and empty if there is no such
+    path.
+    """
     energy, before = _cheapest(ground, start, target)
     if math.isinf(energy):
         return energy, np.empty(0, dtype=np.int64)
@@ -154,9 +156,9 @@ def cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.ndarray
 
 @njit(cache=True)
 def _cheapest(ground, start, target):
-    """Least energy from start to target, and the cell before each cell on its way, by A* with the straight distance.
+    """Minimum energy from start to target, and the cell before each cell on its way, by A* with the straight distance.
 
-    An edge is looked at only if it would be a gain: of a large map few are.
+    An edge is examined only if it would be an improvement: on a large map few are.
     """
     cells = ground.occupied.size
     energy, before, done = np.full(cells, np.inf), np.full(cells, -1), ground.occupied.ravel().copy()
@@ -183,7 +185,7 @@ def centres(grid: Grid, cells: np.ndarray) -> np.ndarray:
 
 @njit(cache=True)
 def free_neighbours(cell: int, ground: Ground) -> tuple[np.ndarray, int]:
-    """The free ones of the eight cells around a cell, row by row from the lower left, and how many they are."""
+    """The free cells among the eight around a cell, row by row from the lower left, and how many there are."""
     rows, columns = ground.occupied.shape
     neighbours, count = np.empty(8, dtype=np.int64), 0
     for row in range(max(cell // columns - 1, 0), min(cell // columns + 2, rows)):

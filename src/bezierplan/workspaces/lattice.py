@@ -1,6 +1,6 @@
 """The 8-connected lattice of a grid: paths from centre to centre of neighbouring free cells, and to start and target inside their cells.
 
-Cells have the numbers of `grid.Grid`; lengths are in cells.
+Cells are numbered as in `grid.Grid`; lengths are in cells.
 """
 
 import math
@@ -22,9 +22,9 @@ class Lattice(NamedTuple):
     """The lattice of a problem, for kernels.
 
     neighbours: (cells, 8) the number of the cell that each of `STEPS` reaches, -1 where it is not allowed. around: (cells, 8) the same
-    without any rule for corners, -1 only outside the grid and for occupied cells. occupied: bool (cells,). row, column: (cells,). start,
-    target: cells. diagonal: length of a diagonal step, others count 1. ends: length from start and target to the centres of their cells, 0
-    if start is target.
+    without any corner rule, -1 only outside the grid and for occupied cells. occupied: bool (cells,). row, column: (cells,). start, target:
+    cells. diagonal: length of a diagonal step, others count 1. ends: total distance of start and target from the centres of their cells, 0
+    if they coincide.
     """
 
     neighbours: np.ndarray
@@ -41,7 +41,7 @@ class Lattice(NamedTuple):
 def lattice(grid: Grid, start: tuple[float, float], target: tuple[float, float], corners: Corners) -> Lattice:
     """The lattice of a grid with the cells of start and target, both (x, y) in units.
 
-    Raises ValueError if one of them lies outside the grid, or in a cell that is occupied.
+    Raises ValueError if one of them lies outside the grid, or in an occupied cell.
     """
     rows, columns = grid.occupied.shape
     cells, ends = [], 0.0
@@ -68,7 +68,7 @@ def neighbours(occupied: np.ndarray, corners: Corners) -> np.ndarray:
         raise ValueError(f"unknown corner rule {corners!r}; known: {', '.join(CORNERS)}")
     walled = np.pad(occupied, 1, constant_values=True)
     row, column = np.argwhere(~occupied).T + 1
-    # The two cells beside a step; of a step along an axis these are the cells that it leaves and enters.
+    # The two cells next to a step; for a step along an axis these are the cells that it leaves and enters.
     beside = [walled[row + up, column].astype(int) + walled[row, column + right] for up, right in STEPS]
     reached = np.full((occupied.size, len(STEPS)), -1)
     free = np.flatnonzero(~occupied)
@@ -86,7 +86,7 @@ def _around(occupied: np.ndarray) -> np.ndarray:
 def points(grid: Grid, start: tuple[float, float], target: tuple[float, float], cells: np.ndarray) -> np.ndarray:
     """Start, the centres of cells (n,), and target, in units: (n + 2, 2).
 
-    Fewer where start and target are centres themselves, and without a cell if start is target.
+    Fewer where start or target is itself a centre; no cells if start equals target.
     """
     if start == target:
         return np.array([start, target])

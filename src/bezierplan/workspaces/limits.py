@@ -1,4 +1,4 @@
-"""What coordinates of a workspace may be, whichever kind of file they come from."""
+"""Limits on the coordinates of a workspace, whatever kind of file they come from."""
 
 import numpy as np
 
@@ -10,19 +10,19 @@ SMALLEST_GAP = 1e-7
 
 
 def check_numbers(values: np.ndarray, where: str) -> None:
-    """Raise ValueError, beginning with a place, unless all values are finite and at most `LARGEST` in size."""
+    """Raise ValueError, beginning with the location, unless all values are finite and at most `LARGEST` in absolute value."""
     wrong = values[~(np.abs(values) <= LARGEST)]
     if wrong.size:
         raise ValueError(f"{where}: {wrong[0]:g} is not a coordinate; expected finite numbers of at most {LARGEST:g} in size")
 
 
 def check_bounds(bounds: tuple[float, float, float, float]) -> None:
-    """Raise ValueError unless bounds have x low, x high, y low, y high in this order, low below high."""
+    """Raise ValueError unless bounds are x low, x high, y low, y high in this order, with low below high."""
     if not (bounds[0] < bounds[1] and bounds[2] < bounds[3]):
         raise ValueError(f"bounds: {list(bounds)}; expected [x low, x high, y low, y high] with low below high")
 
 
 def check_gaps(gaps: np.ndarray, where: str) -> None:
-    """Raise ValueError, beginning with a place, for a gap, in units, that is neither closed nor open."""
+    """Raise ValueError, beginning with the location, for a gap, in units, that is neither closed nor open."""
     if np.any((gaps > 0) & (gaps < SMALLEST_GAP)):
         raise ValueError(f"{where}: a gap below {SMALLEST_GAP:g} beside it; close it or make it wider")

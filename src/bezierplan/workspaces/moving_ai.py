@@ -1,8 +1,8 @@
 """Grids and scenarios of the MovingAI benchmarks: a `.map` file of characters, and `.scen` files with starts, targets and optimal lengths.
 
 Cells of `.`, `G` and `S` are free, those of `@`, `O`, `T` and `W` are occupied. A scenario counts columns from the left and rows from the
-top; its optimal length is that of the shortest path over the eight neighbours, diagonal steps sqrt 2 long, that passes no occupied cell's
-corner.
+top; its optimal length is that of the shortest path over the eight neighbours, with diagonal steps of length sqrt 2, that cuts no corner of
+an occupied cell.
 """
 
 from pathlib import Path
@@ -27,7 +27,7 @@ class Scenario(NamedTuple):
 
 
 def read(file: Path, unit: str) -> Grid:
-    """The grid of a `.map` file, with cells of side 1. Raises ValueError, naming the line and what would be right."""
+    """The grid of a `.map` file, with cells of side 1. Raises ValueError, naming the line and what is expected."""
     lines = read_text(file, largest=2 * MOST_CELLS).splitlines()
     _, rows, columns = header = [_header(lines, number, key) for number, key in enumerate(("type", "height", "width"), start=1)]
     if header[0] != "octile":
@@ -60,7 +60,7 @@ def _header(lines: list[str], number: int, key: str) -> int | str:
 def scenario(file: Path, number: int, grid: Grid, name: str) -> Scenario:
     """A scenario of a `.scen` file, by its number from 1, on the grid of a map file of that name.
 
-    Raises ValueError, naming the line and what would be right, also for scenarios of another map.
+    Raises ValueError, naming the line and what is expected, also for scenarios of a different map.
     """
     lines = read_text(file, largest=2 * MOST_CELLS).splitlines()
     if not lines or lines[0].split()[:1] != ["version"]:

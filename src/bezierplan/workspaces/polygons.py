@@ -9,8 +9,8 @@ import numpy as np
 class Polygons:
     """bounds: lowest and highest x, lowest and highest y, in units.
 
-    obstacles: one tuple of rings an obstacle, the outer ring first, then its holes; a ring is (n, 2) in units, not closed.
-    unit: name of the unit of length.
+    obstacles: one tuple of rings per obstacle, outer ring first, then its holes; a ring is (n, 2) in units, not closed. unit: name of the
+    unit of length.
     """
 
     bounds: tuple[float, float, float, float]

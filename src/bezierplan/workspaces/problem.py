@@ -1,4 +1,4 @@
-"""Problems that planners are given, and the paths that they answer with."""
+"""Problems given to planners, and the paths they return."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""Square maps with blocks of occupied cells at random places, none of which touches another."""
+"""Square maps with blocks of occupied cells at random positions, none of which touch."""
 
 from collections.abc import Iterator
 
@@ -7,20 +7,20 @@ import numpy as np
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.seeds import generator
 
-# Maps after which nothing is hoped for, and blocks that are tried for one map.
+# Number of maps drawn before giving up, and number of blocks tried for one map.
 MOST_MAPS = 500
 MOST_BLOCKS = 4000
 
 
 def maps(description: dict, problem: dict, name: str) -> Iterator[Grid]:
-    """Maps for a problem, one after the other, drawn from names and numbers alone.
+    """Maps for a problem, one after another, drawn from names and numbers alone.
 
-    description: largest_block, the most cells of a block's side, clear_ends, how many cells stay free from those of start and target on in
-    every direction, themselves counted, and unit. problem: side, how many cells a map is wide and high, start, target, layout, its number,
-    and obstacles, how many cells are occupied. name: of study and workspace.
+    description: largest_block, the maximum side of a block in cells; clear_ends, how many cells in every direction from start and target
+    stay free, including their own; and unit. problem: side, the width and height of a map in cells; start; target; layout, its number; and
+    obstacles, the number of occupied cells. name: that of study and workspace.
 
-    Width, height and place of a block are uniform. One that touches another, if only by a corner, reaches too near to an end, or would
-    occupy too many cells is left out. Of `MOST_MAPS` draws those that have the wanted number of occupied cells are maps.
+    Width, height and place of a block are uniform. A block that touches another, even at a corner, comes too close to an end, or would
+    occupy too many cells is left out. Of `MOST_MAPS` draws, those with the required number of occupied cells are maps.
 
     Raises ValueError, naming the key, if start or target is not on the map.
     """
@@ -41,7 +41,7 @@ def maps(description: dict, problem: dict, name: str) -> Iterator[Grid]:
 
 
 def _blocks(rng: np.random.Generator, ends: np.ndarray, wanted: int, largest: int) -> np.ndarray:
-    """Occupied cells (side, side), as many as wanted, or fewer if the blocks run out. ends: bool (side, side), cells to leave free."""
+    """Occupied cells (side, side), `wanted` of them, or fewer if the blocks run out. ends: bool (side, side), cells to leave free."""
     side = len(ends)
     occupied = np.zeros_like(ends)
     count = 0

@@ -1,4 +1,4 @@
-"""Circles at random places: a layout is drawn once, from its names alone, and serves all methods and experiments."""
+"""Circles at random positions: a layout is drawn once, from its names alone, and is used by all methods and experiments."""
 
 import math
 
@@ -7,15 +7,15 @@ import numpy as np
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.seeds import generator
 
-# Draws of one circle before the layout is given up.
+# Number of draws of one circle before the layout is abandoned.
 MOST_DRAWS = 10_000
 
 
 def layout(description: dict, name: str, number: int, ends: list[tuple[float, float]]) -> Circles:
     """One layout of a description with bounds, radius, circles (how many) and unit.
 
-    Centres are uniform within the bounds; a circle that covers an end, (x, y) in units, is drawn again (tharwat2018, Section 5.6). name: of
-    study and workspace; number: of the layout. Circles may overlap each other. Raises ValueError if no free place is found.
+    Centres are uniform within the bounds; a circle that covers an end, (x, y) in units, is redrawn (tharwat2018, Section 5.6). name: that
+    of study and workspace; number: that of the layout. Circles may overlap each other. Raises ValueError if no free place is found.
     """
     rng = generator(f"{name}/{number}")
     x_low, x_high, y_low, y_high = map(float, description["bounds"])
@@ -33,5 +33,5 @@ def layout(description: dict, name: str, number: int, ends: list[tuple[float, fl
 
 
 def first(circles: Circles, count: int) -> Circles:
-    """The first circles of a layout, so that layouts of different numbers are nested."""
+    """The first circles of a layout, so that layouts with different numbers of circles are nested."""
     return Circles(circles.bounds, circles.centres[:count], circles.radii[:count], circles.unit)

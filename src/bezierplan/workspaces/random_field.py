@@ -1,7 +1,7 @@
-"""Square fields of cells with circles at random places (elhoseny2017, Sections 4.3 and 4.4).
+"""Square fields of cells with circles at random positions (elhoseny2017, Sections 4.3 and 4.4).
 
-A field of side N has (N + 1) x (N + 1) cells of side 1, whose centres are the points with whole coordinates from 0 to N: so the corners
-(0, 0) and (N, N), between which the paper plans, are cells. A cell is occupied if its centre lies in a circle.
+A field of side N has (N + 1) x (N + 1) cells of side 1, whose centres are the points with integer coordinates from 0 to N, so that the
+corners (0, 0) and (N, N), between which the paper plans, are cells. A cell is occupied if its centre lies in a circle.
 """
 
 import numpy as np
@@ -10,20 +10,20 @@ from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.seeds import generator
 
-# Fields and draws of one circle after which nothing is hoped for.
+# Number of fields, and of draws of one circle, before giving up.
 MOST_FIELDS = 200
 MOST_DRAWS = 10_000
 
 
 def field(description: dict, problem: dict, name: str) -> Grid:
-    """The field of a problem, drawn from names and numbers alone: problems that differ in one of them have nothing in common.
+    """The field of a problem, drawn from names and numbers alone: problems that differ in any of them get unrelated fields.
 
-    description: radius, that of all circles as a share of the side, clear_ends, the cells that stay free between a circle and start or
-    target, and unit. problem: side (N), start, target, obstacles, how many circles, and layout, the number of the field. name: of study and
-    workspace. Centres are uniform in the square from 0 to N; those too near to start or target are drawn again. Circles may overlap. A
-    field in which no path of free cells leads from start to target is drawn again as a whole.
+    description: radius, that of all circles as a share of the side; clear_ends, the cells that stay free between a circle and start or
+    target; and unit. problem: side (N); start; target; obstacles, the number of circles; and layout, the number of the field. name: that of
+    study and workspace. Centres are uniform in the square from 0 to N; those too close to start or target are redrawn. Circles may overlap.
+    A field in which no path of free cells leads from start to target is redrawn as a whole.
 
-    Raises ValueError, naming the key, if start or target is no cell of the field, and if no field can be found.
+    Raises ValueError, naming the key, if start or target is not a cell of the field, or if no field can be found.
     """
     side = problem["side"]
     parts = [name, side, *problem["start"], *problem["target"], problem["obstacles"], problem["layout"]]
@@ -44,7 +44,7 @@ def field(description: dict, problem: dict, name: str) -> Grid:
 
 
 def _centres(rng: np.random.Generator, count: int, side: float, ends: np.ndarray, least: float) -> np.ndarray:
-    """Centres (count, 2), none of them nearer to an end than the least distance."""
+    """Centres (count, 2), none of them closer to an end than the minimum distance."""
     centres = np.empty((count, 2))
     for i in range(count):
         for _ in range(MOST_DRAWS):

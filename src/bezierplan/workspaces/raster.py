@@ -1,8 +1,8 @@
-"""The grid of cells that a cell planner needs of a map of polygons (elhoseny2017, Sections 3.2 and 4.5).
+"""The grid that a cell planner needs for a map of polygons (elhoseny2017, Sections 3.2 and 4.5).
 
 As in a random field, the centres of the outermost cells lie on the border: cell i of a row has its centre i cells from the border's left
-side, so that both ends of a map are cells. The cells are for the planner alone: the polygons are what the certified check and the exact
-shortest path see.
+side, so that both ends of a map are cells. Only the planner uses the cells: the certified check and the exact shortest path use the
+polygons.
 """
 
 import logging
@@ -17,19 +17,19 @@ logger = logging.getLogger(__name__)
 
 Rule = Literal["overlap", "centre"]
 
-# More cells than this are a slip in `cell`.
+# More cells than this indicate a mistake in `cell`.
 MOST_CELLS = 4_000_000
 
-# Two sides nearer than this, in cells, are one: walls often lie on the lines of the grid.
+# Two sides closer than this, in cells, count as one: walls often lie on grid lines.
 _SAME_LINE = 1e-6
 
 
 def from_polygons(polygons: Polygons, cell: float, rule: Rule) -> Grid:
-    """The cells of a map of polygons, of a side in units.
+    """The cells of a map of polygons. cell: side of a cell, in units.
 
     rule: a cell is occupied if its inside overlaps an obstacle (`overlap`), so that a path over free cells is free; or if its centre lies
     in one or on its edge (`centre`), so that a path may cut up to half a cell into a wall. A cell whose centre lies outside the border is
-    occupied in any case.
+    always occupied.
 
     Raises ValueError, naming the key, for more than `MOST_CELLS` cells. Warns of obstacles that occupy no cell.
     """
@@ -43,7 +43,7 @@ def from_polygons(polygons: Polygons, cell: float, rule: Rule) -> Grid:
     occupied = (y[:, None] > top + _SAME_LINE * cell) | (x > right + _SAME_LINE * cell)
     for number, (outer, *holes) in enumerate(polygons.obstacles):
         shape = shapely.Polygon(outer, holes)
-        # The cells of the obstacle's bounds, and one more on each side.
+        # The cells within the obstacle's bounds, and one more on each side.
         low, high = outer.min(axis=0) - (left, bottom), outer.max(axis=0) - (left, bottom)
         first, end = np.maximum(np.floor(low / cell).astype(int) - 1, 0), np.ceil(high / cell).astype(int) + 2
         near = np.s_[first[1] : end[1], first[0] : end[0]]

@@ -1,8 +1,8 @@
-"""Occupancy maps as ROS's map_server keeps them: an image and a YAML file that says what its pixels mean.
+"""Occupancy maps in the format of ROS's map_server: an image and a YAML file that says what its pixels mean.
 
-YAML keys: image (a file beside it), resolution (units a pixel), origin [x, y, yaw] of the lower left pixel's corner, negate (0: dark pixels
-are occupied), occupied_thresh and free_thresh. A pixel is free if the share of it that is occupied is below free_thresh; occupied above
-occupied_thresh and unknown between them, which both count as occupied here. The image's first row is the top of the map.
+YAML keys: image (a file next to it), resolution (units per pixel), origin [x, y, yaw] of the lower left pixel's corner, negate (0: dark
+pixels are occupied), occupied_thresh and free_thresh. A pixel is free if its occupancy is below free_thresh, occupied above
+occupied_thresh, and unknown in between; the last two both count as occupied here. The image's first row is the top of the map.
 """
 
 import math
@@ -25,11 +25,11 @@ _THRESHOLDS = {"occupied_thresh": 0.65, "free_thresh": 0.196}
 
 
 def read(file: Path, unit: str, robot_radius: float = 0.0, most_pixels: int = MOST_PIXELS) -> Grid:
-    """The grid of a map_server YAML file, a cell for each pixel.
+    """The grid of a map_server YAML file, one cell per pixel.
 
-    robot_radius: in units; cells whose centre lies nearer than that to the centre of an occupied cell count as occupied too.
+    robot_radius: in units; cells whose centre is closer than that to the centre of an occupied cell also count as occupied.
 
-    Raises ValueError, naming the key and what would be right.
+    Raises ValueError, naming the key and what is expected.
     """
     content = _content(file)
     resolution = content["resolution"]
@@ -87,7 +87,7 @@ def _occupied(file: Path, content: dict[str, Any], most_pixels: int) -> np.ndarr
     from PIL import Image
 
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # our own limit is told below
+        warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # our own limit is reported below
         try:
             with Image.open(file) as image:
                 columns, rows = image.size
@@ -107,7 +107,7 @@ def _too_large(size: str, most_pixels: int) -> ValueError:
 
 
 def _light(image: Any) -> tuple[np.ndarray, np.ndarray]:
-    """How light (rows, columns) each pixel is, from 0 to 1, the mean of its colours, and whether it is known: not transparent."""
+    """Lightness (rows, columns) of each pixel, from 0 to 1, the mean of its colours; and whether it is known: not transparent."""
     if image.mode.startswith("I"):
         return np.asarray(image, dtype=float) / 65535.0, np.ones(image.size[::-1], dtype=bool)
     transparent = "A" in image.getbands() or "transparency" in image.info

@@ -1,4 +1,4 @@
-"""Text files that a reader hands in, read safely: a device, a pipe, or an endless file is refused before anything of it is read."""
+"""User-supplied text files, read safely: a device, a pipe, or an endless file is rejected before anything is read."""
 
 import stat
 from pathlib import Path
@@ -8,10 +8,10 @@ LARGEST_FILE = 16 * 2**20
 
 
 def read_text(file: Path, largest: int = LARGEST_FILE) -> str:
-    """The text of a regular file in UTF-8 with at most `largest` bytes, its line ends as `\\n`.
+    """The text of a regular file in UTF-8 with at most `largest` bytes, with line ends as `\\n`.
 
-    Raises ValueError, in one line without the file's name, for anything else: what cannot be read, a folder, a device or pipe, a larger
-    file, other bytes than UTF-8, and a NUL character.
+    Raises ValueError, in one line without the file's name, for anything else: an unreadable file, a folder, a device or pipe, a larger
+    file, bytes that are not UTF-8, and a NUL character.
     """
     try:
         found = file.stat()

@@ -1,11 +1,12 @@
-"""The certified collision check: whether a path of Bezier pieces enters the blocked region, where first, how deep, and how near it comes.
+"""The certified collision check: whether, where and how deeply a path of Bezier pieces enters the blocked region, or how close it comes to
+it.
 
 The curve of a piece lies in the hull of its control points (`hulls`). A piece is halved until every part is either certified free, because
-its hull is, or begins with a point that is certainly blocked (`collision`). There are two thresholds, so that this always ends: a collision
-is certified by a point deeper than `TOLERANCE`, freedom by a depth of at most twice that. (In a corner between two walls it is twice that
-from each wall.) Depth and clearance are found by branch and bound over the same halves (`distances`).
+its hull is, or begins at a point that is certainly blocked (`collision`). Two thresholds guarantee that this always ends: a collision is
+certified by a point deeper than `TOLERANCE`, freedom by a depth of at most twice that. (In a corner between two walls, twice that from each
+wall.) Depth and clearance are found by branch and bound over the same halves (`distances`).
 
-Each search is written once. What it asks of a kind of region (`certificates`) is chosen by the type of the region when the kernel is
+Each search is written once. What it needs to know about a region (`certificates`) is selected by the type of the region when the kernel is
 compiled.
 """
 
@@ -22,18 +23,19 @@ from bezierplan.geometry.region import CircleRegion, GridRegion, Region, from_or
 
 __all__ = ["TOLERANCE", "Check", "check", "first_collision", "refuse_unfit"]
 
-# Halving adds up as many roundings as the degree. Above this degree coordinates have to be smaller, so that their sum grows no further.
+# Each halving accumulates as many rounding errors as the degree. Above this degree coordinates must be smaller, so that the sum of the
+# errors does not grow further.
 _FULL_RANGE_DEGREE = 32
 
 
 class Check(NamedTuple):
     """The verdict on a path.
 
-    feasible: it does not enter the blocked region. collision_at: number of the piece plus parameter in it of the first collision; nan when
-    free. depth: largest depth in the blocked region, in units; 0 when free, and where a path cuts a closed corner. Depth is the distance
-    to free space; where discs overlap or reach over the border it is the largest of their depths, a lower bound. clearance: least distance
-    to the blocked region, in units; 0 when colliding. tolerance: proven error, in units, of `clearance` when free, of `depth` when
-    colliding. intervals: how many parameter intervals the verdict needed.
+    feasible: it does not enter the blocked region. collision_at: number of the piece plus the parameter within it of the first collision;
+    nan when free. depth: largest depth in the blocked region, in units; 0 when free, and where a path cuts a closed corner. Depth is the
+    distance to free space; where discs overlap or extend beyond the border it is the largest of their depths, a lower bound. clearance:
+    minimum distance to the blocked region, in units; 0 when colliding. tolerance: proven error, in units, of `clearance` when free, of
+    `depth` when colliding. intervals: number of parameter intervals that the verdict required.
     """
 
     feasible: bool
@@ -45,16 +47,16 @@ class Check(NamedTuple):
 
 
 def check(pieces: np.ndarray, region: Region, corner_cutting: Literal["open", "closed"] = "open") -> Check:
-    """Check a path of Bezier pieces (pieces, degree + 1, 2), in the region's unit, each beginning where the last one ends.
+    """Check a path of Bezier pieces (pieces, degree + 1, 2), in the region's unit, each beginning where the previous one ends.
 
-    corner_cutting: whether a path may pass between two occupied cells that meet only by a corner; touching the corner is always allowed. It
-    matters on grids only.
+    corner_cutting: whether a path may pass between two occupied cells that share only a corner; touching the corner is always allowed. Only
+    matters on grids.
 
-    A path deeper than 4e-9 is never called free, one no deeper than 1e-9 never colliding; between them either answer may come. In the tip
-    of a notch between polygons that is sharper than 60 degrees, 2e-9 over the sine of half its angle stands for 4e-9.
+    A path deeper than 4e-9 is never called free, and one no deeper than 1e-9 never colliding; in between, either verdict is possible. At
+    the tip of a notch between polygons that is sharper than 60 degrees, 4e-9 becomes 2e-9 divided by the sine of half its angle.
 
     Raises ValueError for coordinates that are not finite or beyond 1e5, or 1e5 x 32 / degree for a degree above 32; for a degree above 60;
-    and for an unknown rule of corner cutting.
+    and for an unknown corner-cutting rule.
 
     A straight line runs into an obstacle, a parabola goes around it:
 
@@ -89,10 +91,10 @@ def check(pieces: np.ndarray, region: Region, corner_cutting: Literal["open", "c
 
 
 def refuse_unfit(pieces: np.ndarray) -> None:
-    """Raise ValueError for pieces that `check` cannot judge: of another shape, of too high a degree, too far out, or not finite."""
+    """Raise ValueError for pieces that `check` cannot judge: wrong shape, degree too high, coordinates too large or not finite."""
     if pieces.ndim != 3 or pieces.shape[2] != 2 or not 2 <= pieces.shape[1] <= LARGEST_DEGREE + 1:
         raise ValueError(f"pieces have the shape {pieces.shape}; expected (pieces, degree + 1, 2) with a degree of 1 to {LARGEST_DEGREE}")
-    # Written so that a coordinate that is not a number fails as well.
+    # Written so that nan fails as well.
     largest = LARGEST_COORDINATE * min(1.0, _FULL_RANGE_DEGREE / (pieces.shape[1] - 1))
     if not np.abs(pieces).max(initial=0.0) <= largest:
         raise ValueError(f"a path has a coordinate that is not finite or beyond {largest:g}")

@@ -1,6 +1,6 @@
-"""What the searches ask of a region: whether a point is blocked, whether a hull is free, and how deep they are.
+"""What the searches ask about a region: whether a point is blocked, whether a hull is free, and how deep they are.
 
-Each kind of region has answers of its own. The overloads at the end choose by the type of the region.
+Each kind of region has its own answers. The overloads at the end select them by the type of the region.
 """
 
 import math
@@ -21,13 +21,13 @@ from bezierplan.geometry.checker.hulls import (
 )
 from bezierplan.geometry.region import CircleRegion, GridRegion, PolygonRegion
 
-# How far the cells around a grid reach, which stand for its outside: beyond every coordinate.
+# Extent of the cells around a grid that represent its outside: beyond every coordinate.
 _FAR = 4 * LARGEST_COORDINATE
 
-# Hulls that span more doubled-grid elements than this are halved rather than tested against each blocked element.
+# Hulls that span more doubled-grid elements than this are halved instead of tested against each blocked element.
 _WIDEST_RANGE = 12
 
-# An edge that keeps this distance from a hull cannot be passed within the tolerance of its ends, so it cannot matter to the hull.
+# An edge at this distance from a hull cannot be passed within the tolerance of its ends, so it is irrelevant to the hull.
 _APART = 4 * TOLERANCE
 
 _BINOMIAL = np.array([[math.comb(n, k) for k in range(2 * LARGEST_DEGREE + 1)] for n in range(2 * LARGEST_DEGREE + 1)], dtype=float)
@@ -44,7 +44,9 @@ def is_blocked(x, y, region):
 
 
 def is_free(points, region):
-    """Whether the curve of some control points is certified free. May be false for a free curve, but not for ever when it is halved."""
+    """Whether the curve of some control points is certified free. May be false for a free curve, but not indefinitely as the curve is
+    halved.
+    """
     raise NotImplementedError
 
 
@@ -82,7 +84,7 @@ def _sides(index: int, cell: float, last: int) -> tuple[float, float]:
 
 @njit(cache=True)
 def _blocked_elements(counts: np.ndarray, bottom: int, top: int, left: int, right: int) -> int:
-    """Number of blocked elements in a range of the doubled grid, both ends included."""
+    """Number of blocked elements in a range of the doubled grid, both ends inclusive."""
     return counts[top + 1, right + 1] - counts[bottom, right + 1] - counts[top + 1, left] + counts[bottom, left]
 
 
@@ -100,8 +102,8 @@ def _is_free_in_grid(points, region):
     if _blocked_elements(region.counts, bottom, top, left, right) == 0:
         return True
 
-    # The rectangle of an edge or vertex covers the cells on both sides of a seam. So that no seam is overlooked, the range reaches as far
-    # beyond the hull as a hull may reach into a rectangle.
+    # The rectangle of an edge or vertex covers the cells on both sides of a seam. To catch every seam, the range extends as far beyond the
+    # hull as a hull may reach into a rectangle.
     reach = 2.0 * TOLERANCE
     left, right = _element(x_low - reach, cell, columns - 1), _element(x_high + reach, cell, columns - 1)
     bottom, top = _element(y_low - reach, cell, rows - 1), _element(y_high + reach, cell, rows - 1)
@@ -145,7 +147,7 @@ def _distance_to_edges(x: float, y: float, edges: np.ndarray) -> float:
 
 
 def _depth_bound_by_edges(points, region):
-    """No blocked point is deeper than it is far from an edge, which on a chord is greatest at one of its ends."""
+    """No blocked point is deeper than its distance from any edge, which along a chord is greatest at one of its ends."""
     least = math.inf
     for ax, ay, bx, by in region.edges:
         first = distance_to_segment(points[0, 0], points[0, 1], ax, ay, bx, by)
@@ -160,9 +162,9 @@ def _depth_bound_by_edges(points, region):
 
 @njit(cache=True)
 def least_distance_to_centre(points: np.ndarray, x: float, y: float) -> float:
-    """Lower bound of the distance of a curve to a point: the root of the smallest Bernstein coefficient of the squared distance.
+    """Lower bound of the distance of a curve to a point: the square root of the smallest Bernstein coefficient of the squared distance.
 
-    The differences to the point are taken first, so that the error stays relative to the distance.
+    The point is subtracted first, so that the error stays relative to the distance.
     """
     n = len(points) - 1
     least = math.inf
@@ -228,7 +230,7 @@ def _depth_bound_in_circles(points, region):
 
 
 def _depth_in_polygons(x, y, region):
-    """Free space is where a ray crosses the boundary an odd number of times."""
+    """A point is in free space if a ray from it crosses the boundary an odd number of times."""
     inside_free = False
     for ax, ay, bx, by in region.edges:
         if (ay > y) != (by > y) and x < ax + (y - ay) / (by - ay) * (bx - ax):
@@ -242,7 +244,7 @@ def _is_blocked_in_polygons(x, y, region):
 
 @njit(cache=True)
 def _sides_of_edge(points, edge, normal) -> tuple[float, float]:
-    """Least and largest distance of control points from the line of an edge, positive on its free side."""
+    """Smallest and largest distance of control points from the line of an edge, positive on its free side."""
     low = math.inf
     high = -math.inf
     for x, y in points:
@@ -253,10 +255,9 @@ def _sides_of_edge(points, edge, normal) -> tuple[float, float]:
 
 
 def _is_free_in_polygons(points, region):
-    """A hull is free if it begins in free space and crosses none of the boundary.
+    """A hull is free if it begins in free space and does not cross the boundary.
 
-    Edges that keep apart from the hull do not matter, on whichever side it lies. The others form chains of consecutive edges: see
-    `_passes_chain`.
+    Edges away from the hull do not matter, whichever side it is on. The others form chains of consecutive edges: see `_passes_chain`.
     """
     x_low, x_high, y_low, y_high = box(points)
     along_x, along_y = direction(points)
@@ -283,16 +284,16 @@ def _is_free_in_polygons(points, region):
             if length == 0:
                 return False
             remaining -= length
-    # What remains are rings that the hull touches all around: not decided.
+    # Only rings that the hull touches all around remain: undecided.
     return remaining == 0 and not is_blocked(points[0, 0], points[0, 1], region)
 
 
 @njit(cache=True)
 def _passes_chain(points, region, touched, first, along_x, along_y, across_low, across_high) -> int:
-    """Number of edges of a chain of touched edges if a hull passes it on the free side, else 0.
+    """Number of edges of a chain of touched edges if a hull passes it on the free side, otherwise 0.
 
-    It does if it lies on the free side of all lines of the chain. Where the blocked region is convex at the chain's corners, one of them is
-    enough, or any line between hull and chain, with free space on the hull's side; the one along the hull is tried.
+    It does if it lies on the free side of all lines of the chain. Where the blocked region is convex at the chain's corners, one of these
+    lines is enough, or any line between hull and chain with free space on the hull's side; the line along the hull is tried.
     """
     reach = 2.0 * TOLERANCE
     length = 0

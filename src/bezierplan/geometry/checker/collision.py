@@ -9,15 +9,15 @@ from bezierplan.geometry.checker.certificates import is_blocked, is_free
 from bezierplan.geometry.checker.hulls import STACK, TOLERANCE, copy_points, halve, size
 from bezierplan.geometry.region import Region
 
-# A parameter interval this short that ends in a blocked point is reported as the collision.
+# A parameter interval this short that ends at a blocked point is reported as the collision.
 _SHORTEST_INTERVAL = 1e-11
 
 
 @njit(cache=True)
 def first_collision(pieces: np.ndarray, region: Region) -> tuple[float, int]:
-    """Piece number plus parameter of the first collision (infinite without one), and the number of intervals examined.
+    """Piece number plus parameter of the first collision (infinite if there is none), and the number of intervals examined.
 
-    Depth first, left half first: what lies before the interval in hand is certified free.
+    Depth first, left half first: everything before the current interval is certified free.
     """
     stack = np.empty((STACK, pieces.shape[1], 2))
     begin = np.empty(STACK)

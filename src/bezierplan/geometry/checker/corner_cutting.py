@@ -1,4 +1,4 @@
-"""The rule `closed` of corner cutting: whether a path passes between two occupied cells that meet only by a corner."""
+"""The corner-cutting rule `closed`: whether a path passes between two occupied cells that share only a corner."""
 
 import math
 
@@ -7,7 +7,7 @@ from numba import njit
 
 from bezierplan.geometry.checker.hulls import STACK, box, copy_points, halve, size
 
-# Radius of the disc around a contact in which the rule looks where a path comes from and goes to, in cells.
+# Radius, in cells, of the disc around a contact in which the rule examines where a path comes from and goes to.
 CONTACT_RADIUS = 1e-6
 
 
@@ -24,9 +24,9 @@ def first_corner_cut(pieces: np.ndarray, contacts: np.ndarray, radius: float) ->
 def _corner_cut_at(pieces: np.ndarray, x: float, y: float, slope: float, radius: float) -> float:
     """Piece number plus parameter at which a path first passes one contact, infinite if it never does.
 
-    Around a contact a free path stays in the two free quadrants, which meet in the contact alone. So it passes the contact if it leaves a
-    small disc around it on another side of the diagonal through the occupied cells than it came in. A path that begins in the disc may
-    leave it on either side.
+    Around a contact a free path stays in the two free quadrants, which meet only at the contact. So it passes the contact if it enters and
+    leaves a small disc around it on different sides of the diagonal through the occupied cells. A path that begins in the disc may leave it
+    on either side.
     """
     stack = np.empty((STACK, pieces.shape[1], 2))
     begin = np.empty(STACK)

@@ -1,4 +1,4 @@
-"""How deep a colliding path lies in the blocked region, and how near a free one comes to it: branch and bound over halved pieces."""
+"""How deep a colliding path lies in the blocked region, and how close a free one comes to it: branch and bound over halved pieces."""
 
 import math
 
@@ -16,7 +16,7 @@ DEPTH_TOLERANCE = 1e-6
 
 @njit(cache=True)
 def largest_depth(pieces: np.ndarray, region: Region, collision_at: float) -> float:
-    """Largest depth of a path, to a relative `DEPTH_TOLERANCE`, by branch and bound from the piece of its first collision on."""
+    """Largest depth of a path, to a relative `DEPTH_TOLERANCE`, by branch and bound, starting with the piece of its first collision."""
     stack = np.empty((STACK, pieces.shape[1], 2))
     largest = 0.0
     for piece in range(max(0, math.ceil(collision_at) - 1), len(pieces)):
@@ -38,10 +38,10 @@ def largest_depth(pieces: np.ndarray, region: Region, collision_at: float) -> fl
 
 @njit(cache=True)
 def least_clearance(pieces: np.ndarray, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> float:
-    """Least distance of a free path to edges (n, 4) and discs, to `CLEARANCE_TOLERANCE`, by branch and bound.
+    """Minimum distance of a free path to edges (n, 4) and discs, to `CLEARANCE_TOLERANCE`, by branch and bound.
 
-    An edge is no nearer to the curve than to its chord, less what the curve may leave its chord by. Obstacles farther away than the least
-    distance found are dropped for both halves: they change places with others, behind the number that the halves look at.
+    The curve is no nearer to an edge than its chord is, minus the largest deviation of the curve from its chord. Obstacles farther away
+    than the minimum distance found are dropped for both halves: they are swapped to positions beyond those that the halves examine.
     """
     stack = np.empty((STACK, pieces.shape[1], 2))
     considered = np.empty(STACK, dtype=np.int64)
@@ -73,7 +73,7 @@ def least_clearance(pieces: np.ndarray, edges: np.ndarray, centres: np.ndarray, 
 
 @njit(cache=True)
 def _clearance_of_point(x: float, y: float, obstacles: np.ndarray, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> float:
-    """Least distance of a point to some of the obstacles: numbers of edges, and after them of discs."""
+    """Minimum distance of a point to some of the obstacles, given by number: edges first, then discs."""
     least = math.inf
     for obstacle in obstacles:
         disc = obstacle - len(edges)
@@ -87,7 +87,7 @@ def _clearance_of_point(x: float, y: float, obstacles: np.ndarray, edges: np.nda
 
 @njit(cache=True)
 def _clearance_bound(points: np.ndarray, bulge: float, obstacle: int, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> float:
-    """Lower bound of the distance of a curve to an obstacle. A curve leaves its chord by `bulge` at most."""
+    """Lower bound of the distance of a curve to an obstacle. A curve deviates from its chord by at most `bulge`."""
     ax, ay = points[0]
     bx, by = points[-1]
     disc = obstacle - len(edges)

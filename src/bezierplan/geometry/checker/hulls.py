@@ -1,4 +1,4 @@
-"""Hulls of the control points of Bezier pieces: halving, extent and direction; and the limits within which they are exact enough."""
+"""Hulls of the control points of Bezier pieces: halving, extent and direction; and the limits within which they are sufficiently exact."""
 
 import math
 
@@ -8,24 +8,24 @@ from numba import njit
 # Depth in units above which a point is certainly blocked.
 TOLERANCE = 1e-9
 
-# Smaller than this, differences of coordinates are rounding.
+# Smaller differences between coordinates are rounding errors.
 ROUNDING = 1e-12
 
-# Coordinates beyond this would bring the rounding of halved control points near the tolerance.
+# With larger coordinates, the rounding errors of halved control points would approach the tolerance.
 LARGEST_COORDINATE = 1e5
 
 LARGEST_DEGREE = 60
 
-# Halving reaches the tolerance from the largest coordinate in some fifty levels; a level needs one place on the stack.
+# From the largest coordinate, halving reaches the tolerance in about fifty levels; each level needs one stack entry.
 STACK = 64
 
-# A chord this much shorter than its hull does not show the hull's direction.
+# A chord this much shorter than its hull does not indicate the hull's direction.
 _SHORT_CHORD = 1e-3
 
 
 @njit(cache=True)
 def copy_points(points: np.ndarray, place: np.ndarray) -> None:
-    """Copy control points one by one. Assigning whole arrays does the same, but takes seconds to compile."""
+    """Copy control points one by one. Array assignment does the same, but takes seconds to compile."""
     for i in range(len(points)):
         place[i, 0] = points[i, 0]
         place[i, 1] = points[i, 1]
@@ -54,7 +54,7 @@ def size(points: np.ndarray) -> float:
 
 @njit(cache=True)
 def direction(points: np.ndarray) -> tuple[float, float]:
-    """Unit vector along a hull: its chord's or, where the chord is short, that to the point farthest from the first one."""
+    """Unit vector along a hull: the direction of its chord or, where the chord is short, towards the point farthest from the first one."""
     farthest = len(points) - 1
     longest = size(points)
     if math.hypot(points[-1, 0] - points[0, 0], points[-1, 1] - points[0, 1]) < _SHORT_CHORD * longest:
@@ -71,7 +71,7 @@ def direction(points: np.ndarray) -> tuple[float, float]:
 
 @njit(cache=True)
 def range_along(points: np.ndarray, x: float, y: float) -> tuple[float, float]:
-    """Least and largest component of the control points in a direction, seen from the first one."""
+    """Smallest and largest component of the control points in a direction, relative to the first one."""
     low = high = 0.0
     for i in range(1, len(points)):
         component = (points[i, 0] - points[0, 0]) * x + (points[i, 1] - points[0, 1]) * y

@@ -1,7 +1,7 @@
 """Exact shortest paths of a point robot: any-angle on grids, around circles and polygons; through cell centres; on the 8-connected lattice.
 
-They read the same region as the certified check, and the paths that they give are free by it: touching is allowed. There is a file for each
-kind of region, and one for the lattice.
+They use the same region as the certified check, which finds the resulting paths free: touching is allowed. There is one file for each kind
+of region, and one for the lattice.
 """
 
 from typing import Literal
@@ -23,13 +23,13 @@ __all__ = ["Bound", "centre_path", "lattice_path", "least_length", "shortest_pat
 def shortest_path(problem: Problem, corner_cutting: Literal["open", "closed"] = "open") -> Bound:
     """The shortest path from start to target; no path if one of them is blocked.
 
-    corner_cutting: whether it may pass between two occupied cells that meet only by a corner; matters on grids only.
+    corner_cutting: whether it may pass between two occupied cells that share only a corner; only matters on grids.
 
-    On a grid the visibility of start and target is decided for the nearest points of a lattice: coordinates that are no fractions of a cell
-    with a common denominator of at most 2**20 are off by up to 5e-7 cells there. Lengths are those of the points themselves. Around circles
-    the length is a sum of closed forms, and the polyline is up to `circles.POLYLINE_EXCESS` longer.
+    On a grid the visibility of start and target is decided for the nearest points of a lattice: coordinates that are not fractions of a
+    cell with a common denominator of at most 2**20 are off by up to 5e-7 cells in that test. Lengths are those of the points themselves.
+    Around circles the length is a sum of closed forms, and the polyline is up to `circles.POLYLINE_EXCESS` longer.
 
-    Raises ValueError for an unknown rule of corner cutting, and for the rule `closed` on a grid with more than `grid.MOST_NODES` corners.
+    Raises ValueError for an unknown corner-cutting rule, and for the rule `closed` on a grid with more than `grid.MOST_NODES` corners.
 
     Around two occupied cells, by their upper left corner:
 
@@ -53,10 +53,10 @@ def shortest_path(problem: Problem, corner_cutting: Literal["open", "closed"] = 
 
 
 def least_length(bound: Bound) -> float:
-    """The least length that a path may have which the certified check calls free.
+    """The minimum length of any path that the certified check calls free.
 
-    Such a path may be a few 1e-9 deep and cuts its bends by that; the allowance is a relative 1e-9 and 1e-8 a radian of turning. Obstacles
-    that are sharper than a right angle and gaps below 1e-7 can allow more.
+    Such a path may be a few 1e-9 deep and cut its bends by as much; the allowance is a relative 1e-9 plus 1e-8 per radian of turning.
+    Obstacles that are sharper than a right angle and gaps below 1e-7 can allow more.
     """
     step = np.diff(bound.points, axis=0)
     step = step[np.hypot(step[:, 0], step[:, 1]) > TOLERANCE]

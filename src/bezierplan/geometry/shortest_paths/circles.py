@@ -16,7 +16,7 @@ POLYLINE_EXCESS = 1e-6
 # Arcs that overlap by less than this angle count as touching.
 _SAME_ANGLE = 1e-8
 
-# A polyline around an arc is refined this many times at most to keep clear of a neighbouring circle.
+# A polyline around an arc is refined at most this many times to keep clear of a neighbouring circle.
 _REFINEMENTS = 20
 
 
@@ -51,7 +51,7 @@ def shortest_around_circles(problem: Problem, blocked: CircleRegion) -> Bound:
 
 
 class _Tangents(NamedTuple):
-    """Nodes of a tangent graph and the straight pairs between them that are not yet tested.
+    """Nodes of a tangent graph and the pairs joined by a straight line, not yet tested.
 
     points: positions (x, y). circles: the circle that a node lies on, -1 for start and target. angles: its angle there. pairs: two nodes.
     """
@@ -70,7 +70,7 @@ class _Tangents(NamedTuple):
 
 
 def _shortest_between(tail: np.ndarray, head: np.ndarray, length: np.ndarray) -> np.ndarray:
-    """Numbers of the edges that are the shortest between their two nodes. Of the others sparse matrices would make sums."""
+    """Indices of the edges that are the shortest between their two nodes. Sparse matrices would sum duplicate edges."""
     low, high = np.minimum(tail, head), np.maximum(tail, head)
     order = np.lexsort([length, high, low])
     first = (np.diff(low[order], prepend=-1) != 0) | (np.diff(high[order], prepend=-1) != 0)
@@ -78,7 +78,7 @@ def _shortest_between(tail: np.ndarray, head: np.ndarray, length: np.ndarray) ->
 
 
 def _outer_circles(blocked: CircleRegion) -> tuple[np.ndarray, np.ndarray]:
-    """Centres and radii of the circles that lie inside no other one; of equal circles the first."""
+    """Centres and radii of the circles that do not lie inside another; of equal circles only the first."""
     centres, radii = blocked.centres, blocked.radii
     distance = np.hypot(*(centres[:, None] - centres[None]).transpose(2, 0, 1))
     inside = distance + radii[:, None] <= radii[None]
@@ -88,7 +88,7 @@ def _outer_circles(blocked: CircleRegion) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _tangents(problem: Problem, centres: np.ndarray, radii: np.ndarray) -> _Tangents:
-    """Nodes 0 and 1 are start and target. Where one of them lies on a circle, a node of the circle lies in the same place."""
+    """Nodes 0 and 1 are start and target. Where one of them lies on a circle, a node of the circle has the same position."""
     graph = _Tangents([problem.start, problem.target], [-1, -1], [math.nan, math.nan], [(0, 1)])
     for end, (x, y) in enumerate((problem.start, problem.target)):
         for k, (centre, radius) in enumerate(zip(centres, radii)):
@@ -152,7 +152,7 @@ def _free_arcs(tangents: _Tangents, centres: np.ndarray, radii: np.ndarray, boun
 
 
 def _covered_angles(k: int, centres: np.ndarray, radii: np.ndarray, bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Parts of a circle that lie in other circles or outside of the border: middle and half of each angle."""
+    """Parts of a circle that lie in other circles or outside the border: middle and half-width of each angular interval."""
     radius = radii[k]
     step = np.delete(centres - centres[k], k, axis=0)
     other = np.delete(radii, k)

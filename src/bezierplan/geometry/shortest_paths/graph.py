@@ -9,7 +9,7 @@ from numba import njit
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
 
-# Sparse matrices take an entry of zero for no edge.
+# Sparse matrices treat a zero entry as no edge.
 NO_LENGTH = 1e-300
 
 
@@ -25,12 +25,12 @@ class Bound(NamedTuple):
 
 
 def no_path() -> Bound:
-    """What a search answers that finds no path."""
+    """The result of a search that finds no path."""
     return Bound(math.inf, np.empty((0, 2)))
 
 
 def moved(bound: Bound, by: np.ndarray | tuple[float, float]) -> Bound:
-    """A path measured from a grid's corner, measured from the origin."""
+    """A path relative to a grid's corner, converted to coordinates relative to the origin."""
     return bound._replace(points=bound.points + by)
 
 
@@ -45,7 +45,9 @@ def along(points: np.ndarray, nodes: np.ndarray) -> Bound:
 
 
 def shortest_in_graph(points: np.ndarray, visible: np.ndarray) -> Bound:
-    """The shortest polyline from the first to the second of some points (n, 2), along pairs that see each other: bool (n, n), i < j."""
+    """The shortest polyline from the first to the second of some points (n, 2), along pairs of points that see each other: bool (n, n), i <
+    j.
+    """
     from scipy.sparse import coo_array
 
     tail, head = np.nonzero(visible)
@@ -58,7 +60,7 @@ def shortest_in_graph(points: np.ndarray, visible: np.ndarray) -> Bound:
 
 
 def dijkstra_path(graph: "csr_array", start: int, target: int) -> tuple[float, np.ndarray]:
-    """Length of a shortest path in a sparse graph, whose edges go both ways, and the nodes along it; none without a path."""
+    """Length of a shortest path in a sparse graph, whose edges go both ways, and the nodes along it; empty if there is no path."""
     from scipy.sparse.csgraph import dijkstra
 
     distances, predecessors = dijkstra(graph, directed=False, indices=start, return_predecessors=True)
@@ -72,7 +74,7 @@ def dijkstra_path(graph: "csr_array", start: int, target: int) -> tuple[float, n
 
 @njit(cache=True)
 def way_back(before, length):
-    """The nodes from node 0 to node 1, by the node before each; none if the length is infinite."""
+    """The nodes from node 0 to node 1, from each node's predecessor; empty if the length is infinite."""
     nodes = [1]
     while before[nodes[-1]] >= 0:
         nodes.append(before[nodes[-1]])

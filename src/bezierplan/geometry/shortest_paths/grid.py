@@ -1,4 +1,4 @@
-"""Shortest paths on grids: visibility between corners of cells, or between their centres, in whole numbers."""
+"""Shortest paths on grids: visibility between corners of cells, or between their centres, in integer arithmetic."""
 
 import math
 from fractions import Fraction
@@ -12,16 +12,16 @@ from bezierplan.geometry.shortest_paths.lattice import lattice_path
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 
-# A graph has an entry for every pair of nodes; with more nodes than this a search that keeps no pairs takes its place.
+# A graph has an entry for every pair of nodes; with more nodes than this, a search that stores no pairs is used instead.
 MOST_NODES = 5000
 
-# Start and target are put on a lattice of at most this many points a cell, so that visibility is decided with whole numbers.
+# Start and target are put on a lattice of at most this many points per cell, so that visibility is decided with integers.
 _FINEST_LATTICE = 2**20
 
 # Products of two coordinates of the lattice must fit in 64 bits.
 _LARGEST_WHOLE = 2**30
 
-# A value this near to a fraction with a small denominator, in cells, is meant as that fraction.
+# A value this close to a fraction with a small denominator, in cells, is taken to be that fraction.
 _SAME_FRACTION = 1e-12
 
 # A cell centre may be this far off, in cells.
@@ -31,7 +31,7 @@ _CENTRE_TOLERANCE = 1e-9
 def shortest_on_grid(problem: Problem, blocked: GridRegion, corner_cutting: str) -> Bound:
     """The visibility graph of start, target and the corners at which a shortest path can turn.
 
-    Those are the vertices with exactly one occupied cell around them, and contacts. A contact that is closed is two nodes, one a free
+    Those are the vertices with exactly one occupied cell around them, and contacts. A closed contact becomes two nodes, one per free
     quadrant, each with directions of its own quadrant only.
     """
     cells = np.ascontiguousarray(blocked.blocked[::2, ::2])
@@ -71,7 +71,7 @@ def centre_path(problem: Problem) -> Bound:
 
 
 def _centre_cell(grid: Grid, name: str, point: tuple[float, float]) -> tuple[int, int]:
-    """Row and column of the cell whose centre a point is."""
+    """Row and column of the cell whose centre is the given point."""
     column, row = grid.in_cells(np.array(point)) - 0.5
     rows, columns = grid.occupied.shape
     is_centre = abs(column - round(column)) <= _CENTRE_TOLERANCE and abs(row - round(row)) <= _CENTRE_TOLERANCE
@@ -94,7 +94,8 @@ def _grid_corners(cells: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarr
     below_left, below_right, above_left, above_right = around
     single = around.sum(axis=0) == 1
     pair = around.sum(axis=0) == 2
-    # Around a single occupied cell a path turns from one of the two quadrants beside it to the other; at a contact it stays in free ones.
+    # Around a single occupied cell a path turns from one of the two adjacent quadrants to the other; at a contact it stays in the free
+    # ones.
     rising = (single & (below_right | above_left)) | (pair & below_right & above_left)
     falling = (single & (below_left | above_right)) | (pair & below_left & above_right)
     row, column = np.nonzero(rising | falling)
@@ -112,7 +113,7 @@ def _grid_corners(cells: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarr
 
 
 def _lattice(points: np.ndarray, finest: int) -> int:
-    """The least number of lattice points a cell that makes all coordinates whole; `finest` if that is not enough."""
+    """The smallest number of lattice points per cell that makes all coordinates integers; `finest` if even that is not enough."""
     fractions = [Fraction(value).limit_denominator(finest) for value in points.ravel().tolist()]
     scale = math.lcm(*(fraction.denominator for fraction in fractions))
     exact = all(abs(value - fraction) <= _SAME_FRACTION for value, fraction in zip(points.ravel(), fractions))
@@ -120,8 +121,9 @@ def _lattice(points: np.ndarray, finest: int) -> int:
 
 
 def _least_over_cells(problem: Problem) -> float:
-    """Length in cells of the shortest way over the centres of free cells, start and target joined to those of their own cells: no shortest
-    path is longer. Infinite without one, for then there is no path at all; but not if start or target lies on an occupied cell's side.
+    """Length in cells of the shortest path over the centres of free cells, with start and target joined to the centres of their own cells:
+    an upper bound of the shortest path. Infinite if there is none, since then there is no path at all; the largest float if start or target
+    lies on the side of an occupied cell.
     """
     grid = problem.workspace
     start, target = (grid.cell_of(*end) for end in (problem.start, problem.target))
@@ -135,9 +137,9 @@ def _least_over_cells(problem: Problem) -> float:
 
 @njit(cache=True)
 def _search_grid(points, lattice, slopes, cells, scale, most):
-    """The nodes of a shortest path from node 0 to node 1 by the algorithm A*, none without a path; pairs are tested when they matter.
+    """The nodes of a shortest path from node 0 to node 1 by the algorithm A*, empty if there is no path; pairs are tested only when needed.
 
-    points: (n, 2) in cells, lattice: (n, 2) the same in whole numbers. most: in cells, a length that the path does not exceed.
+    points: (n, 2) in cells, lattice: (n, 2) the same in integers. most: in cells, a length that the path does not exceed.
     """
     ahead = np.hypot(points[:, 0] - points[1, 0], points[:, 1] - points[1, 1])
     length = np.full(len(points), np.inf)
@@ -173,7 +175,7 @@ def _visible_on_grid(
 ) -> np.ndarray:
     """Which pairs i < j of nodes can follow each other on a shortest path: bool (n, n).
 
-    nodes: (n, 2) whole numbers, `scale` a cell. cells: occupied cells with a ring around them.
+    nodes: (n, 2) integers, `scale` per cell. cells: occupied cells with a ring around them.
     """
     visible = np.zeros((len(nodes), len(nodes)), dtype=np.bool_)
     for i in range(len(nodes)):
@@ -185,7 +187,7 @@ def _visible_on_grid(
             if not (_in_quadrant(dx, dy, quadrants[i]) and _in_quadrant(-dx, -dy, quadrants[j])):
                 continue
             if dx == 0 and dy == 0:
-                # The two nodes of a closed contact lie in one place and do not see each other.
+                # The two nodes of a closed contact coincide and do not see each other.
                 visible[i, j] = quadrants[i, 0] == 0 or quadrants[j, 0] == 0
             else:
                 visible[i, j] = _sees(nodes[i], nodes[j], cells, scale, closed)
@@ -210,7 +212,7 @@ def _sees(one: np.ndarray, other: np.ndarray, cells: np.ndarray, scale: int, clo
 
 @njit(cache=True)
 def _sees_along_column(x: int, low: int, length: int, cells: np.ndarray, scale: int, closed: bool) -> bool:
-    """Whether a vertical segment is free. On a grid line it passes edges, blocked if both of their cells are occupied."""
+    """Whether a vertical segment is free. On a grid line it runs along edges, which are blocked if both of their cells are occupied."""
     column = x // scale
     on_line = x % scale == 0
     for row in range(low // scale, (low + length - 1) // scale + 1):
@@ -223,7 +225,7 @@ def _sees_along_column(x: int, low: int, length: int, cells: np.ndarray, scale: 
 
 @njit(cache=True)
 def _is_contact(cells: np.ndarray, row: int, column: int) -> bool:
-    """Whether two occupied cells meet only by a corner in a vertex, given by its grid lines."""
+    """Whether two occupied cells share only a corner at a vertex, given by its grid lines."""
     below_left, below_right = cells[row, column], cells[row, column + 1]
     above_left, above_right = cells[row + 1, column], cells[row + 1, column + 1]
     return below_left == above_right and below_right == above_left and below_left != below_right
@@ -233,7 +235,7 @@ def _is_contact(cells: np.ndarray, row: int, column: int) -> bool:
 def _sees_across(x: int, y: int, dx: int, dy: int, cells: np.ndarray, scale: int, closed: bool) -> bool:
     """Whether a slanted segment is free: a walk over the cells that it enters.
 
-    to_x and to_y are the distances from the segment's begin to the next vertical and horizontal grid line, along each axis.
+    to_x and to_y are the distances from the segment's start to the next vertical and horizontal grid line, along each axis.
     """
     step_x = 1 if dx > 0 else -1
     step_y = 1 if dy > 0 else -1

@@ -19,10 +19,10 @@ def lattice_path(
     """The shortest path over the 8 neighbours of free cells, by the algorithm A*; length and points (x, y) in cells.
 
     occupied: bool (rows, columns). start, target: row and column. diagonal_weight: length of a diagonal step; others count 1. corner_rule:
-    how many of the two cells beside a diagonal step may be occupied.
-    Raises ValueError for an unknown rule and for a start or target outside of the grid.
+    how many of the two cells beside a diagonal step may be occupied. Raises ValueError for an unknown rule and if start or target is
+    outside the grid.
 
-    A diagonal step past an occupied cell is allowed with the rule `free`, and not with the rule `none`:
+    The rule `free` allows a diagonal step past an occupied cell, the rule `none` does not:
 
     >>> from bezierplan.workspaces.grid import from_lines
     >>> occupied = from_lines(["....", ".##.", "...."], cell=1.0, unit="m").occupied
@@ -48,20 +48,20 @@ def lattice_path(
 
 @njit(cache=True)
 def _least_cells(walled, start, target, steps, diagonal_weight, most_beside):
-    """Length of a shortest path and its cells (n,), numbered row by row; infinite and none if there is no path.
+    """Length of a shortest path and its cells (n,), numbered row by row; infinite and empty if there is no path.
 
     walled: bool (rows, columns), the cells with a frame of occupied ones. start, target: row and column. most_beside: how many of the two
-    cells beside a diagonal step may be occupied. What is left is estimated by the shortest path without obstacles, so only cells around the
-    shortest paths are looked at.
+    cells beside a diagonal step may be occupied. The remaining length is estimated by the shortest path without obstacles, so only cells
+    near the shortest paths are examined.
     """
     columns = walled.shape[1]
-    # A step of each kind may be replaced by two of the other kind.
+    # A step of either kind may be replaced by two of the other kind.
     straight, diagonal = min(1.0, diagonal_weight), min(diagonal_weight, 2.0)
     length = np.full(walled.shape, np.inf)
     came_by = np.full(walled.shape, -1, dtype=np.int8)
     settled = np.zeros(walled.shape, dtype=np.bool_)
     length[start[0], start[1]] = 0.0
-    # Estimated length, the part of it that is ahead, and the cell; of equally long ones those nearest to the target come first.
+    # Estimated length, the part of it still ahead, and the cell; ties go to those nearest to the target.
     heap = [(0.0, 0.0, start[0], start[1])]
     while len(heap) > 0:
         _, _, row, column = heapq.heappop(heap)

@@ -11,7 +11,7 @@ from bezierplan.geometry.region import PolygonRegion
 from bezierplan.geometry.shortest_paths.graph import Bound, along, shortest_in_graph, way_back
 from bezierplan.workspaces.problem import Problem
 
-# With more nodes than this a search that tests pairs when they matter takes the place of the whole graph.
+# With more nodes than this, a search that tests pairs only when needed replaces the full graph.
 MOST_POLYGON_NODES = 500
 
 
@@ -33,7 +33,7 @@ def shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
 def _visible_among_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion) -> np.ndarray:
     """Which pairs i < j of nodes can follow each other on a shortest path: bool (n, n).
 
-    before, after: (n, 2) the neighbours of a corner along the boundary; the node itself where a path may turn in any way.
+    before, after: (n, 2) the neighbours of a corner along the boundary; the node itself where a path may turn in any direction.
     """
     visible = np.zeros((len(nodes), len(nodes)), dtype=np.bool_)
     segment = np.empty((1, 2, 2))
@@ -50,8 +50,8 @@ def _visible_among_polygons(nodes: np.ndarray, before: np.ndarray, after: np.nda
 
 @njit(cache=True)
 def _search_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion) -> np.ndarray:
-    """The nodes of a shortest path from node 0 to node 1 by the algorithm A*, none without a path; pairs are tested when they matter:
-    a node's way to all others waits in a heap, and is tested when it is the most promising one.
+    """The nodes of a shortest path from node 0 to node 1 by the algorithm A*, empty if there is no path; pairs are tested only when needed:
+    the edges from a node to all others wait in a heap, and each is tested once it is the most promising.
     """
     came_by = np.full(len(nodes), -1)
     settled = np.zeros(len(nodes), dtype=np.bool_)
@@ -88,7 +88,7 @@ def _is_taut(nodes: np.ndarray, i: int, j: int, before: np.ndarray, after: np.nd
 
 @njit(cache=True)
 def _crosses(a: np.ndarray, b: np.ndarray, edges: np.ndarray) -> bool:
-    """Whether a segment and an edge lie strictly across each other. What only touches edges is left to the certified check."""
+    """Whether a segment and an edge cross strictly. Mere touching is left to the certified check."""
     for e in range(len(edges)):
         c, d = edges[e, :2], edges[e, 2:]
         if _apart(_offset(a, b, c), _offset(a, b, d)) and _apart(_offset(c, d, a), _offset(c, d, b)):
@@ -98,13 +98,13 @@ def _crosses(a: np.ndarray, b: np.ndarray, edges: np.ndarray) -> bool:
 
 @njit(cache=True)
 def _apart(first: float, second: float) -> bool:
-    """Whether two offsets from a line lie strictly on its two sides."""
+    """Whether two offsets lie strictly on opposite sides of a line."""
     return min(first, second) < -TOLERANCE and max(first, second) > TOLERANCE
 
 
 @njit(cache=True)
 def _offset(a: np.ndarray, b: np.ndarray, point: np.ndarray) -> float:
-    """Distance of a point from the line through a and b, positive on its left; 0 if a and b are one point."""
+    """Distance of a point from the line through a and b, positive on its left; 0 if a and b coincide."""
     length = math.hypot(b[0] - a[0], b[1] - a[1])
     if length == 0.0:
         return 0.0

@@ -1,7 +1,7 @@
-"""Operators on paths over a lattice of cells, and a genetic algorithm of them.
+"""Operators on paths over a lattice of cells, and a genetic algorithm that uses them.
 
-A path is an array (n,) of numbers of cells, each a neighbour of the one before on a lattice (`workspaces.lattice.Lattice`). `marks` is
-scratch (cells,) of whole numbers: all 0 when an operator begins, and when it ends.
+A path is an array (n,) of cell numbers, each a neighbour of the one before on a lattice (`workspaces.lattice.Lattice`). `marks` is scratch
+(cells,) of integers: all 0 before and after each operator.
 """
 
 from typing import NamedTuple
@@ -18,9 +18,9 @@ class Rules(NamedTuple):
     """Settings of `evolve`.
 
     crossover_probability: of a pair of parents. shorter_parts: whether the first child gets the shorter head and the shorter tail and the
-    second one is parent 2, or tails are swapped. mutation_probability: of a child. mutation: ONE_CELL, RECONNECT or WALK; longest_part: the
-    most cells of a part made by the last two; tries: see `forage`. cut_loops: whether children lose their loops. elitism: whether the best
-    so far replaces a child.
+    second is parent 2; otherwise tails are swapped. mutation_probability: of a child. mutation: ONE_CELL, RECONNECT or WALK; longest_part:
+    maximum number of cells in a part made by the last two; tries: see `forage`. cut_loops: whether children lose their loops. elitism:
+    whether the best so far replaces a child.
     """
 
     crossover_probability: float
@@ -35,9 +35,9 @@ class Rules(NamedTuple):
 
 @njit(cache=True)
 def evolve(rng, lattice, paths, sizes, generations, rules):
-    """The shortest path (n,) found by a genetic algorithm from some paths, and the least length so far (generations + 1,).
+    """The shortest path (n,) found by a genetic algorithm from some paths, and the shortest length so far (generations + 1,).
 
-    paths: (population, longest path) with sizes: (population,); overwritten. A child that would be longer stays a copy of its parent.
+    paths: (population, longest path) with sizes: (population,); overwritten. A child that would not fit stays a copy of its parent.
     """
     population, longest = paths.shape
     parents, parent_sizes = np.empty_like(paths), np.empty_like(sizes)
@@ -88,7 +88,7 @@ def evolve(rng, lattice, paths, sizes, generations, rules):
 
 @njit(cache=True)
 def put(part, path, size):
-    """Write a part of a path behind the first `size` cells of a path. Returns the new size."""
+    """Write a part after the first `size` cells of a path. Returns the new size."""
     for k in range(len(part)):
         path[size + k] = part[k]
     return size + len(part)
@@ -96,7 +96,7 @@ def put(part, path, size):
 
 @njit(cache=True)
 def _replace(path, size, child, cut, marks):
-    """Put a child, without its loops if they are to be cut, in the place of a path of some size, if it fits. Returns the new size."""
+    """Replace a path of the given size by a child if it fits, with its loops removed if `cut` says so. Returns the new size."""
     child_size = cut_loops(child, marks) if cut else len(child)
     if child_size > len(path):
         return size
@@ -105,7 +105,7 @@ def _replace(path, size, child, cut, marks):
 
 @njit(cache=True)
 def _mutant(rng, lattice, path, rules, child, part, marks):
-    """Make a mutant of a path. Returns its size, 0 if there is no change."""
+    """Make a mutant of a path. Returns its size, or 0 if nothing changed."""
     if rules.mutation == ONE_CELL:
         return change_cell(rng, lattice, path, child)
     k, m = rng.integers(0, len(path)), rng.integers(0, len(path))
@@ -123,7 +123,9 @@ def _mutant(rng, lattice, path, rules, child, part, marks):
 
 @njit(cache=True)
 def length(path, lattice):
-    """Length in cells, with the ways from start and to target; equal numbers of steps give equal lengths, in whatever order."""
+    """Length in cells, including the way from the start and to the target; equal numbers of steps give equal lengths, whatever their
+    order.
+    """
     diagonal = 0
     for k in range(1, len(path)):
         one, other = path[k - 1], path[k]
@@ -133,7 +135,7 @@ def length(path, lattice):
 
 @njit(cache=True)
 def step_between(lattice, one, other):
-    """Which of the eight steps leads from a cell to another one, -1 if none does."""
+    """Which of the eight steps leads from one cell to another, -1 if none does."""
     for step in range(8):
         if lattice.neighbours[one, step] == other:
             return step
@@ -144,13 +146,13 @@ def step_between(lattice, one, other):
 def join(lattice, cells, path, marks):
     """Join cells (n,) to a path by inserting midpoints. Returns its size, 0 if they cannot be joined within len(path) cells.
 
-    From the first pair on, the cell in the middle is put between two cells that are no neighbours, its row and column rounded down. If it
-    is occupied, or one of the two, this is the first free cell around it, in the order of `workspaces.lattice.STEPS`, that is not in the
-    list yet. Equal cells that follow each other are merged.
+    Starting with the first pair, the middle cell, with row and column rounded down, is inserted between two cells that are not neighbours.
+    If it is occupied or equal to one of the two, the first free cell around it, in the order of `workspaces.lattice.STEPS`, that is not yet
+    in the list is used instead. Consecutive equal cells are merged.
     """
     if len(cells) > len(path):
         return 0
-    # The list is the path so far, and behind it what waits, the next one on top.
+    # The list holds the path so far, followed by the waiting cells, the next one on top.
     waiting = np.empty(len(path), dtype=np.int64)
     size, height = 0, 0
     for cell in cells[::-1]:
@@ -181,8 +183,8 @@ def join(lattice, cells, path, marks):
 
 @njit(cache=True)
 def _between(lattice, one, other, marks):
-    """The cell that `join` puts between two cells, -1 if there is none."""
-    # Cells are numbered row by row, so the last one tells the number of columns.
+    """The cell that `join` inserts between two cells, -1 if there is none."""
+    # Cells are numbered row by row, so the last one gives the number of columns.
     columns = lattice.column[-1] + 1
     row, column = (lattice.row[one] + lattice.row[other]) // 2, (lattice.column[one] + lattice.column[other]) // 2
     middle = columns * row + column
@@ -196,7 +198,8 @@ def _between(lattice, one, other, marks):
 
 @njit(cache=True)
 def common_cell(rng, one, other, marks):
-    """Places, in two paths, of a random inner cell of the first one that is also an inner cell of the other one; the last place there.
+    """Indices, in two paths, of a random inner cell of the first that is also an inner cell of the other; in the other, its last
+    occurrence.
 
     (0, 0) if there is none.
     """
@@ -219,7 +222,7 @@ def common_cell(rng, one, other, marks):
 
 @njit(cache=True)
 def cut_loops(path, marks):
-    """Cut, in place, what lies between two visits of a cell, from the first revisit on. Returns the new size."""
+    """Remove, in place, whatever lies between two visits to a cell, starting with the first revisit. Returns the new size."""
     size = 0
     for cell in path:
         if marks[cell]:
@@ -237,8 +240,8 @@ def cut_loops(path, marks):
 
 @njit(cache=True)
 def change_cell(rng, lattice, path, child):
-    """Replace a random inner cell by a random other cell that is a neighbour of both cells beside it; if there is none and these two are
-    neighbours, drop it. Returns the child's size, 0 if there is no change: always for paths of fewer than 4 cells.
+    """Replace a random inner cell by another random cell that neighbours both adjacent cells of the path; if there is none and these two
+    are neighbours, drop it. Returns the child's size, or 0 if nothing changed, as always for paths of fewer than 4 cells.
     """
     if len(path) < 4:
         return 0
@@ -260,7 +263,9 @@ def change_cell(rng, lattice, path, child):
 
 @njit(cache=True)
 def reconnect(rng, lattice, first, last, part, marks):
-    """Join two cells by way of a random cell of their bounding box. Returns the part's size, 0 if that cell is occupied or out of reach."""
+    """Join two cells through a random cell of their bounding box. Returns the part's size, or 0 if that cell is occupied or out of
+    reach.
+    """
     rows, columns = (lattice.row[first], lattice.row[last]), (lattice.column[first], lattice.column[last])
     row = rng.integers(min(rows), max(rows) + 1)
     cell = row * (lattice.column[-1] + 1) + rng.integers(min(columns), max(columns) + 1)
@@ -271,7 +276,7 @@ def reconnect(rng, lattice, first, last, part, marks):
 
 @njit(cache=True)
 def walk(rng, lattice, first, last, tries, part, marks):
-    """Forage from one cell until another one is met. Returns the part's size, 0 if the walk ends early or would be longer than the part."""
+    """Forage from one cell until another is reached. Returns the part's size, or 0 if the walk ends early or would exceed the part."""
     part[0] = first
     marks[first] = 1
     size = 1
@@ -291,7 +296,7 @@ def walk(rng, lattice, first, last, tries, part, marks):
 def forage(rng, lattice, cell, target, tries, visited):
     """A fish's next cell when it looks for prey (ma2020, reference 31), -1 if all neighbours are visited.
 
-    Of some random tries the first unvisited neighbour that is nearer to the target, otherwise a random unvisited neighbour.
+    The first of `tries` random neighbours that is unvisited and nearer to the target, otherwise a random unvisited neighbour.
     """
     neighbours = lattice.neighbours[cell]
     present = unvisited = 0
@@ -319,5 +324,5 @@ def forage(rng, lattice, cell, target, tries, visited):
 
 @njit(cache=True)
 def distance_square(lattice, one, other):
-    """Square of the distance between the centres of two cells, a whole number."""
+    """Square of the distance between the centres of two cells, an integer."""
     return (lattice.row[one] - lattice.row[other]) ** 2 + (lattice.column[one] - lattice.column[other]) ** 2

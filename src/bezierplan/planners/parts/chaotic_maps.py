@@ -1,8 +1,8 @@
-"""One-dimensional chaotic maps: sequences of numbers in [0, 1] that stand in for random ones (tharwat2018, Section 3.3, eqs. 9 to 16).
+"""One-dimensional chaotic maps: sequences of numbers in [0, 1] used instead of random ones (tharwat2018, Section 3.3, eqs. 9 to 16).
 
-Three formulas are printed with slips. Eq. 9 prints 1 / (x mod 1) for the Gauss map and explains it as 1/x - floor(1/x), which is `gauss`;
-the printed form is `gauss_printed`, whose values exceed 1. In eq. 12 "mod 1" acts on the whole right side. Eq. 14 asks for a below 4, where
-the usual sine map has a = 4. `constant` is a baseline: it stays where it starts.
+Three formulas are misprinted. Eq. 9 prints 1 / (x mod 1) for the Gauss map and explains it as 1/x - floor(1/x), which is `gauss`; the
+printed form is `gauss_printed`, whose values exceed 1. In eq. 12 "mod 1" applies to the whole right-hand side. Eq. 14 requires a below 4,
+where the usual sine map has a = 4. `constant` is a baseline: it stays where it starts.
 """
 
 import math
@@ -20,13 +20,13 @@ TENT_PEAK = 0.7
 CIRCLE_A, CIRCLE_B = 0.5, 0.2
 LOGISTIC_A = 4.0
 
-# Two values closer than this are one: a sequence that moves less has collapsed.
+# Values closer than this count as equal: a sequence that moves less has collapsed.
 STANDSTILL = 1e-12
 
 # Smaller numbers have no finite reciprocal; they count as 0.
 _LEAST = 1e-300
 
-# A random start must keep its sequence alive for this many steps; this many starts are tried.
+# A random start must keep its sequence alive for the first number of steps; the second is the number of starts tried.
 _TRIAL_STEPS = 60
 _MOST_STARTS = 1000
 
@@ -46,7 +46,7 @@ class Parameters(NamedTuple):
 
 
 class Sequence(NamedTuple):
-    """Values (length,) of a map; how many were clipped to [0, 1]; and the index at which it collapsed, the first being 1, or 0."""
+    """Values (length,) of a map, how many were clipped to [0, 1], and the index (from 1) at which the sequence collapsed, or 0."""
 
     values: np.ndarray
     clipped: int
@@ -56,8 +56,9 @@ class Sequence(NamedTuple):
 def sequence(name: Map, start: float, length: int, parameters: Parameters) -> Sequence:
     """A map's values from a start in [0, 1], which is the first of them.
 
-    Values that leave [0, 1] are clipped and go on from there; those of `gauss_printed` are left as they are. A sequence has collapsed
-    where it begins to stand still until its end. Raises ValueError for an unknown map and for a start outside [0, 1].
+    Values that leave [0, 1] are clipped, and the sequence continues from there; those of `gauss_printed` are left as they are. A sequence
+    has collapsed at the point from which it stands still until its end. Raises ValueError for an unknown map and for a start outside [0,
+    1].
     """
     if not 0 <= start <= 1:
         raise ValueError(f"start: {start}; a chaotic sequence starts from 0 to 1")
@@ -67,7 +68,7 @@ def sequence(name: Map, start: float, length: int, parameters: Parameters) -> Se
 def random_start(rng: np.random.Generator, name: Map, parameters: Parameters) -> float:
     """A uniform random start in (0, 1) from which a map's sequence stays alive: redrawn while it dies at 0 or at a fixed point.
 
-    Raises ValueError for an unknown map and if no start lives.
+    Raises ValueError for an unknown map and if no start stays alive.
     """
     number = _number(name)
     for _ in range(_MOST_STARTS):

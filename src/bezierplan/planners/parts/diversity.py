@@ -1,4 +1,4 @@
-"""How much two binary chromosomes agree: the Q statistic (elhoseny2017, equation 10)."""
+"""Agreement of two binary chromosomes: the Q statistic (elhoseny2017, equation 10)."""
 
 import numpy as np
 from numba import njit
@@ -6,9 +6,9 @@ from numba import njit
 
 @njit(cache=True)
 def q_statistic(both: int, neither: int, only_one: int, only_other: int) -> float:
-    """Q, from -1 (they share no gene) to 1, from the numbers of genes that are set in both, in neither and in one of two chromosomes.
+    """Q, from -1 (they share no gene) to 1, from the numbers of genes that are set in both, in neither, and in only one of two chromosomes.
 
-    The paper does not say what Q is when its denominator is 0: here 1 for equal chromosomes, otherwise 0.
+    The paper does not define Q when its denominator is 0: here it is 1 for equal chromosomes, otherwise 0.
     """
     agree, differ = float(both * neither), float(only_one * only_other)
     if agree + differ == 0.0:
@@ -18,7 +18,7 @@ def q_statistic(both: int, neither: int, only_one: int, only_other: int) -> floa
 
 @njit(cache=True)
 def shared(one: np.ndarray, other: np.ndarray) -> int:
-    """How many numbers two ascending lists share."""
+    """Number of elements that two ascending lists share."""
     i = j = found = 0
     while i < len(one) and j < len(other):
         if one[i] == other[j]:
@@ -33,7 +33,7 @@ def shared(one: np.ndarray, other: np.ndarray) -> int:
 
 
 def q_of_rows(one: np.ndarray, other: np.ndarray) -> float:
-    """Q of two chromosomes as rows of 0 and 1, of equal length."""
+    """Q of two chromosomes given as rows of 0 and 1, of equal length."""
     one, other = np.asarray(one, dtype=bool), np.asarray(other, dtype=bool)
     both, neither = int((one & other).sum()), int((~one & ~other).sum())
     return q_statistic(both, neither, int((one & ~other).sum()), int((~one & other).sum()))

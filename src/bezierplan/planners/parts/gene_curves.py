@@ -12,7 +12,7 @@ from bezierplan.planners.parts.gene_lattice import Field, polygon
 # More control points make a chromosome invalid: the curve's degree is at most 60.
 MOST_POINTS = 59
 
-# Points of a curve that are looked at first: most curves that collide show it there, so the walk over all cells is spared.
+# Points of a curve that are examined first: most collisions show up there, which saves the walk over all cells.
 _FIRST_SAMPLES = 30
 _ON_LINE = 1e-9
 
@@ -22,9 +22,9 @@ _LENGTH, _CELLS4, _CELLS8 = range(3)
 
 @njit(cache=True)
 def validate(ones: np.ndarray, field: Field, rules: NamedTuple) -> tuple[float, bool]:
-    """The constraints of equation 6 and Section 3.2.2, and the length: cost of a chromosome, infinite if it is to be deleted, and whether
-    its curve is free of collisions. `Obstacles` needs no test, for genes of occupied cells are never set.
-    rules: `modified_genetic.Rules`.
+    """Apply the constraints of equation 6 and Section 3.2.2: the cost (length) of a chromosome, infinite if it is to be deleted, and
+    whether its curve is collision-free. `Obstacles` needs no test, as genes of occupied cells are never set. rules:
+    `modified_genetic.Rules`.
     """
     if not 0 < len(ones) <= MOST_POINTS:
         return np.inf, False
@@ -53,7 +53,9 @@ def validate(ones: np.ndarray, field: Field, rules: NamedTuple) -> tuple[float, 
 
 @njit(cache=True)
 def _collides_at_first_sight(points, occupied):
-    """Whether some samples of a curve, which `_curve` has as well, lie in occupied cells; those on grid lines are left to the walk."""
+    """Whether any of some samples of a curve, all of which `_curve` also has, lie in occupied cells; those on grid lines are left to the
+    walk.
+    """
     last = parts(points)
     x, y = sample(points, last, max(1, last // _FIRST_SAMPLES))
     for s in range(len(x)):
@@ -66,12 +68,12 @@ def _collides_at_first_sight(points, occupied):
 
 @njit(cache=True)
 def _is_free_at_first_sight(x, y, occupied):
-    """Whether the cells of all samples are free, and those whose corner a step between two of them may cut: then the walk over the cells
-    can only find the same. Not told of curves with a sample on a grid line.
+    """Whether the cells of all samples are free, as well as those whose corner a step between two samples may cut: the walk over the cells
+    can then only find the same. Never true for curves with a sample on a grid line.
     """
     rows, columns = occupied.shape
     touched = on_line = False
-    # Beyond the upper and the right border, on which start and target may lie, there is no cell.
+    # There is no cell beyond the upper and right borders, on which start and target may lie.
     column, row = min(int(x[0]), columns - 1), min(int(y[0]), rows - 1)
     for s in range(len(x)):
         before_column, before_row = column, row

@@ -1,4 +1,4 @@
-"""Which points of a grid can be control points, one gene each, and the polygon of those that are (elhoseny2017, Section 3).
+"""Which points of a grid can be control points, one gene each, and the polygon of those selected (elhoseny2017, Section 3).
 
 Coordinates and lengths are in cells from the grid's lower left corner.
 """
@@ -19,9 +19,9 @@ class Field(NamedTuple):
     """Where the curves lie; lengths in cells from the grid's corner.
 
     occupied: bool (rows, columns). points: (genes, 2) centre of each gene's cell. rank: (genes,) its place in the order in which control
-    points are joined. settable: (genes,) whether it may be 1; choices: the genes that may. places: how many the longer side has, and how
-    many of the lines of genes, and of the genes of a line, lie on the map: columns and rows, or by_rows the other way round. start, target:
-    (2,).
+    points are joined. settable: (genes,) whether it may be 1; choices: the genes that may. places: the number of lattice points along the
+    longer side, then how many lines of genes, and how many genes of a line, lie on the map: columns and rows, or the other way round if
+    by_rows. start, target: (2,).
     """
 
     occupied: np.ndarray
@@ -42,7 +42,7 @@ def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, gene_order: str, p
     """
     rows, columns = grid.occupied.shape
     longer = max(rows, columns)
-    # Whole places of 21 points along the longer side, the outer ones at its ends; or all places.
+    # Cell indices of 21 points along the longer side, the outer ones at its ends; or all cells.
     steps = np.floor(np.arange(21) * (longer - 1) / 20 + 0.5).astype(int) if gene_lattice == "coarse" else np.arange(longer)
     column, row = (index.ravel() for index in np.meshgrid(steps, steps, indexing="ij" if gene_order == "columns" else "xy"))
     points = np.column_stack([column, row]) + 0.5
@@ -70,9 +70,9 @@ def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, gene_order: str, p
 
 @njit(cache=True)
 def _distances(walled, row, column, steps):
-    """Distance (rows, columns) from a cell to each cell over free cells and their eight neighbours, infinite where there is no way.
+    """Distance (rows, columns) from a cell to each cell over free cells and their eight neighbours, infinite where there is no path.
 
-    walled: the cells with a frame of occupied ones around.
+    walled: the cells with a frame of occupied cells around them.
     """
     far = np.full(walled.shape, np.inf)
     far[row + 1, column + 1] = 0.0

@@ -1,4 +1,4 @@
-"""Chromosomes of many genes of which few are 1, as ascending lists of these, and pools of them.
+"""Chromosomes of many genes, few of which are 1, stored as ascending lists of these; and pools of them.
 
 Functions that change a list or a pool say so; no function keeps state.
 """
@@ -14,8 +14,8 @@ from bezierplan.planners.parts.sorting import ascending
 
 
 class Pool(NamedTuple):
-    """Chromosomes: ones (places, room) the genes that are 1, ascending; count (places,) how many; cost (places,) what the fitness is
-    the inverse of; free (places,) whether the curve is free of collisions.
+    """Chromosomes: ones (places, room) the genes that are 1, ascending; count (places,) how many; cost (places,) the inverse of the
+    fitness; free (places,) whether the curve is collision-free.
     """
 
     ones: np.ndarray
@@ -26,7 +26,7 @@ class Pool(NamedTuple):
 
 @njit(cache=True)
 def empty_pool(places: int, room: int) -> Pool:
-    """A pool with room for so many chromosomes of so many genes each."""
+    """A pool with room for `places` chromosomes of `room` genes each."""
     return Pool(np.empty((places, room), np.int64), np.zeros(places, np.int64), np.empty(places), np.zeros(places, np.bool_))
 
 
@@ -40,7 +40,7 @@ def put(ones: np.ndarray, count: int, cost: float, free: bool, pool: Pool, place
 
 @njit(cache=True)
 def select(pool: Pool, first: int, filled: int, spare: Pool) -> None:
-    """Put the best of the chromosomes at the places from `first` on to the front, in place; of equal ones the first.
+    """Move the best of the chromosomes at the places from `first` on to the front, in place; ties in their original order.
 
     spare: a pool with as many places as survive, overwritten.
     """
@@ -54,7 +54,7 @@ def select(pool: Pool, first: int, filled: int, spare: Pool) -> None:
 
 @njit(cache=True)
 def position(genes: np.ndarray, count: int, gene: int) -> int:
-    """Place of a gene among the first so many of a list, `count` if it is not there."""
+    """Index of a gene among the first `count` of a list, `count` if it is not there."""
     for i in range(count):
         if genes[i] == gene:
             return i
@@ -63,7 +63,7 @@ def position(genes: np.ndarray, count: int, gene: int) -> int:
 
 @njit(cache=True)
 def flip(genes: np.ndarray, count: int, gene: int) -> int:
-    """Change a gene of a list, in place; returns how many are 1. What does not fit is lost."""
+    """Flip a gene of a list, in place; returns how many are 1. Genes that do not fit are dropped."""
     place = position(genes, count, gene)
     if place < count:
         for i in range(place, count - 1):
@@ -81,7 +81,9 @@ def flip(genes: np.ndarray, count: int, gene: int) -> int:
 
 @njit(cache=True)
 def gap(rng: np.random.Generator, rate: float) -> int:
-    """How many genes stay as they are before one changes, each with a probability; 2**31 stands for more than there are genes."""
+    """Number of genes left unchanged before the next change, if each changes with the probability `rate`; 2**31 stands for more than there
+    are genes.
+    """
     if rate == 0.0:
         return 2**31
     return int(min(math.log(1.0 - rng.random()) / math.log1p(-rate), 2.0**31)) if rate < 1.0 else 0
@@ -115,7 +117,7 @@ def same(one: np.ndarray, other: np.ndarray) -> bool:
 
 @njit(cache=True)
 def distinct(pool: Pool, size: int) -> int:
-    """How many different chromosomes the first of the pool are; equal ones have equal costs."""
+    """Number of distinct chromosomes among the first `size` of the pool; equal ones have equal costs."""
     found = size
     for i in range(size):
         for j in range(i):
@@ -127,7 +129,7 @@ def distinct(pool: Pool, size: int) -> int:
 
 @njit(cache=True)
 def q(one: np.ndarray, other: np.ndarray, genes: int) -> float:
-    """The Q statistic of two lists, each of a chromosome of so many genes (`diversity.q_statistic`)."""
+    """The Q statistic of two lists, each of a chromosome with the given number of genes (`diversity.q_statistic`)."""
     both = shared(one, other)
     return q_statistic(both, genes - len(one) - len(other) + both, len(one) - both, len(other) - both)
 
@@ -136,7 +138,8 @@ def q(one: np.ndarray, other: np.ndarray, genes: int) -> float:
 def sum_of_q(pool: Pool, first: int, filled: int, genes: int) -> float:
     """Sum of Q over the pairs of the pool whose second chromosome is at a place from `first` on.
 
-    Most pairs share no gene. A word of 64 bits for each chromosome, with the bit of each gene's number modulo 64 set, shows most of these.
+    Most pairs share no gene. A word of 64 bits for each chromosome, with the bit of each gene's number modulo 64 set, identifies most of
+    these.
     """
     marks = np.zeros(filled, dtype=np.uint64)
     for i in range(filled):

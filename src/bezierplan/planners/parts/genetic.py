@@ -1,4 +1,4 @@
-"""Genetic operators on chromosomes of whole-number genes, each gene a number of `bits` bits, most significant bit first.
+"""Genetic operators on chromosomes of integer genes, each gene a number of `bits` bits, most significant bit first.
 
 A chromosome (genes,) is one bit string in the order of its genes. Functions that change a chromosome say so; no function keeps state.
 """
@@ -8,7 +8,7 @@ from numba import njit
 
 
 def check_pairs(population: int) -> None:
-    """Raise ValueError, naming the setting and what would be right, for a population that cannot be crossed in pairs."""
+    """Raise ValueError, naming the setting and what is expected, for a population that cannot be crossed in pairs."""
     if population % 2:
         raise ValueError(f"population: {population}; parents are crossed in pairs, so an even number is needed")
 
@@ -19,14 +19,14 @@ def roulette(rng: np.random.Generator, fitness: np.ndarray, draws: int) -> np.nd
     wheel = np.cumsum(fitness)
     parents = np.empty(draws, dtype=np.int64)
     for draw in range(draws):
-        # A draw next to 1 can round up to the whole wheel.
+        # A draw close to 1 can round up to the whole wheel.
         parents[draw] = min(np.searchsorted(wheel, rng.random() * wheel[-1], side="right"), len(fitness) - 1)
     return parents
 
 
 @njit(cache=True)
 def swap_tails(one: np.ndarray, other: np.ndarray, cut: int, bits: int) -> None:
-    """Exchange, in place, the bits behind the first `cut` bits of two chromosomes (song2016, Section III-E: single-point crossover)."""
+    """Exchange, in place, the bits after the first `cut` bits of two chromosomes (song2016, Section III-E: single-point crossover)."""
     gene = cut // bits
     behind = (1 << (bits - cut % bits)) - 1
     difference = (one[gene] ^ other[gene]) & behind
@@ -44,11 +44,11 @@ def complement_bit(chromosome: np.ndarray, position: int, bits: int) -> None:
 
 @njit(cache=True)
 def redraw_gene(rng: np.random.Generator, chromosome: np.ndarray, alleles: np.ndarray) -> None:
-    """Replace, in place, one random gene of a chromosome by a random one of some alleles, which may be the gene that it was."""
+    """Replace, in place, one random gene of a chromosome by a random allele, which may equal the old gene."""
     chromosome[rng.integers(0, len(chromosome))] = alleles[rng.integers(0, len(alleles))]
 
 
 @njit(cache=True)
 def below(rng: np.random.Generator, count: int) -> int:
-    """A uniform whole number below another one, many times as fast as `rng.integers`."""
+    """A uniform integer below `count`, many times faster than `rng.integers`."""
     return int(rng.random() * count)

@@ -1,6 +1,6 @@
-"""Mutation operators of paths from cell to cell (meledje, Section 3).
+"""Mutation operators for paths from cell to cell (meledje, Section 3).
 
-All of them change one inner node of a path in place, and leave the number of nodes.
+Each changes one inner node of a path in place and keeps the number of nodes.
 """
 
 from typing import Literal, NamedTuple
@@ -14,9 +14,9 @@ from bezierplan.workspaces.ground import Ground, edge_energy, free_neighbours, o
 Mutation = Literal["random", "random_repair", "ref12", "ref21", "proposed"]
 _RANDOM, _RANDOM_REPAIR, _REF12, _REF21, _PROPOSED = range(5)
 
-# So often random mutation is repeated for a feasible path.
+# Number of times random mutation is repeated to obtain a feasible path.
 _MOST_REPAIRS = 50
-# Smaller differences of the energies of two neighbours of a node are rounding.
+# Smaller differences between the energies of two neighbours of a node are rounding errors.
 _TIE = 1e-12
 
 
@@ -24,7 +24,7 @@ _TIE = 1e-12
 def mutate(rng: np.random.Generator, path: np.ndarray, drawn: np.ndarray, ground: Ground, rules: NamedTuple) -> int:
     """Apply the operator once to a path of cells (n,), n at least 3; returns how many paths it evaluated.
 
-    drawn: the cells that random mutation draws from. rules: `node_genetic.Rules`.
+    drawn: the cells from which random mutation draws. rules: `node_genetic.Rules`.
     """
     if rules.mutation == _RANDOM:
         path[1 + below(rng, len(path) - 2)] = drawn[below(rng, len(drawn))]
@@ -82,9 +82,9 @@ def _encounters(path, k, ground, beside_obstacle):
 
 @njit(cache=True)
 def _best_neighbour(path, k, ground, rules):
-    """Put the free neighbour cell that gives the best path in the place of node k (Table 1, steps 2 to 4; reference 12).
+    """Replace node k by the free neighbour cell that gives the best path (Table 1, steps 2 to 4; reference 12).
 
-    Of two that are equally good, the first from the lower left, row by row. Only the two edges of the node change.
+    Ties go to the first from the lower left, row by row. Only the two edges of the node change.
     """
     neighbours, count = free_neighbours(path[k], ground)
     best, least = path[k], np.inf
@@ -100,7 +100,7 @@ def _best_neighbour(path, k, ground, rules):
 
 @njit(cache=True, inline="always")
 def _cost_through(path, k, cell, ground, penalty):
-    """Energy and penalty of the two edges that node k would have in a cell."""
+    """Energy plus penalty of the two edges that node k would have if it were in the given cell."""
     met = obstacles_met(ground, path[k - 1], cell) + obstacles_met(ground, cell, path[k + 1])
     return edge_energy(ground, path[k - 1], cell) + edge_energy(ground, cell, path[k + 1]) + penalty * met
 
@@ -108,7 +108,7 @@ def _cost_through(path, k, cell, ground, penalty):
 @njit(cache=True)
 def _ref21(rng, path, ground, rules):
     """Replace a random inner node by the first of its free neighbours, in random order, that lies in the direction of the target and whose
-    two edges are free, or with which the whole path is (reference 21).
+    two edges are free, or which makes the whole path free (reference 21).
     """
     k = 1 + below(rng, len(path) - 2)
     neighbours, count = free_neighbours(path[k], ground)
@@ -128,7 +128,7 @@ def _ref21(rng, path, ground, rules):
 
 @njit(cache=True)
 def _towards(start, cell, target, columns, same_signs):
-    """Does the way from a cell to the target have the direction of the way from the start to it?"""
+    """Whether the direction from a cell to the target agrees with that from the start to the target."""
     across, up = target % columns - cell % columns, target // columns - cell // columns
     whole_across, whole_up = target % columns - start % columns, target // columns - start // columns
     if same_signs:

@@ -1,4 +1,4 @@
-"""The length of a curve among circles and the penalty for those that it meets, of a particle that holds its free control points."""
+"""The length of a particle's curve among circles, and the penalty for the circles it meets; a particle holds the free control points."""
 
 from typing import Literal, NamedTuple
 
@@ -8,15 +8,15 @@ from numba import njit
 Penalty = Literal["multiply", "add", "death"]
 _MULTIPLY, _ADD, _DEATH = range(3)
 
-# A path whose violation is not above this is feasible: a swarm that converges ends tangent to a circle, a rounding error deep.
+# A path is feasible if its violation does not exceed this: a converging swarm ends tangent to a circle, a rounding error deep.
 FEASIBLE = 1e-9
 
 
 class Objective(NamedTuple):
     """The fitness of a path, for the kernels.
 
-    ends: (2, samples), x and y of what start and target give to the samples. free: (n, samples), the weights of the free control points.
-    circles: (obstacles, 3), x, y and radius, in units. penalty: its number. beta: its factor.
+    ends: (2, samples), x and y contributions of start and target to the samples. free: (n, samples), the weights of the free control
+    points. circles: (obstacles, 3), x, y and radius, in units. penalty: the rule's number. beta: its factor.
     """
 
     ends: np.ndarray
@@ -28,7 +28,7 @@ class Objective(NamedTuple):
 
 @njit(cache=True)
 def fitness(length: float, violation: float, objective: Objective) -> float:
-    """Length of a path and the penalty for its violation (tharwat2018, eq. 22, which leaves the penalty open)."""
+    """Length of a path combined with the penalty for its violation (tharwat2018, eq. 22, which leaves the penalty open)."""
     if objective.penalty == _MULTIPLY:
         return length * (1.0 + objective.beta * violation)
     if objective.penalty == _ADD:
@@ -38,7 +38,7 @@ def fitness(length: float, violation: float, objective: Objective) -> float:
 
 @njit(cache=True)
 def least_fitness(length: float, objective: Objective) -> float:
-    """The least fitness that a path of this length can have, whatever it meets."""
+    """The lowest fitness that a path of this length can have, whatever it meets."""
     return min(length, objective.beta) if objective.penalty == _DEATH else length
 
 
@@ -46,13 +46,13 @@ def least_fitness(length: float, objective: Objective) -> float:
 def length(z: np.ndarray, objective: Objective, x: np.ndarray, y: np.ndarray, chords: np.ndarray) -> float:
     """Length of the polyline through the samples of a particle's curve (tharwat2018, eq. 19).
 
-    z: (2 n,), the particle. x, y: (samples,), the samples, which are set. chords: (samples,) scratch.
+    z: (2 n,), the particle. x, y: (samples,), the samples; overwritten. chords: (samples,) scratch.
     """
     ends, free = objective.ends, objective.free
     n, samples = free.shape
     for s in range(samples):
         x[s], y[s] = ends[0, s], ends[1, s]
-    # Three control points at a time, so that each sample is read and written less often.
+    # Three control points at a time, so that each sample is read and written fewer times.
     threes = n // 3 * 3
     for k in range(0, threes, 3):
         ax, bx, cx = z[k], z[k + 1], z[k + 2]
@@ -65,7 +65,7 @@ def length(z: np.ndarray, objective: Objective, x: np.ndarray, y: np.ndarray, ch
         for s in range(samples):
             x[s] += zx * free[k, s]
             y[s] += zy * free[k, s]
-    # Several roots are taken at a time if their sum is apart; its four parts need not wait for each other.
+    # The square roots are vectorised if their sum is separate; its four partial sums need not wait for each other.
     for s in range(samples - 1):
         dx, dy = x[s + 1] - x[s], y[s + 1] - y[s]
         chords[s] = np.sqrt(dx * dx + dy * dy)
@@ -103,7 +103,7 @@ def violation(x: np.ndarray, y: np.ndarray, circles: np.ndarray, squares: np.nda
         if inside:
             depth = 0.0
             for s in range(samples):
-                # Few samples are inside: their roots are taken one by one.
+                # Few samples are inside, so their square roots are taken one by one.
                 if squares[s] < square:
                     depth += max(1.0 - np.sqrt(squares[s]) / radius, 0.0)
             total += depth / samples

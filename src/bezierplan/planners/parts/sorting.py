@@ -1,4 +1,4 @@
-"""The order of values, for populations."""
+"""Sorting values, for populations."""
 
 import numpy as np
 from numba import njit
@@ -6,9 +6,10 @@ from numba import njit
 
 @njit(cache=True)
 def ascending(values: np.ndarray) -> np.ndarray:
-    """Places (n,) of values, the least first, of equal ones the first: numpy's stable argsort, which takes far longer to compile.
+    """Indices (n,) that sort values in ascending order, ties in their original order: numpy's stable argsort, which takes far longer to
+    compile.
 
-    An insertion: as fast as any for a few values, and for survivors in order with their offspring behind them.
+    An insertion sort: as fast as any for a few values, and for sorted survivors followed by their offspring.
 
     >>> ascending(np.array([3.0, 1.0, 2.0, 1.0])).tolist()
     [1, 3, 2, 0]
