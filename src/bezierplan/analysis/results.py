@@ -95,7 +95,7 @@ def select(runs: pd.DataFrame, where: dict) -> pd.DataFrame:
 
 
 def pick(runs: pd.DataFrame, which: dict) -> pd.Series | None:
-    """One run of those given: `{lowest: column}` or `{median: column}` of the feasible ones, or `{repeat: n}`; None if there is none.
+    """One of the given runs: `{lowest: column}` or `{median: column}` of the feasible ones, or `{repeat: n}`; None if there is none.
 
     The median of an even number of runs is the lower of the middle two; ties go to the first repeat.
     """

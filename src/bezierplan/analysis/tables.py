@@ -3,9 +3,9 @@
 A table's description (`spec`) has the keys
 
     index, columns   columns of the runs table, and the words `value` (which entry of `values`) and `statistic`; a word that is needed to
-                     tell numbers apart and is not named becomes a level of the columns. `columns` may be missing
-    values           a list of {metric, statistic, where, label, decimals}; statistic is a name or a list of names, the last three may be
-                     missing
+                     distinguish numbers but not named becomes a level of the columns. `columns` is optional
+    values           a list of {metric, statistic, where, label, decimals}; statistic is a name or a list of names, the last three are
+                     optional
     where            which runs: column -> value or list of values; a list also gives the order. Optional
 """
 

@@ -81,7 +81,7 @@ def keys(model: type[Model]) -> dict[str, FieldInfo]:
 
 
 def plain(value: Any) -> Any:
-    """Models as mappings, wherever they stand in lists and mappings."""
+    """Models as mappings, also inside lists and mappings."""
     if isinstance(value, Model):
         return value.plain()
     if isinstance(value, dict):

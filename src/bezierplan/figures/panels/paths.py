@@ -184,7 +184,7 @@ def data(
 
     pick: the run, as in `analysis.results.pick`. explicit: {curve, points}, a path without a run. hue: a column; a run is picked for each
     of its values, which the rows name, and drawn without control points; the column `measure` has its value of this metric. bare: only
-    start and target, whatever the run. control: whether control points are drawn with their polygon and hull, alone, or not at all. letters:
+    start and target, whatever the run. control: whether control points are drawn with polygon and hull, alone, or not at all. letters:
     those next to start and target. changed_from: the problem with different occupied cells. cell_optimum: whether the shortest path along
     cell centres is drawn. printed: a published table; the column of this name has its shortest length for the runs. view: the visible part
     of the workspace, as bounds; the rows still include everything.
