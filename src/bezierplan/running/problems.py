@@ -2,7 +2,7 @@
 
 Columns of a problem file: problem, workspace (its name), start_x, start_y, target_x, target_y (units), drawn (the workspace itself, as
 JSON: `workspaces.files.to_json`). Columns of a file of bounds: problem, straight_line, bound (units; infinite without a free path),
-least_length (the bound less the checker's tolerance), bound_path (the shortest path, flat as x0, y0, x1, y1, ...),
+least_length (the bound less an allowance for the checker's tolerance), bound_path (the shortest path, flat as x0, y0, x1, y1, ...),
 octile_bound (the least of all lengths counted in cells, `cell_length`, in units; NaN without a grid).
 """
 
