@@ -1,4 +1,4 @@
-# Claims with their verdicts, the paper's own numbers against each other, and which verdicts depend on which choice.
+# Claims with their verdicts, the audit of the paper's own numbers, and which verdicts depend on which choice.
 
 
 rule claims:
@@ -38,7 +38,7 @@ rule audit:
         "../scripts/audit.py"
 
 
-# One job an alternative: most of its chunks take less time than a process takes to start.
+# One job per alternative: most of its chunks take less time than starting a process.
 rule alternative:
     input:
         inputs(targets.alternative_inputs),

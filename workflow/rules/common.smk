@@ -1,4 +1,4 @@
-# The configuration, checked, and what rules share. What a job reads and depends on is in src/bezierplan/study/targets.py.
+# The checked configuration, and what rules share. What a job reads and depends on is in src/bezierplan/study/targets.py.
 import os
 import re
 import shlex
@@ -6,12 +6,12 @@ import sys
 from functools import partial
 from pathlib import Path
 
-# The package of this tree, whichever other is installed: for this process and for the scripts of jobs. Kernels use one thread; Snakemake
+# The package of this tree, even if another is installed: for this process and for the scripts of jobs. Kernels use one thread; Snakemake
 # does the parallel part.
 SOURCE = str(Path(str(workflow.current_basedir)).parents[1] / "src")
 sys.path.insert(0, SOURCE)
 os.environ.update(PYTHONPATH=SOURCE, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", NUMBA_NUM_THREADS="1")
-# Snakemake puts the path of its interpreter into shell commands as it stands; here the folder may have any name.
+# Snakemake puts the path of its interpreter into shell commands unquoted; here the folder may have any name.
 sys.executable = shlex.quote(sys.executable)
 
 from bezierplan.study import alternatives, checked, experiments, reading, targets
@@ -27,7 +27,7 @@ ALTERNATIVE = f"{RESULTS}/sensitivity/{{alternative}}"
 
 
 def one_of(names):
-    """Pattern of names; of none that never matches."""
+    """Pattern of names; without names, one that never matches."""
     return "|".join(map(re.escape, sorted(set(names)))) or "(?!)"
 
 
@@ -44,7 +44,7 @@ wildcard_constraints:
 
 
 def studies_with(tables):
-    """Pattern of the names of studies in paths of tables: the same name may be one kind of table here and another there."""
+    """Pattern of the names of studies in paths of tables: a name may be one kind of table in one study and another kind in another."""
     return "|".join(f"{re.escape(key)}(?=/tables/(?:{one_of(names)})[.])" for key, names in tables.items()) or "(?!)"
 
 
@@ -53,12 +53,12 @@ LISTED = {key: study.tables.keys() - study.compared().keys() for key, study in S
 
 
 def inputs(function):
-    """Input files as `targets` names them, for the wildcards of a job."""
+    """Input files from `targets`, for the wildcards of a job."""
     return unpack(lambda wildcards: function(STUDIES, **wildcards))
 
 
 def params(function, *names):
-    """Params as `targets` makes them, for the wildcards of a job."""
+    """Params from `targets`, for the wildcards of a job."""
 
     def param(name, wildcards):
         return function(STUDIES, **wildcards)[name]
@@ -67,5 +67,5 @@ def params(function, *names):
 
 
 def caption(wildcards, output):
-    """What the report says below a table or figure. Snakemake does not compare params that are made from `output`: no file depends on it."""
+    """The report's caption of a table or figure. Snakemake does not compare params derived from `output`: no file depends on it."""
     return targets.caption(STUDIES, **wildcards)

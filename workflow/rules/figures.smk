@@ -1,4 +1,4 @@
-# Figures: the picture twice, and exactly the data drawn in it.
+# Figures: the picture in two formats, and exactly the data drawn in it.
 
 
 rule figure:

@@ -1,4 +1,4 @@
-# Tables, laid out like the paper's, and the comparison of each with the published numbers; tables without runs stand alone.
+# Tables, laid out like the paper's, and the comparison of each with the published numbers; tables without runs have no comparison.
 
 
 rule table:

@@ -1,4 +1,4 @@
-# Names for what a reader may want: everything, a scale, a study, a table or figure. `snakemake --list-target-rules` lists them.
+# Names for what a user may want: everything, a scale, a study, a table or figure. `snakemake --list-target-rules` lists them.
 
 try:
     targets.check_names(STUDIES, [*(rule.name for rule in workflow.rules), "all", "smoke", "extended", "alternatives", "default"])

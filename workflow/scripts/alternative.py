@@ -1,4 +1,4 @@
-"""Run what an alternative of an assumption changes, and judge its claims with these runs and the runs in force of the other methods."""
+"""Run what an alternative of an assumption changes, and judge its claims on these runs and the other methods' runs in force."""
 
 from bezierplan.running import log
 

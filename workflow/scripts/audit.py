@@ -1,4 +1,4 @@
-"""Hold a paper's own numbers against each other and against exact bounds."""
+"""Check a paper's own numbers against each other and against exact bounds."""
 
 from bezierplan.running import log
 

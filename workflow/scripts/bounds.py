@@ -1,4 +1,4 @@
-"""Find the exact shortest path of each problem of an experiment."""
+"""Compute the exact shortest path of each problem of an experiment."""
 
 from bezierplan.running import log
 

@@ -1,4 +1,4 @@
-"""Make a figure from the data that it draws, which are written first and read back."""
+"""Draw a figure from its data, which are first written and read back."""
 
 from bezierplan.running import log
 

@@ -1,4 +1,4 @@
-"""Make a table that shows no runs."""
+"""Make a table without runs."""
 
 from bezierplan.running import log
 

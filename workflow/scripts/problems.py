@@ -1,4 +1,4 @@
-"""Make the problems of an experiment."""
+"""Build the problems of an experiment."""
 
 from bezierplan.running import log
 

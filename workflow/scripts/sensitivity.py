@@ -1,4 +1,4 @@
-"""Set the verdicts under each alternative beside those with all values in force."""
+"""Compare the verdicts under each alternative with those under the values in force."""
 
 from bezierplan.running import log
 

@@ -1,6 +1,6 @@
-"""A paper's own numbers against each other and against exact bounds: what cannot be, whatever was run.
+"""A paper's own numbers checked against each other and against exact bounds: contradictions that need no runs.
 
-Columns: study, item (table or text), place (which cell), rule (in words), printed, limit, consistent (does the number obey the rule?).
+Columns: study, item (table or text), place (which cell), rule (in words), printed, limit, consistent (whether the number obeys the rule).
 """
 
 import math
@@ -11,20 +11,20 @@ from bezierplan.analysis.results import published_table
 
 COLUMNS = ["study", "item", "place", "rule", "printed", "limit", "consistent"]
 
-# Metrics that are lengths of paths or never less, and statistics of them that no single path need have.
+# Metrics that are path lengths or never less, and their statistics that need not be the value of any single path.
 _AT_LEAST_A_LENGTH = ("length", "objective")
 _SPREADS = ("std", "iqr", "range")
 _PRINTED = ("metric", "statistic", "n", "unit", "value")
 
 
 def below_bound(tables: dict[str, pd.DataFrame], bounds: dict[str, pd.DataFrame], primary: dict[str, dict]) -> list[dict]:
-    """Every published length against the exact shortest length of its problem.
+    """Check every published length against the exact shortest length of its problem.
 
-    tables: published numbers, by table, as from `read_published`. bounds: of the same tables' experiments, a row a problem, its name as
-    index. primary: of a table, column -> the value that is the paper's reading. The allowance is half a unit of the last printed digit.
+    tables: published numbers, by table, as from `read_published`. bounds: of the same tables' experiments, one row per problem, indexed by
+    name. primary: of a table, column -> the value of the primary reading. The allowance is half a unit of the last printed digit.
 
-    A number's problem is the one that its row names, as problem or as workspace; without either the one that is the paper's reading, or the
-    only one of the experiment. Numbers of several problems are left out.
+    A number's problem is the one that its row names, as problem or as workspace; without either, that of the primary reading, or the only
+    one of the experiment. Numbers that cover several problems are left out.
     """
     rows = []
     for name, table in tables.items():
@@ -47,18 +47,18 @@ def below_bound(tables: dict[str, pd.DataFrame], bounds: dict[str, pd.DataFrame]
 
 
 def _problem(place: dict, bounds: pd.DataFrame) -> str | None:
-    """The problem of a published number, from the columns that describe it; None if it is one of several."""
+    """The problem of a published number, from the columns that describe it; None if it is ambiguous."""
     named = place.get("problem", place.get("workspace"))
     return named if named in bounds.index else bounds.index[0] if named is None and len(bounds) == 1 else None
 
 
 def _half_a_digit(printed: str) -> float:
-    """Half a unit of the last digit of a number as it is printed."""
+    """Half a unit of the last printed digit of a number."""
     return 0.5 * 10.0 ** -len(printed.partition(".")[2])
 
 
 def read_published(file: str) -> pd.DataFrame:
-    """Published numbers with a further column `printed`, their text, which keeps zeros at the end."""
+    """Published numbers with an extra column `printed`, their text, which keeps trailing zeros."""
     table = published_table(file)
     if "value" in table:
         table["printed"] = pd.read_csv(file, dtype=str)["value"]

@@ -1,29 +1,29 @@
-"""Every published number of a table beside ours.
+"""Every published number of a table next to ours.
 
 One row for each group of runs, metric and statistic; an empty cell means that there is no such number.
 
 | column | meaning |
 | --- | --- |
-| key columns | columns of the runs table that tell the rows apart: those left of `metric` in the published file, then the table's others |
+| key columns | columns of the runs table that identify the rows: those left of `metric` in the published file, then the table's others |
 | metric | what is measured, a name of `metrics.METRICS` |
-| statistic | the statistic that the paper prints; `unstated` where it does not say, ours is then the median |
+| statistic | the statistic that the paper prints; `unstated` if it does not say, in which case ours is the median |
 | unit | unit of the metric; `-` for a number without one |
-| n_published | runs behind the published number, where the paper says |
-| value_published | the published number; a variant of a published method stands beside the number of that method |
+| n_published | runs behind the published number, if the paper states it |
+| value_published | the published number; a variant of a published method is compared with that method's number |
 | n_ours | our runs that count: feasible ones for metrics of feasible paths, all for the others |
 | value_ours | the statistic of these runs |
 | best, mean, median, quartile1, quartile3 | of the same runs; best is the lowest |
 | low95_ours, high95_ours | 95 % bootstrap interval of value_ours; empty below two runs, and for min, max and range |
-| low95_predicted, high95_predicted | central 95 % of what experiments of n_published runs may print: their prediction interval |
-| quantile_published | quantile of the published number in experiments of n_published runs; in our runs if that is empty |
-| reproduced | is that within the central 95 %? Ours are rounded like the printed one, ties count; empty for times, and below six runs |
-| can_fail | could a number on the published one's side of ours have been refused (`statistics.can_fail`)? |
-| power | share of the numbers that matter (`_rivals`) that would have been refused in the place of the published one |
-| verdict | not reproduced; cannot fail; not told apart: reproduced, with a power below one half; reproduced |
-| possible | is the published number one that the metric can have at all? A length below the bound is judged, not left out |
+| low95_predicted, high95_predicted | 95 % prediction interval for the number printed by an experiment of n_published runs |
+| quantile_published | quantile of the published number in experiments of n_published runs; in our runs if n_published is empty |
+| reproduced | whether it lies in the central 95 %. Ours are rounded like the printed one, ties count; empty for times, and below six runs |
+| can_fail | whether a number on the published one's side of ours could have been rejected (`statistics.can_fail`) |
+| power | share of the numbers that matter (`_rivals`) that would have been rejected instead of the published one |
+| verdict | not reproduced; cannot fail; not told apart (reproduced, with a power below one half); reproduced |
+| possible | whether the metric can have the published value at all. A length below the bound is judged, not left out |
 | share_claimed | share of all runs whose path passed the planner's own test |
 | share_feasible | share of all runs whose path the certified checker accepts |
-| bound | least length of the problem, of the metric's kind (`metrics.Metric`); of several problems, the median over the runs |
+| bound | least length of the problem, of the metric's kind (`metrics.Metric`); for several problems, the median over the runs |
 | gap | median over the feasible runs of that kind of length / bound - 1 |
 """
 
@@ -52,25 +52,25 @@ _COLUMNS = [
 
 
 def read_published(file: str | None, spec: dict) -> pd.DataFrame:
-    """The published numbers of a table: key columns, metric, statistic, n, unit, value. Without a file none, with the table's keys."""
+    """The published numbers of a table: key columns, metric, statistic, n, unit, value. Without a file, empty, with the table's keys."""
     if file is None:
         return pd.DataFrame(columns=[*tables.keys(spec), "metric", "statistic", "n", "unit", "value"])
     return as_read(published_table(file), spec)
 
 
 def as_read(published: pd.DataFrame, spec: dict) -> pd.DataFrame:
-    """Published numbers with the metrics that a table takes them for: `reads` has the paper's word -> the metric, and may be missing."""
+    """Published numbers under the metrics that a table assigns to them: `reads` maps the paper's word to the metric, and is optional."""
     return published.assign(metric=published["metric"].replace(spec.get("reads", {})))
 
 
 def compare(
     results: Results, spec: dict, published: pd.DataFrame, variant_of: dict[str, str], baselines: list[str], name: str
 ) -> pd.DataFrame:
-    """The published numbers of a table beside ours, in the order of the table; the columns are described above.
+    """The published numbers of a table next to ours, in the order of the table; the columns are described above.
 
     spec: as for `tables.pivot`. published: as from `read_published`. variant_of: method -> the method whose published numbers it is
     compared with. baselines: methods without a published number. Variants of the table's methods and baselines get rows, whether or not
-    the table shows them. name: `study/table`, from which each row's random draws follow.
+    the table shows them. name: `study/table`, which seeds each row's random draws.
     """
     given = published.columns[: published.columns.get_loc("metric")].to_list()
     keys = given + [key for key in tables.keys(spec) if key not in given]
@@ -86,12 +86,12 @@ def compare(
 
 
 def _side_by_side(ours: pd.DataFrame, published: pd.DataFrame, given: list[str], variant_of: dict[str, str]) -> pd.DataFrame:
-    """Our cells with n_published and value_published, and published numbers for which there are no runs; statistics named as published.
+    """Our cells with n_published and value_published, plus published numbers without runs; statistics are named as published.
 
     given: the key columns of the published numbers.
     """
     theirs = published.rename(columns={"n": "n_published", "value": "value_published", "statistic": "printed"}).drop(columns="unit")
-    # What is printed as unstated is compared with the median.
+    # An unstated statistic is compared with the median.
     theirs = theirs.astype({key: ours[key].dtype for key in given}).assign(statistic=theirs["printed"].replace("unstated", "median"))
     ours = ours.assign(statistic=ours["statistic"].replace("unstated", "median"))
     if "method" in given:
@@ -104,7 +104,7 @@ def _side_by_side(ours: pd.DataFrame, published: pd.DataFrame, given: list[str],
 
 
 def _with_variants(spec: dict, variant_of: dict[str, str], baselines: list[str]) -> dict:
-    """The table's description with the variants of its methods and the baselines selected as well, behind them."""
+    """The table's description, with the variants of its methods and the baselines appended to the selection."""
     where = spec.get("where", {})
     if "method" not in where:
         return spec
@@ -115,26 +115,26 @@ def _with_variants(spec: dict, variant_of: dict[str, str], baselines: list[str])
 
 
 def _rivals(row: pd.Series, given: list[str], published: pd.DataFrame) -> np.ndarray:
-    """The paper's numbers (n,) of other methods in the place of a row's: of the same metric, statistic and keys."""
+    """The paper's numbers (n,) for other methods that match a row in metric, statistic and keys."""
     if "method" not in given or pd.isna(row["value_published"]):
         return np.empty(0)
     place = published[(published["metric"] == row["metric"]) & (published["statistic"] == row["statistic"])]
     for key in given:
         place = place[place[key] == row[key]] if key != "method" else place
-    # A variant's own name is in no published row; its number is that of the method that it is a variant of.
+    # A variant's own name is in no published row; its number is that of its published method.
     own = place[place["method"] == row.get("printed_method", row["method"])]
     return place.drop(own.index)["value"].to_numpy(dtype=float)
 
 
 def _described(row: pd.Series, keys: list[str], name: str, rivals: np.ndarray) -> dict[str, Any]:
-    """Our side of one row, and where the published number lies in it; empty for a published number that we have no runs for."""
+    """Our side of one row, and the published number's position in it; empty for a published number without runs of ours."""
     if pd.isna(row["runs"]):
         return {"n_ours": 0, "reproduced": None, "can_fail": None, "possible": None}
     numbers = row["numbers"]
     statistic = row["statistic"]
     row_name = "/".join([name, *(f"{key}={row[key]}" for key in keys), row["metric"], statistic])
     low, high = statistics.interval(statistic, numbers, generator(f"{row_name}/interval"))
-    # The paper's own number of runs, whatever share of ours failed.
+    # The paper's number of runs, whatever share of ours failed.
     size = None if pd.isna(row["n_published"]) else int(row["n_published"])
     published, single = row["value_published"], (row["least"], row["most"])
     quantile, reproduced = statistics.predictive_quantile(
@@ -164,13 +164,13 @@ def _described(row: pd.Series, keys: list[str], name: str, rivals: np.ndarray) -
 def _judged(
     row: pd.Series, reproduced: bool | None, ours: float, predicted: tuple[float, float], size: int | None, rivals: np.ndarray
 ) -> dict[str, Any]:
-    """Whether the test of one row could have failed, what it tells apart, and its verdict; empty where it is not judged."""
+    """Whether the test of one row could have failed, its power, and its verdict; empty if it is not judged."""
     published = row["value_published"]
     if pd.isna(published):
         return {"can_fail": None, "possible": None}
     possible = _possible(row["statistic"], (row["least"], row["most"]), size)
     half = 0.0 if pd.isna(row["decimals"]) else 0.5 * 10.0 ** -row["decimals"]
-    # What lies below a bound of our own map is judged; what the metric cannot be on any map is not.
+    # A value below a bound of our own map is judged; a value that the metric cannot have on any map is not.
     on_any_map = isinstance(metrics.METRICS[row["metric"]].least, str) or published >= possible[0] - half
     judged = {"possible": bool(on_any_map and published <= possible[1] + half)}
     if reproduced is None:
@@ -188,7 +188,7 @@ def _judged(
 
 
 def _possible(statistic: str, single: tuple[float, float], size: int | None) -> tuple[float, float]:
-    """Between which values a statistic can lie of runs whose single values lie between some."""
+    """The range of a statistic of runs whose single values lie in a given range."""
     if statistic in ("std", "iqr", "range"):
         return 0.0, math.inf
     if statistic in ("count", "share"):

@@ -1,4 +1,4 @@
-"""Tables that show no runs: what a paper prints beside its results, what a study's function computes, and published numbers beside ours."""
+"""Tables without runs: what a paper prints besides its results, what a study's function computes, and published numbers next to ours."""
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -7,7 +7,7 @@ import pandas as pd
 
 from bezierplan.analysis.results import published_table, select
 
-# What a table of kind `comparison` shows beside the keys: columns of `comparison.compare`, and their headings.
+# What a table of kind `comparison` shows next to the keys: columns of `comparison.compare`, and their headings.
 _SHOWN = {
     "metric": "metric",
     "statistic": "statistic",
@@ -30,10 +30,10 @@ def table(
     functions: Mapping[str, Callable[[dict[str, pd.DataFrame]], pd.DataFrame]],
     labels: Mapping[str, str],
 ) -> pd.DataFrame:
-    """A table of kind `transcribed`, every cell as it is written, of kind `function`, called with all published tables by file name, or of
-    kind `comparison` (`beside`).
+    """A table of kind `transcribed` (every cell as written), `function` (called with all published tables by file name), or
+    `comparison` (`beside`).
 
-    files: of published numbers, of a transcribed table its one; of a comparison those of the tables that it is of.
+    files: of published numbers; for a transcribed table its only file; for a comparison those of its tables.
     """
     if spec["kind"] == "transcribed":
         (file,) = files
@@ -44,9 +44,9 @@ def table(
 
 
 def beside(spec: dict, comparisons: dict[str, pd.DataFrame], labels: Mapping[str, str]) -> pd.DataFrame:
-    """Published numbers of several tables beside ours, and the range that experiments of the paper's size give by chance.
+    """Published numbers of several tables next to ours, with prediction intervals for experiments of the paper's size.
 
-    spec: `metrics`, the metrics shown; `where`: column -> value or list, of tables that have the column. comparisons: as from
+    spec: `metrics`, the metrics shown; `where`: column -> value or list, for tables that have the column. comparisons: as from
     `comparison.compare`, by table. labels: how names are printed.
     """
     shown = []

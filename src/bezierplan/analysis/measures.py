@@ -1,8 +1,8 @@
 """The measures behind the metrics: computed from other columns of the runs table, from the history of the objective, or from the path.
 
-A measure takes a table of at least one run and the problems by name, and gives one number a run (n,), not a number where a run has no such
-value. A measure of a single path becomes one by `of_path` or `of_path_on_grid`. What draws curves is imported no earlier than a value is
-asked for.
+A measure takes a table of at least one run and the problems by name, and gives one number per run (n,), NaN where a run has no such value.
+`of_path` and `of_path_on_grid` turn a measure of a single path into one. Curve modules are imported only when a value is
+requested.
 """
 
 from __future__ import annotations
@@ -23,18 +23,18 @@ if TYPE_CHECKING:
 
 # Values of a curve's parameter at which curvature is taken: 100 steps on each of the six quadratic pieces of song2016.
 CURVATURE_SAMPLES = 601
-# A finer test than any planner's own.
+# Finer than any planner's own test.
 FINE_SAMPLES = 4001
-# Samples of a path by which its way round the circles is told.
+# Samples of a path that determine its way round the circles.
 CLASS_SAMPLES = 2001
-# Samples of a curved piece between which its heading is compared (ma2020: 2,000 chords).
+# Samples of a curved piece between which headings are compared (ma2020: 2,000 chords).
 HEADING_SAMPLES = 2001
-# Parts of about this length, in units, by which a path's bending is measured, and samples of a curved piece that they are cut from.
+# Approximate length, in units, of the parts by which a path's bending is measured, and samples of a curved piece from which they are cut.
 BENDING_PART = 0.1
 BENDING_SAMPLES = 64
-# A smaller change of heading, in radians, is no corner.
+# A smaller change of heading, in radians, is not a corner.
 CORNER = 1e-6
-# A value this many interquartile ranges beyond its quartile is an outlier of a box plot.
+# A value this many interquartile ranges beyond its quartile is an outlier in a box plot.
 _OUTLIER_REACH = 1.5
 
 
@@ -44,12 +44,12 @@ def failed(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
 
 
 def disagrees(claimed: bool, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Whether (n,) the planner's own test says this and the checker's the opposite."""
+    """Whether (n,) the planner's own test gives this result and the checker the opposite."""
     return ((runs["claimed_feasible"] == claimed) & (runs["feasible"] != claimed)).to_numpy()
 
 
 def rank(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Rank (n,) of the objective within one unit, among methods or numbers of obstacles; equal ones share the mean of their ranks."""
+    """Rank (n,) of the objective within one unit, among methods or numbers of obstacles; ties share the mean of their ranks."""
     unit = [column for column in ("workspace", "layout", "profile", "repeat") if column in runs]
     return runs.groupby(unit, dropna=False)["objective"].rank().to_numpy()
 
@@ -63,17 +63,17 @@ def outlier(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
 
 
 def gap_reference(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Length over that of the best known path of the same kind, minus 1 (n,); not a number where none is known."""
+    """Length over that of the best known path of the same kind, minus 1 (n,); NaN where none is known."""
     return runs["length"] / runs["reference"] - 1
 
 
 def excess_reference(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Length minus that of the best known path of the same kind (n,); not a number where none is known."""
+    """Length minus that of the best known path of the same kind (n,); NaN where none is known."""
     return runs["length"] - runs["reference"]
 
 
 def _held_history(runs: pd.DataFrame) -> np.ndarray:
-    """Best objective so far by generation: (runs, most generations + 1). Runs that stopped early hold their last value."""
+    """Best objective so far by generation: (runs, maximum generations + 1). Runs that stopped early hold their last value."""
     lengths = runs["history"].map(len).to_numpy()
     starts = np.cumsum(lengths) - lengths
     columns = np.minimum(np.arange(lengths.max()), lengths[:, None] - 1)
@@ -81,7 +81,7 @@ def _held_history(runs: pd.DataFrame) -> np.ndarray:
 
 
 def lowest_objective(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Lowest objective (n,) of any generation, whichever one the planner's result is taken from."""
+    """Lowest objective (n,) of any generation, even if the planner's result comes from another."""
     return _held_history(runs)[:, -1]
 
 
@@ -92,7 +92,7 @@ def first_generation_within(share: float, runs: pd.DataFrame, problems: dict[str
 
 
 def improvement_by(generation: int, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Share (n,) of the improvement from generation 0 to the last one that is made by a generation."""
+    """Share (n,) of the improvement from generation 0 to the last that is achieved by the given generation."""
     held = _held_history(runs)
     total = held[:, 0] - held[:, -1]
     made = held[:, 0] - held[:, min(generation, held.shape[1] - 1)]
@@ -122,7 +122,7 @@ def gap_best(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
 
 
 def _paths(runs: pd.DataFrame) -> Iterator[Path | None]:
-    """The path of each run, None where it has none."""
+    """The path of each run, or None."""
     from bezierplan.workspaces.problem import Path
 
     for curve, points in zip(runs["path_curve"], runs["path_points"]):
@@ -130,26 +130,26 @@ def _paths(runs: pd.DataFrame) -> Iterator[Path | None]:
 
 
 def of_path(measure: Callable[[Path], float], runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
-    """A number of each run's path, not a number where the run has none."""
+    """A measure of each run's path; NaN where the run has none."""
     return [np.nan if path is None else measure(path) for path in _paths(runs)]
 
 
 def of_path_on_grid(measure: Callable[[Path, Grid], float], runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
-    """A number of each run's path and the grid that it lies in, not a number where the run has no path."""
+    """A measure of each run's path in its grid; NaN where the run has no path."""
     return [np.nan if path is None else measure(path, problems[problem].workspace) for path, problem in zip(_paths(runs), runs["problem"])]
 
 
 def homotopy_class(points: np.ndarray, workspace: Workspace) -> float:
-    """On which side a way of points (n, 2) passes each circle: the sum of 2^k over the circles k = 0, 1, ... that it leaves to its left.
+    """On which side a polyline (n, 2) passes each circle: the sum of 2^k over the circles k = 0, 1, ... that it leaves to its left.
 
-    A circle lies to the left if the angle that the way sweeps about its centre is positive. Enough to tell classes apart where no way winds
-    round a circle and all have the same ends. Not a number without points or in a workspace of another kind.
+    A circle lies to the left if the angle swept by the polyline about its centre is positive. This distinguishes classes if no polyline
+    winds round a circle and all have the same ends. NaN without points or in a workspace of another kind.
     """
     if not len(points) or not isinstance(workspace, Circles):
         return np.nan
     x, y = np.ascontiguousarray(points.T)[:, None] - workspace.centres.T[:, :, None]
     angles = np.arctan2(y[:, [0, -1]], x[:, [0, -1]])
-    # Where the way crosses the ray to the left of the centre its angle goes on from pi to -pi, or back.
+    # Where the polyline crosses the ray to the left of the centre, its angle jumps from pi to -pi, or back.
     leftward = x[:, :-1] * y[:, 1:] > y[:, :-1] * x[:, 1:]
     above = y >= 0
     rounds = (above[:, :-1] & ~above[:, 1:] & leftward).sum(axis=1) - (~above[:, :-1] & above[:, 1:] & ~leftward).sum(axis=1)
@@ -172,7 +172,7 @@ def homotopy(runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
 
 
 def best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Whether (n,) a run's path is free and in the homotopy class of the exact shortest one; not a number without circles."""
+    """Whether (n,) a run's path is free and in the homotopy class of the exact shortest one; NaN without circles."""
     best = {
         problem: homotopy_class(np.reshape(own["bound_path"].iloc[0], (-1, 2)), problems[problem].workspace)
         for problem, own in runs.groupby("problem")
@@ -182,7 +182,7 @@ def best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarra
 
 
 def max_curvature(path: Path) -> float:
-    """Largest absolute curvature of `CURVATURE_SAMPLES` samples, in 1/unit; where the curve stands still it counts as 0."""
+    """Largest absolute curvature of `CURVATURE_SAMPLES` samples, in 1/unit; it counts as 0 where the speed is zero."""
     from bezierplan.geometry import curves
 
     kappa, _ = curves.curvature(path, CURVATURE_SAMPLES)
@@ -190,7 +190,7 @@ def max_curvature(path: Path) -> float:
 
 
 def zero_speed_points(path: Path) -> int:
-    """How many of `CURVATURE_SAMPLES` samples lie where the curve stands still."""
+    """Number of `CURVATURE_SAMPLES` samples at which the speed is zero."""
     from bezierplan.geometry import curves
 
     kappa, _ = curves.curvature(path, CURVATURE_SAMPLES)
@@ -205,7 +205,7 @@ def curvature_jump(path: Path) -> float:
 
 
 def distinct_points(path: Path) -> int:
-    """How many different control points a path has."""
+    """Number of distinct control points of a path."""
     return len(set(map(tuple, path.points.tolist())))
 
 
@@ -241,7 +241,7 @@ def turning(path: Path) -> float:
 
 
 def _equal_parts(path: Path) -> tuple[np.ndarray, float]:
-    """A path as steps (n, 2) between points that lie apart by equal lengths of arc, and that length; both next to `BENDING_PART`."""
+    """A path as steps (n, 2) between points at equal arc-length spacing, and that spacing, close to `BENDING_PART`."""
     from bezierplan.geometry import curves
 
     points = path.points
@@ -282,9 +282,9 @@ def length_over_polygon(path: Path) -> float:
 
 
 def obstacle_clearance(runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
-    """Least distance (n,) of a path in a grid to its occupied cells; infinite without any.
+    """Smallest distance (n,) from a path in a grid to its occupied cells; infinite if there are none.
 
-    The checker's clearance, which counts the border, in the same grid with so many free cells around it that the border is farthest.
+    This is the checker's clearance, which counts the border, in the same grid padded with free cells so that the border is farthest.
     """
     from bezierplan.geometry import checker, curves
     from bezierplan.geometry.region import region
@@ -301,15 +301,15 @@ def obstacle_clearance(runs: pd.DataFrame, problems: dict[str, Problem]) -> list
 
 
 def keeps_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
-    """Whether (n,) a path keeps its planner's safety distance from the obstacles; not a number where the planner has none."""
+    """Whether (n,) a path keeps its planner's safety distance from the obstacles; NaN where the planner has none."""
     kept = np.array(obstacle_clearance(runs, problems)) >= runs["safety_distance"]
     return kept.astype(float).where(runs["safety_distance"].notna()).to_numpy()
 
 
 def _in_occupied_cells(points: np.ndarray, grid: Grid) -> int:
-    """How many of the points (n, 2), in units, lie in occupied cells; a point on a grid line belongs to the cell above or to the right.
+    """Number of the points (n, 2), in units, in occupied cells; a point on a grid line belongs to the cell above or to the right.
 
-    song2016's planner may use surplus cells beside a grid that is not a power of two wide (`grid.embed`); they count as occupied.
+    song2016's planner may use surplus cells outside a grid whose width is not a power of two (`grid.embed`); they count as occupied.
     """
     occupied = embed(grid.occupied)
     columns, rows = np.floor(grid.in_cells(points) + ON_LINE).astype(int).T
@@ -317,19 +317,19 @@ def _in_occupied_cells(points: np.ndarray, grid: Grid) -> int:
 
 
 def occupied_points(path: Path, grid: Grid) -> int:
-    """How many control points lie in occupied cells."""
+    """Number of control points in occupied cells."""
     return _in_occupied_cells(path.points, grid)
 
 
 def fine_bad(path: Path, grid: Grid) -> int:
-    """How many of `FINE_SAMPLES` samples lie in occupied cells."""
+    """Number of `FINE_SAMPLES` samples in occupied cells."""
     from bezierplan.geometry import curves
 
     return _in_occupied_cells(curves.sample_matrix(path.curve, len(path.points), FINE_SAMPLES) @ path.points, grid)
 
 
 def length_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
-    """A length that counts cells (`cell_length`). Raises ValueError, naming the run, if one lies below the bound of its problem."""
+    """A length counted in cells (`cell_length`). Raises ValueError, naming the run, if one lies below its problem's bound."""
     from bezierplan.geometry import cell_length
 
     lengths = of_path_on_grid(getattr(cell_length, name), runs, problems)
@@ -354,5 +354,5 @@ def straight_blocked(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Ser
 
 
 def gap_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """A length that counts cells over the least one of the problem, minus 1 (n,)."""
+    """A length counted in cells over the problem's least such length, minus 1 (n,)."""
     return length_in_cells(name, runs, problems) / runs["octile_bound"] - 1

@@ -1,7 +1,7 @@
-"""Every metric once: name, unit, meaning, and over which runs it is taken.
+"""All metrics: name, unit, meaning, and the runs that they cover.
 
-A metric is a column of the runs table, or is computed from other columns (`measures`). This module is also read where only the names
-matter, so it imports pandas no earlier than a value is asked for.
+A metric is a column of the runs table, or is computed from other columns (`measures`). This module is also imported where only the
+names matter, so it imports pandas only when a value is requested.
 """
 
 from __future__ import annotations
@@ -26,10 +26,10 @@ class Metric(NamedTuple):
     """unit: `u` stands for the workspace's unit of length, `-` for a number without unit. meaning: one phrase.
 
     feasible_only: taken over the runs whose path the certified checker accepts, otherwise over all runs.
-    compute: (runs, problems) -> one number a run (n,), where runs is a table of at least one run; None for a column of the runs table.
-    among_rows: it compares the methods of a table with each other, so variants and baselines beside the table have none.
-    least: the least value that a run can have, or the column of the runs table that holds it. most: the largest.
-    bound, gap: the column with the bound of its kind of length, and the metric that is the gap to it.
+    compute: (runs, problems) -> one number per run (n,), where runs is a table of at least one run; None for a column of the runs table.
+    among_rows: it compares the methods of a table with each other, so variants and baselines outside the table have none.
+    least: the smallest value that a run can have, or the column of the runs table that holds it. most: the largest.
+    bound, gap: the column with the bound for this kind of length, and the metric of the gap to it.
     """
 
     unit: str
@@ -44,10 +44,10 @@ class Metric(NamedTuple):
 
 
 def values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Series:
-    """A metric of each run, as floats (truth as 1 and 0) with the runs' index.
+    """A metric of each run, as floats (booleans as 1 and 0) with the runs' index.
 
-    Not a number where the run has no such value, and where the metric is for feasible runs only and the run is not feasible. A metric that
-    compares runs with each other compares those given. Raises KeyError for an unknown metric, and where the runs table lacks a column.
+    NaN where the run has no such value, and where a metric for feasible runs only meets an infeasible run. A metric that compares runs
+    with each other uses the given ones. Raises KeyError for an unknown metric, or if the runs table lacks a column.
     """
     import pandas as pd
 
@@ -67,7 +67,7 @@ def unit(name: str, workspace_unit: str) -> str:
     return re.sub(r"\bu\b", workspace_unit, METRICS[name].unit)
 
 
-# Lengths that count cells have a bound and a gap of their own.
+# Lengths counted in cells have their own bound and gap.
 _CELLS4 = {"bound": "octile_bound", "gap": "gap4"}
 _CELLS8 = {"bound": "octile_bound", "gap": "gap8"}
 

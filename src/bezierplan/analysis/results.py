@@ -15,9 +15,9 @@ from bezierplan.workspaces.problem import Path, Problem
 class Results(NamedTuple):
     """Runs, problems and bounds of an experiment.
 
-    runs: one row a run, columns as in `running.run_chunk`, with the bounds of its problem. problems: by name.
-    bounds: one row a problem, its name as index, columns as in `problems.bounds_of`. published: the study's published numbers, where they
-    are asked for. jobs: method -> the job of its runs (`study.job`), where runs are made again.
+    runs: one row per run, columns as in `running.run_chunk`, with the bounds of its problem. problems: by name.
+    bounds: one row per problem, indexed by name, columns as in `problems.bounds_of`. published: the study's published numbers, if
+    requested. jobs: method -> the job of its runs (`study.job`), if runs are reproduced.
     """
 
     runs: pd.DataFrame
@@ -28,10 +28,10 @@ class Results(NamedTuple):
 
 
 def read(runs: list[str], repeats: int, problems: str, bounds: str) -> Results:
-    """The results in chunk files of runs, cut at a number of repeats, with the problems and bounds of their experiment.
+    """The results in chunk files of runs, up to a number of repeats, with the problems and bounds of their experiment.
 
-    Chunks run whole, so a file may hold more repeats than are asked for. Raises ValueError, naming the run, if a feasible path is shorter
-    than the shortest path: then the checker or the bound is wrong.
+    Chunks always run whole, so a file may hold more repeats than requested. Raises ValueError, naming the run, if a feasible path is
+    shorter than the shortest path: then the checker or the bound is wrong.
     """
     table = pd.concat([_with_times(file) for file in runs], ignore_index=True)
     table = table[table["repeat"] < repeats].reset_index(drop=True)
@@ -39,7 +39,7 @@ def read(runs: list[str], repeats: int, problems: str, bounds: str) -> Results:
 
 
 def _with_times(file: str) -> pd.DataFrame:
-    """A chunk file of runs with the times that stand in a file beside it."""
+    """A chunk file of runs, joined with the times in the file next to it."""
     times = parquet.read_table(PurePath(file).with_suffix(".times.parquet")).to_pandas()
     return parquet.read_table(file).to_pandas().merge(times, on="id", validate="one_to_one")
 
@@ -57,7 +57,7 @@ def joined(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFram
 
 
 def read_all(runs: list[str], repeats: dict[str, int], problems: list[str], bounds: list[str]) -> dict[str, Results]:
-    """Results by experiment, from files of several experiments: problems and bounds in the order of `repeats`, runs in any."""
+    """Results by experiment, from files of several experiments: problems and bounds in the order of `repeats`, runs in any order."""
     found = {}
     for (experiment, number), problem_file, bound_file in zip(repeats.items(), problems, bounds, strict=True):
         own = [file for file in runs if PurePath(file).parts[-3] == experiment]
@@ -66,14 +66,14 @@ def read_all(runs: list[str], repeats: dict[str, int], problems: list[str], boun
 
 
 def published_table(file: str) -> pd.DataFrame:
-    """A file of published numbers. Only an empty cell means that there is nothing: `none` and `NA` may be names."""
+    """A file of published numbers. Only an empty cell is a missing value: `none` and `NA` may be names."""
     return pd.read_csv(file, keep_default_na=False, na_values=[""])
 
 
 def read_published(files: list[str]) -> pd.DataFrame | None:
-    """The published numbers in some files, one below the other, the table's name (of its file) in the column `table`.
+    """The published numbers of several files, concatenated, with each table's name (that of its file) in the column `table`.
 
-    Files of another form are left out. None if there is none.
+    Files in another format are left out. None if no file remains.
     """
     tables = [published_table(file).assign(table=PurePath(file).stem) for file in files]
     tidy = [table for table in tables if {"metric", "statistic", "value"} <= set(table)]
@@ -88,16 +88,16 @@ def path_of(run: pd.Series) -> Path | None:
 
 
 def select(runs: pd.DataFrame, where: dict) -> pd.DataFrame:
-    """The runs whose columns equal the given values, or are among them where a list is given."""
+    """The runs whose columns equal the given values, or one of the values in a list."""
     for column, wanted in where.items():
         runs = runs[runs[column].isin(one_or_list(wanted))]
     return runs
 
 
 def pick(runs: pd.DataFrame, which: dict) -> pd.Series | None:
-    """One run of those given: `{lowest: column}` or `{median: column}` of the feasible ones, or `{repeat: n}`; None if there is none.
+    """One of the given runs: `{lowest: column}` or `{median: column}` of the feasible ones, or `{repeat: n}`; None if there is none.
 
-    The median of an even number of runs is the lower of the two in the middle; of equal runs the first repeat is taken.
+    The median of an even number of runs is the lower of the middle two; ties go to the first repeat.
     """
     (word, value), *_ = which.items()
     if word == "repeat":

@@ -1,7 +1,7 @@
-"""Which verdicts hang on which choice: each alternative of an assumption, one at a time, beside the value in force.
+"""Which verdicts depend on which choice: each alternative of an assumption, one at a time, next to the value in force.
 
 Columns: study, assumption, detail, setting, default, alternative; claim, statement; verdict, verdict_alternative, changed; holds,
-holds_alternative; effect, effect_alternative (of the comparison that decides).
+holds_alternative; effect, effect_alternative (of the decisive comparison).
 """
 
 import json
@@ -10,7 +10,7 @@ import pandas as pd
 
 
 def sensitivity(claims: pd.DataFrame, alternatives: dict[str, pd.DataFrame], described: dict[str, dict]) -> pd.DataFrame:
-    """One row an alternative and headline claim.
+    """One row per alternative and headline claim.
 
     claims: claims of the study with all values in force. alternatives: by name, claims with that alternative. described: by name, the
     columns study, assumption, detail, setting, default, alternative.
@@ -39,5 +39,5 @@ def sensitivity(claims: pd.DataFrame, alternatives: dict[str, pd.DataFrame], des
 
 
 def _text(value: object) -> str:
-    """A value, or one a method, as it is printed."""
+    """A value, or one per method, as printed."""
     return json.dumps(value) if isinstance(value, dict) else str(value)

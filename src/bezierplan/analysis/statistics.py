@@ -1,6 +1,6 @@
 """Named statistics, bootstrap intervals, and the prediction interval for a published number.
 
-Resampling is plain numpy: `scipy.stats.bootstrap` does the same draws, and its import alone takes longer than the tables of a paper.
+Resampling uses plain numpy: `scipy.stats.bootstrap` makes the same draws, but importing it takes longer than making a paper's tables.
 """
 
 import math
@@ -11,18 +11,18 @@ import numpy as np
 DRAWS = 10_000
 # Share of a distribution that lies beyond either end of its central 95 %.
 TAIL = 0.025
-# With fewer runs the central 95 % says nothing, and no published number is judged.
+# With fewer runs, the central 95 % is meaningless, and no published number is judged.
 LEAST_RUNS = 6
-# Above so many values a normal approximation takes the place of the bootstrap.
+# Above this many values, a normal approximation replaces the bootstrap.
 MOST_RESAMPLED = 200
-# Most numbers drawn at once: blocks of this size stay in the processor's cache.
+# Maximum count of numbers drawn at once: blocks of this size stay in the processor's cache.
 BLOCK = 1 << 15
 
-# What follows takes values (..., n) without gaps, n at least 1, to statistics (...).
+# The functions below map values (..., n) without gaps, n at least 1, to statistics (...).
 
 
 def _std(values: np.ndarray) -> np.ndarray:
-    """Standard deviation of a sample (divisor n - 1), not a number for a single value."""
+    """Standard deviation of a sample (divisor n - 1), NaN for a single value."""
     if values.shape[-1] == 1:
         return np.full(values.shape[:-1], np.nan)
     return np.std(values, axis=-1, ddof=1)
@@ -33,7 +33,7 @@ def _mean(values: np.ndarray) -> np.ndarray:
 
 
 def _quantiles(values: np.ndarray, *shares: float) -> list[np.ndarray]:
-    """Quantiles by linear interpolation. A full sort, because numpy sorts rows faster than it partitions them at two places."""
+    """Quantiles by linear interpolation. Uses a full sort, because numpy sorts rows faster than it partitions them at two places."""
     ordered = np.sort(values, axis=-1)
     last = values.shape[-1] - 1
     quantiles = []
@@ -64,16 +64,16 @@ STATISTICS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "max": lambda values: np.max(values, axis=-1),
     "quartile1": lambda values: _quantiles(values, 0.25)[0],
     "quartile3": lambda values: _quantiles(values, 0.75)[0],
-    "count": lambda values: np.sum(values, axis=-1),  # of a metric that is true (1) or false (0): how many runs have it
-    "share": _mean,  # likewise: which share of the runs has it
+    "count": lambda values: np.sum(values, axis=-1),  # of a boolean metric (1 or 0): the number of runs that have it
+    "share": _mean,  # likewise: the share of runs that have it
     "unstated": _median,  # the paper does not say; the median of ours is printed
 }
-# These grow with the number of runs, so resampling as many says nothing about how far they are from the truth.
+# These grow with the number of runs, so resampling the same number does not show how far they are from the truth.
 WITHOUT_INTERVAL = ("min", "max", "range")
 
 
 def statistic(name: str, values: np.ndarray) -> float:
-    """A named statistic of values (n,) without gaps; not a number without values. Raises KeyError for an unknown name."""
+    """A named statistic of values (n,) without gaps; NaN without values. Raises KeyError for an unknown name."""
     return float(STATISTICS[name](values)) if len(values) else math.nan
 
 
@@ -123,16 +123,16 @@ def _quantile_influence(values: np.ndarray, share: float) -> np.ndarray:
 
 
 def normal_draws(centre: float, error: float) -> np.ndarray:
-    """What resampling would draw for a statistic with a standard error, without chance: evenly spaced quantiles of a normal (DRAWS,)."""
+    """What resampling would draw for a statistic with a standard error, without randomness: evenly spaced normal quantiles (DRAWS,)."""
     from scipy.special import ndtri
 
     return centre + error * ndtri((np.arange(DRAWS) + 0.5) / DRAWS)
 
 
 def interval(name: str, values: np.ndarray, rng: np.random.Generator) -> tuple[float, float]:
-    """95 % percentile bootstrap interval of a named statistic of values (n,), above `MOST_RESAMPLED` values its normal approximation.
+    """95 % percentile bootstrap interval of a named statistic of values (n,); above `MOST_RESAMPLED` values, its normal approximation.
 
-    Not a number for fewer than two values, and for statistics that depend on how many there are (`WITHOUT_INTERVAL`).
+    NaN for fewer than two values, and for statistics that depend on the number of values (`WITHOUT_INTERVAL`).
     """
     if len(values) < 2 or name in WITHOUT_INTERVAL:
         return math.nan, math.nan
@@ -145,10 +145,10 @@ def interval(name: str, values: np.ndarray, rng: np.random.Generator) -> tuple[f
 
 
 def predicted(name: str, values: np.ndarray, size: int, rng: np.random.Generator) -> np.ndarray:
-    """A named statistic of experiments with `size` values, of which all that is known are our values (n,), n at least 1: (DRAWS,).
+    """A named statistic of experiments with `size` values, as predicted from our values (n,), n at least 1: (DRAWS,).
 
-    Drawn in two stages, because ours are a sample too: what they were drawn from, and from that an experiment. Numbers are drawn with
-    replacement twice; of truths the share is drawn (from Jeffreys' posterior), then how many are true.
+    Drawn in two stages, because our values are a sample too: first the population, then an experiment from it. Numbers are drawn with
+    replacement twice; for booleans, the share is drawn (from Jeffreys' posterior), then the number of true values.
     """
     if name in ("count", "share"):
         true = values.sum()
@@ -158,7 +158,7 @@ def predicted(name: str, values: np.ndarray, size: int, rng: np.random.Generator
     drawn = np.empty(DRAWS)
     for first in range(0, DRAWS, rows):
         block = drawn[first : first + rows]
-        # Of the first draw only those places are filled that the second one asks for, each once.
+        # Only the places of the first draw that the second one uses are filled, each once.
         places, world = rng.integers(len(values), size=(2, len(block), size), dtype=np.int32)
         places.sort(axis=1)
         asked_first = np.where(np.diff(places, axis=1, prepend=-1) > 0, np.arange(size), 0)
@@ -175,14 +175,14 @@ def predictive_quantile(
     rng: np.random.Generator,
     possible: tuple[float, float] = (-math.inf, math.inf),
 ) -> tuple[float, bool | None]:
-    """Where a published number lies among what experiments of the paper's size would have printed, as far as our values (n,) tell.
+    """The position of a published number among the numbers that experiments of the paper's size would print, judging by our values (n,).
 
-    size: how many values the published statistic is of; None if the paper does not say, then the number is placed among our single values.
-    decimals: those of the printed number, to which ours are rounded before they are compared; None to compare as they are.
-    possible: the least and the largest value that a single one can have; no experiment's extreme lies beyond.
+    size: number of values behind the published statistic; if None (not stated), the number is placed among our single values.
+    decimals: those of the printed number, to which ours are rounded before comparison; None to compare without rounding.
+    possible: the least and the largest possible single value; no experiment's extreme lies beyond them.
 
-    Returns the number's quantile, ties counted half, and whether it is within the central 95 %, ties counted for it (None below
-    `LEAST_RUNS` values). Not a number and None without values or without a published number.
+    Returns the number's quantile, ties counted half, and whether it is within the central 95 %, ties counted in its favour (None
+    below `LEAST_RUNS` values). NaN and None without values or without a published number.
     """
     if not len(values) or math.isnan(published):
         return math.nan, None
@@ -201,10 +201,10 @@ def prediction_interval(
     rng: np.random.Generator,
     possible: tuple[float, float] = (-math.inf, math.inf),
 ) -> tuple[float, float]:
-    """Ends of the central 95 % in which `predictive_quantile` wants a published number, from the same random draws; nan without values.
+    """Ends of the central 95 % in which `predictive_quantile` expects a published number, from the same random draws; NaN without values.
 
-    Where our values (n,) do not tell how far the least or the largest of `size` others may lie, an end is the least or the largest value
-    that is possible, or infinite.
+    If our values (n,) do not determine how far the least or the largest of `size` others may lie, an end is the least or the largest
+    possible value, or infinite.
     """
     if not len(values):
         return math.nan, math.nan
@@ -216,7 +216,7 @@ def prediction_interval(
 def _experiments(
     name: str, values: np.ndarray, size: int | None, rng: np.random.Generator, possible: tuple[float, float]
 ) -> tuple[np.ndarray, np.ndarray, float]:
-    """The least and the most that experiments of a size may print of our values (n,), and what to leave out at either end of them."""
+    """The least and the most that experiments of a size may print, given our values (n,), and the tail to leave out at each end."""
     if size is None:
         return values, values, TAIL
     if name in ("min", "max"):
@@ -230,11 +230,11 @@ def _experiments(
 
 
 def _std_draws(values: np.ndarray, size: int) -> np.ndarray:
-    """Standard deviations of `size` values, as far as our values (n,), n at least 2, tell: evenly spaced quantiles (DRAWS,).
+    """Standard deviations of `size` values, predicted from our values (n,), n at least 2: evenly spaced quantiles (DRAWS,).
 
-    The logarithm of a variance is nearly normal, with a standard error that follows from the kurtosis of what the values come from (Bonett
-    2006, Computational Statistics & Data Analysis 50, 775). Both samples err; Student's t stands for the normal because the kurtosis is
-    ours. Resampling would draw too narrow a range: a resample has fewer different values than what it was drawn from.
+    The logarithm of a variance is nearly normal, with a standard error that follows from the population's kurtosis (Bonett 2006,
+    Computational Statistics & Data Analysis 50, 775). Both samples err; Student's t replaces the normal because the kurtosis is estimated
+    from our values. Resampling would give too narrow a range: a resample has fewer distinct values than its source.
     """
     from scipy.special import stdtrit
 
@@ -248,7 +248,7 @@ def _std_draws(values: np.ndarray, size: int) -> np.ndarray:
 
 
 def _trimmed_mean(values: np.ndarray) -> float:
-    """The mean without a share of 1 / (2 sqrt(n - 4)) of the values at either end, by which Bonett's kurtosis is taken."""
+    """The mean without a share of 1 / (2 sqrt(n - 4)) of the values at either end, about which Bonett's kurtosis is taken."""
     n = len(values)
     cut = int(n / (2 * math.sqrt(n - 4))) if n > 4 else 0
     cut = min(cut, (n - 1) // 2)
@@ -263,16 +263,16 @@ def told_apart(others: np.ndarray, ends: tuple[float, float]) -> float:
 def can_fail(published: float, ours: float, ends: tuple[float, float], possible: tuple[float, float]) -> bool:
     """Whether a number on the published one's side of ours can lie beyond the interval in which it would be accepted.
 
-    It cannot where that end is infinite, or nothing possible lies beyond it. A number equal to ours lies on both sides.
+    It cannot if that end is infinite, or if no possible value lies beyond it. A number equal to ours lies on both sides.
     """
     below, above = ends[0] > possible[0], ends[1] < possible[1]
     return (published <= ours and below) or (published >= ours and above)
 
 
 def _expanded_tail(n: int) -> float:
-    """What to leave at either end of bootstrap draws from n values for a central 95 % (the expanded percentile interval, Hesterberg 2015).
+    """The tail at each end of bootstrap draws from n values for a central 95 % (the expanded percentile interval, Hesterberg 2015).
 
-    Few values vary less than what they are drawn from, and their spread is uncertain: normal quantiles give way to those of Student's t.
+    A few values vary less than their population, and their spread is uncertain: Student's t quantiles replace the normal ones.
     """
     if n < 2:
         return TAIL
@@ -282,16 +282,16 @@ def _expanded_tail(n: int) -> float:
 
 
 def _extremes(name: str, values: np.ndarray, size: int) -> tuple[np.ndarray, np.ndarray]:
-    """Ends (DRAWS,) of the gaps between our values (n,) in which the least (largest) of `size` others may lie, evenly spaced by chance.
+    """Ends (DRAWS,) of the gaps between our values (n,) in which the least (largest) of `size` others may lie, by evenly spaced chance.
 
-    Resampling never goes beyond our own extremes, where half of all experiments of our size do. All orders of our values and the others
-    are equally likely, which gives the chance of each gap; the outermost are infinite.
+    Resampling never goes beyond our own extremes, whereas half of all experiments of our size do. All orders of our values and the
+    others are equally likely, which gives the probability of each gap; the outermost are infinite.
     """
     if name == "max":
         least, most = _extremes("min", -values, size)
         return -most, -least
     ends = np.concatenate([[-np.inf], np.sort(values), [np.inf]])
-    # Chance that more than 0, 1, ... of ours lie below the least of the others.
+    # Probability that more than 0, 1, ... of ours lie below the least of the others.
     beyond = np.cumprod(np.arange(len(values), 0, -1) / np.arange(len(values) + size, size, -1))
     gaps = np.searchsorted(-beyond, -(np.arange(DRAWS) + 0.5) / DRAWS)
     return ends[gaps], ends[gaps + 1]

@@ -1,4 +1,4 @@
-"""All studies together: every published number beside ours, every claim, and how many of them came out."""
+"""All studies together: every published number next to ours, every claim, and how many of them are confirmed."""
 
 import numpy as np
 import pandas as pd
@@ -14,8 +14,9 @@ def numbers(
     """Every row of comparisons that has a published number.
 
     comparisons: (study, table) -> `comparison.compare`. variants: study -> its methods that are another reading of a published one.
-    deciding: (study, table) -> column -> the value whose rows are the paper's reading. Columns: study, table, primary (the row is no other
-    reading), counted (it decides, can be judged, and says something new: `_counted`), then those of the comparisons, key columns first.
+    deciding: (study, table) -> column -> the value whose rows are the primary reading. Columns: study, table, primary (the row is not
+    another reading), counted (it is primary, can be judged, and adds information: `_counted`), then those of the comparisons, key columns
+    first.
     """
     frames = []
     for (study, table), frame in comparisons.items():
@@ -34,8 +35,8 @@ def numbers(
 
 
 def _counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
-    """Which rows (n,) stand in the denominator: those that decide and are judged, but for numbers that cannot be, repeats of a number in
-    another table, and the last of counts that add up to the number of runs.
+    """Which rows (n,) count in the denominator: those that are primary and judged, except impossible numbers, repetitions of a number in
+    another table, and the last of several counts that add up to the number of runs.
     """
     counted = (numbers["primary"] & numbers["reproduced"].notna() & numbers["possible"].astype("boolean").fillna(True)).to_numpy(dtype=bool)
     same = ["study", "metric", "statistic", "value_published", *({"method"} & set(keys))]
@@ -58,9 +59,9 @@ def _same_place(one: pd.Series, other: pd.Series, keys: list[str]) -> bool:
 
 
 def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
-    """One row a study: published numbers that count, how many of them by the test's verdict (`comparison`), and claims by verdict.
+    """One row per study: the published numbers that count, in total and by verdict of the test (`comparison`), and claims by verdict.
 
-    numbers: as from `numbers`. claims: as from `claims.judge`. Of readings and variants only those count that decide.
+    numbers: as from `numbers`. claims: as from `claims.judge`. Only primary readings and variants count.
     """
     judged = numbers[numbers["counted"]]
     deciding = claims[claims["primary"] & ~claims["finding"].astype(bool)]
@@ -107,7 +108,7 @@ def _listed(claims: pd.DataFrame) -> str:
 
 
 def with_block(text: str, name: str, block: str) -> str:
-    """A text whose part between `<!-- name -->` and `<!-- /name -->` is replaced. Raises ValueError if it has no such part."""
+    """The text with the part between `<!-- name -->` and `<!-- /name -->` replaced. Raises ValueError if there is no such part."""
     begin, end = f"<!-- {name} -->", f"<!-- /{name} -->"
     if not 0 <= text.find(begin) < text.find(end):
         raise ValueError(f"no part between {begin} and {end}")

@@ -1,12 +1,12 @@
-"""Result tables laid out as in the papers, from pivot words of the configuration.
+"""Result tables laid out as in the papers, from pivot keys in the configuration.
 
 A table's description (`spec`) has the keys
 
     index, columns   columns of the runs table, and the words `value` (which entry of `values`) and `statistic`; a word that is needed to
-                     tell numbers apart and is not named becomes a level of the columns. `columns` may be missing
-    values           a list of {metric, statistic, where, label, decimals}; statistic is a name or a list of names, the last three may be
-                     missing
-    where            which runs: column -> value or list of values; a list also gives the order. May be missing
+                     distinguish numbers but not named becomes a level of the columns. `columns` is optional
+    values           a list of {metric, statistic, where, label, decimals}; statistic is a name or a list of names, the last three are
+                     optional
+    where            which runs: column -> value or list of values; a list also gives the order. Optional
 """
 
 from collections.abc import Sequence
@@ -21,14 +21,14 @@ _WORDS = ("value", "statistic")
 
 
 def keys(spec: dict) -> list[str]:
-    """The columns of the runs table that tell the rows and columns of a table apart."""
+    """The columns of the runs table that distinguish the rows and columns of a table."""
     return [word for word in [*spec["index"], *spec.get("columns", [])] if word not in _WORDS]
 
 
 def in_order(table: pd.DataFrame, spec: dict, problems: Sequence[str]) -> pd.DataFrame:
     """The table with its key columns as ordered categories, so that sorting follows the configuration.
 
-    Values stand as listed in `where`, problems as in their experiment, all others sorted behind; a missing value is last.
+    Values are ordered as listed in `where`, problems as in their experiment, all others sorted after them; missing values are last.
     """
     orders = {"problem": list(problems), **{key: wanted for key, wanted in spec.get("where", {}).items() if isinstance(wanted, list)}}
     ordered = {}
@@ -44,7 +44,7 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
     """The numbers behind a table: one row for each group of runs with equal keys, entry of `values`, and statistic.
 
     Columns: the keys; value (the entry's number), metric, statistic, decimals; numbers, sorted (n,): the metric of the runs that count,
-    which satisfy the entry's `where` and have one; least, most: between which a run's value of the metric can lie; and of all runs of the
+    which satisfy the entry's `where` and have one; least, most: the range of the metric for one run; and over all runs of the
     group: runs (how many), share_claimed, share_feasible, bound (median) and gap (median of the feasible ones) of the metric's kind of
     length.
     """
@@ -72,12 +72,12 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
                 rows.append(same | of_group | cell | {"numbers": numbers})
     of_runs = ["runs", "share_claimed", "share_feasible", "bound", "gap", "least", "most"]
     columns = [*keys, *of_runs, "value", "metric", "statistic", "decimals", "numbers"]
-    # Of type object, so that whole numbers stay whole beside entries without decimals.
+    # Of type object, so that integers stay integers next to entries without decimals.
     return pd.DataFrame(rows, columns=columns).assign(decimals=pd.Series([row["decimals"] for row in rows], dtype=object))
 
 
 def _measured(runs: pd.DataFrame, metric: str, results: Results, spec: dict) -> pd.Series:
-    """A metric of each run; of one that compares a table's methods, not a number for runs of methods beside the table (`beside`)."""
+    """A metric of each run; if it compares a table's methods, NaN for runs of methods outside the table (`beside`)."""
     counted = runs
     if metrics.METRICS[metric].among_rows:
         counted = runs[~runs["method"].isin(spec.get("beside", []))]
@@ -85,10 +85,10 @@ def _measured(runs: pd.DataFrame, metric: str, results: Results, spec: dict) -> 
 
 
 def pivot(results: Results, spec: dict, labels: dict[str, str]) -> pd.DataFrame:
-    """A table as printed: text, rounded to the decimals of its entries, empty where no run counts.
+    """A table as printed: text, rounded to each entry's decimals, empty where no run counts.
 
-    labels: how names are printed. Levels of the columns are joined to one name, such as `objective value: smooth`; levels of the index stay
-    columns of the csv file.
+    labels: how names are printed. Column levels are joined into one name, such as `objective value: smooth`; index levels stay columns of
+    the csv file.
     """
     index, columns = _levels(spec)
     table = in_order(cells(results, spec, keys(spec)), spec, list(results.problems))
@@ -114,7 +114,7 @@ def _statistics(entry: dict) -> list[str]:
 
 
 def _levels(spec: dict) -> tuple[list[str], list[str]]:
-    """Levels of the index and of the columns, with the words that were left out but are needed."""
+    """Levels of the index and of the columns, including necessary words that were left out."""
     index, columns = list(spec["index"]), list(spec.get("columns", []))
     if "statistic" not in index + columns and any(len(_statistics(entry)) > 1 for entry in spec["values"]):
         columns.append("statistic")
@@ -129,13 +129,13 @@ def _index(levels: pd.DataFrame) -> pd.Index:
 
 
 def _labelled(level: pd.Series, labels: dict[str, str], titles: list[str]) -> pd.Series:
-    """A level of rows or columns as it is printed."""
+    """A level of rows or columns as printed."""
     names = [titles[value] for value in level] if level.name == "value" else [labels.get(str(value), str(value)) for value in level]
     return pd.Series(names, index=level.index, dtype=object)
 
 
 def _printed(number: float, decimals: int | None) -> str:
-    """A number with the given decimals, or with six significant digits where none are given; empty for one that does not exist."""
+    """A number with the given decimals, or with six significant digits if none are given; empty for NaN."""
     if np.isnan(number):
         return ""
     return f"{number:.6g}" if decimals is None else f"{number:.{decimals}f}"

@@ -9,7 +9,7 @@ from bezierplan.study import checked, reading
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Print what the contract tests find on a planner; end with 1 if a fact failed. Raises Fault."""
+    """Print the findings of a planner's contract tests; exit with status 1 if a test failed. Raises Fault."""
     parser.add_argument("planner", help="its name, or the path of its file; with --study the name of a method")
     given = parser.add_mutually_exclusive_group()
     given.add_argument("--settings", default="{}", metavar="'{NAME: VALUE, ...}'", help="a value for each of its settings, as in a study")
@@ -27,7 +27,7 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
 
 
 def of_text(text: str) -> dict[str, Any]:
-    """Settings from YAML text. Raises Fault."""
+    """Parse settings from YAML text. Raises Fault."""
     settings = checked.parse(text, "--settings")
     if not isinstance(settings, dict):
         raise checked.Fault(f"--settings: {text}: expected '{{name: value, ...}}'")
@@ -35,7 +35,7 @@ def of_text(text: str) -> dict[str, Any]:
 
 
 def of_study(name: str, method: str) -> tuple[str, dict[str, Any]]:
-    """Planner and settings of a method of a study. Raises Fault."""
+    """The planner and settings of a study's method. Raises Fault."""
     (study,) = reading.load(reading.read_config({"studies": [name]})).values()
     if method not in study.methods:
         raise checked.Fault(f"{name}: methods: {method}: unknown{checked.closest(method, study.methods)}")

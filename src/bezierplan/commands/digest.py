@@ -1,4 +1,4 @@
-"""Digests of run tables: what it means that two of them have the same content."""
+"""Digests of run tables; tables with equal digests have the same content."""
 
 import hashlib
 import json
@@ -11,7 +11,7 @@ import pyarrow.parquet as parquet
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Print a hash of each run table below a folder. Raises FileNotFoundError, and ValueError for a file that cannot be read."""
+    """Print a hash of each run table below a folder. Raises FileNotFoundError, or ValueError for an unreadable file."""
     parser.add_argument("folder", type=Path, help="a folder of results, such as results/full")
     for name, files in run_tables(parser.parse_args(words).folder).items():
         print(f"{table_digest(files)}  {name}", flush=True)
@@ -30,7 +30,7 @@ def run_tables(folder: Path) -> dict[str, list[Path]]:
 
 
 def read_rows(file: Path, identity: str | None = None) -> list[dict[str, Any]]:
-    """The rows of a chunk file, or those of one id. Raises ValueError for a file that holds no runs."""
+    """The rows of a chunk file, or only those with one id. Raises ValueError for a file without runs."""
     try:
         return parquet.read_table(file, filters=[("id", "=", identity)] if identity else None).to_pylist()
     except pa.ArrowException:
@@ -38,14 +38,14 @@ def read_rows(file: Path, identity: str | None = None) -> list[dict[str, Any]]:
 
 
 def row_text(row: dict[str, Any]) -> str:
-    """A row of a run table as text: columns by name, numbers with all their digits."""
+    """A row of a run table as text: columns in order of name, numbers in full precision."""
     return json.dumps(row, sort_keys=True, default=lambda value: value.tolist())
 
 
 def table_digest(files: list[Path]) -> str:
     """A hash over the rows of chunk files, sorted by id, each row once.
 
-    Neither the order of the files nor how the repeats are cut into chunks matters.
+    Neither the order of the files nor the split of repeats into chunks matters.
     """
     rows = {row_text(row) for file in files for row in read_rows(file)}
     return hashlib.sha256("\n".join(sorted(rows)).encode()).hexdigest()[:16]

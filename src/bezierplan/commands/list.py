@@ -1,4 +1,4 @@
-"""What studies hold."""
+"""List the contents of studies."""
 
 from argparse import ArgumentParser
 
@@ -9,7 +9,7 @@ from bezierplan.study.experiments import SCALES
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Print what the studies of the configuration, or those named, hold."""
+    """Print the contents of the configured studies, or of those named."""
     add_studies(parser)
     names = parser.parse_args(words).studies
     for study in reading.load(reading.read_config({"studies": names} if names else {})).values():
@@ -17,7 +17,7 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
 
 
 def lines(study: Study) -> list[str]:
-    """A study's title, artefacts, methods, workspaces and experiments, one a line."""
+    """A study's title, artefacts, methods, workspaces and experiments, one per line."""
     found = [f"{study.key}: {study.title}"]
     for kind, artefacts in (("table", study.tables), ("figure", study.figures)):
         found += [f"  {kind:12}{study.key}_{name:12} {content.title}" for name, content in artefacts.items()]

@@ -1,4 +1,4 @@
-"""The outcome that the repository keeps: docs/outcome and the README's table, both taken from results at scale full."""
+"""The outcome kept in the repository: docs/outcome and the README's table, both from results at scale full."""
 
 import shutil
 from argparse import ArgumentParser
@@ -21,7 +21,7 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
 
 
 def write() -> None:
-    """Copy the outcome of results at scale full, and put its table into the README. Raises FileNotFoundError for results not made."""
+    """Copy the outcome of results at scale full, and insert its table into the README. Raises FileNotFoundError if results are missing."""
     KEPT.mkdir(parents=True, exist_ok=True)
     for name in FILES:
         shutil.copyfile(RESULTS / name, KEPT / name)

@@ -57,7 +57,7 @@ examples:
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Plan, print, and write what is asked for; a fault ends with one line and status 2."""
+    """Plan, print, and write the requested files; a fault is reported in one line, with exit status 2."""
     parser.formatter_class = RawDescriptionHelpFormatter
     parser.description, parser.epilog = MANUAL.strip(), EXAMPLES.strip()
     parser.add_argument("map", type=File, metavar="MAP", help="a map file")
@@ -100,7 +100,7 @@ def _plan(given: Namespace) -> None:
     module = planner_module(planner)
     if hasattr(module, "serves"):
         module.serves(problem)
-    for _ in range(2):  # the first run of a process pays for loading compiled code, so the second one is timed
+    for _ in range(2):  # the first run also loads compiled code, so only the second is timed
         begin = time.process_time()
         plan = module.plan(problem, np.random.default_rng(given.seed), **settings)
         seconds = time.process_time() - begin
@@ -116,7 +116,7 @@ def _plan(given: Namespace) -> None:
 def _told(
     problem: Problem, planner: str, settings: dict[str, Any], plan: Plan, check: checker.Check | None, shortest: float, seconds: float
 ) -> list[tuple[str, str]]:
-    """What is printed: names and values."""
+    """The names and values to print."""
     unit = problem.workspace.unit
     lines = [("planner", planner), ("settings", ", ".join(f"{name} {value}" for name, value in settings.items()) or "none")]
     lines.append(("shortest path", f"{shortest:.6g} {unit}"))
@@ -168,7 +168,7 @@ def _like(name: str) -> tuple[str, dict[str, Any]]:
 
 
 def _preset(planner: str) -> dict[str, Any]:
-    """The settings of a planner in the first study of this project that has it as a method."""
+    """A planner's settings in the first study of this project that uses it as a method."""
     from bezierplan.study import reading
 
     for study in reading.load(reading.read_config({})).values():
@@ -191,7 +191,7 @@ def _check_settings(planner: str, settings: dict[str, Any]) -> None:
 
 
 def _problem(given: Namespace, planner: str) -> Problem:
-    """The map with start and target, as cells where the planner needs them."""
+    """The map with start and target; as a grid if the planner needs cells."""
     if given.map.suffix not in KINDS:
         raise Fault(f"{given.map}: unknown kind of map; expected a file that ends in {', '.join(KINDS)}")
     kind = KINDS[given.map.suffix]
@@ -255,7 +255,7 @@ def _write(out: File, problem: Problem, path: Path, check: checker.Check, shorte
 
 
 def _draw(out: File, problem: Problem, path: Path, check: checker.Check, shortest: np.ndarray) -> None:
-    """A picture like those of the studies: the path, the exact shortest one, and the first collision if there is one."""
+    """Draw a figure in the style of the studies: the path, the exact shortest path, and the first collision, if any."""
     import matplotlib as mpl
     from matplotlib.figure import Figure
 

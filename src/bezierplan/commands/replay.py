@@ -1,4 +1,4 @@
-"""One run again, from its name alone: bit-equal, and with its picture."""
+"""Rerun one run from its name alone: bit-equal, with its picture."""
 
 from argparse import ArgumentParser
 from pathlib import Path
@@ -21,7 +21,7 @@ SHOWN = ("objective", "length", "bound", "claimed_feasible", "feasible", "collis
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Run it again, print what it came to and whether it equals the stored one, and save its picture below results/replay. Raises Fault."""
+    """Rerun it, print the outcome and whether it equals the stored run, and save its picture below results/replay. Raises Fault."""
     parser.add_argument("run", help="its name: study/experiment/condition/method/repeat")
     add_studies(parser)
     given = parser.parse_args(words)
@@ -38,9 +38,9 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
 
 
 def replay(name: str, studies: dict[str, Study]) -> results.Results:
-    """The run of a name `study/experiment/condition/method/repeat`, reproduced: one row, with its problem and bound.
+    """Reproduce the run named `study/experiment/condition/method/repeat`: one row, with its problem and bound.
 
-    Raises Fault, saying which part of the name is unknown.
+    Raises Fault, which states the unknown part of the name.
     """
     parts = name.split("/")
     if len(parts) != 5:
@@ -49,7 +49,7 @@ def replay(name: str, studies: dict[str, Study]) -> results.Results:
     study = _named(key, studies, f"{name}: study")
     _named(experiment, study.experiments, f"{name}: experiment")
     _named(method, dict.fromkeys(study.methods_of(experiment)), f"{name}: method")
-    # Scale and chunk matter to neither the seed nor the settings of a run.
+    # Neither the seed nor the settings of a run depend on scale or chunk.
     described = job(study, experiment, method, "full", 0)
     conditions = {each.name: each for each in execution.conditions(list(described["problems"]), described["vary"])}
     condition = _named(condition_name, conditions, f"{name}: condition")
@@ -73,7 +73,7 @@ def _named(name: str, known: dict[str, Any], place: str) -> Any:
 
 
 def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:
-    """The rows of that name in run tables below a folder, by file."""
+    """The rows with this name in the run tables below a folder, by file."""
     study, experiment, _, method, _ = name.split("/")
     found = {}
     for file in sorted(folder.glob(f"*/{study}/runs/{experiment}/{method}/*.parquet")):
@@ -84,12 +84,12 @@ def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:
 
 
 def equal(run: pd.Series, stored: dict[str, Any]) -> bool:
-    """Whether a reproduced run has the content of a stored row, to the last bit."""
+    """Whether a reproduced run equals a stored row, bit for bit."""
     return row_text(run[list(stored)].to_dict()) == row_text(stored)
 
 
 def draw(made: results.Results, study: Study, file: Path) -> None:
-    """Save the picture of a run reproduced: its path, control points, first collision if any, and the shortest path; svg, png and csv."""
+    """Save the picture of a reproduced run: its path, control points, first collision, if any, and the shortest path; svg, png and csv."""
     run = made.runs.iloc[0]
     panel = {"kind": "paths", "experiment": run["experiment"], "pick": {"repeat": int(run["repeat"])}}
     unit = made.problems[run["problem"]].workspace.unit

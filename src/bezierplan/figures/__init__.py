@@ -1,1 +1,1 @@
-"""Figures: sheets of panels, one file a kind of panel, and their style."""
+"""Figures: sheets of panels, one file per kind of panel, and their style."""

@@ -1,15 +1,15 @@
-"""A figure: its panels on one sheet, and the table of everything that is drawn there.
+"""A figure: its panels on one sheet, and the table of everything drawn on it.
 
 A kind of panel is a module of `bezierplan.figures` with two functions:
 
-    data(source, *, <options>) -> DataFrame         what is drawn; the source is Results, a Workspace where nothing is planned, the table
-                                                    of a study's function, Results with the table of a function of them, or None where
-                                                    the options say all
+    data(source, *, <options>) -> DataFrame         what is drawn; the source is Results, a Workspace if nothing is planned, the table
+                                                    of a study's function, Results with the table of a function of them, or None if
+                                                    the options are enough
     draw(axes, frame, scene, panel) -> str          draws the rows of its panel, labels its artists for the legend, computes no
                                                     statistics; returns the note printed below the panel's title
 
-The keyword-only arguments of `data` are the options that a panel may have; the class `Options` beside it says so to those who write a
-study, with the keys that name what is shown. A kind whose panels are not flat has `PROJECTION`, matplotlib's name of it.
+The keyword-only arguments of `data` are the options that a panel may have; the class `Options` next to it describes them for authors of
+studies, with the keys that name what is shown. A kind with panels that are not flat has `PROJECTION`, matplotlib's name for it.
 """
 
 import importlib
@@ -30,15 +30,15 @@ from bezierplan.analysis.results import Results, select
 from bezierplan.figures import style
 from bezierplan.workspaces.problem import Problem, Workspace
 
-# Keys that a panel of any kind may have beside the options of its kind.
+# Keys that any panel may have in addition to the options of its kind.
 PANEL_KEYS = ("kind", "title", "experiment", "where", "workspace", "data", "published")
 
 
 class Scene(NamedTuple):
-    """What drawings need beside the table of what is drawn.
+    """What drawings need in addition to the table of what is drawn.
 
     problems: by experiment, then by name. workspaces: those without an experiment, by name. labels: how names are printed.
-    unit: name of the study's unit of length. narrow: whether panels are too narrow for more than the shortest of notes; `draw` says so.
+    unit: name of the study's unit of length. narrow: whether panels are too narrow for more than the shortest notes; set by `draw`.
     """
 
     problems: dict[str, dict[str, Problem]]
@@ -60,12 +60,12 @@ def data(
     functions: Mapping[str, Callable[..., pd.DataFrame]] = MappingProxyType({}),
     published: Mapping[str, pd.DataFrame] = MappingProxyType({}),
 ) -> pd.DataFrame:
-    """Everything that is drawn: the rows of all panels, the number of the panel (0, 1, ...) in the first column.
+    """Everything that is drawn: the rows of all panels, with the panel number (0, 1, ...) in the first column.
 
     panels: kind, title, experiment or data with where (as in `analysis.results.select`) or workspace, and options of the kind. results: by
     experiment. workspaces: by name. functions: what `data` may name; each is called once, for the table that its panels draw, with the
-    workspace of a panel that names one as well, and with the published tables if a panel asks for them; for a panel with an experiment it
-    is called with the panel's results. published: all published tables by file name. Raises ValueError for options or runs that a kind
+    workspace if a panel names one, and with the published tables if a panel asks for them; for a panel with an experiment it is called
+    with the panel's results. published: all published tables by file name. Raises ValueError for options or runs that a kind
     cannot draw.
     """
     alone = [panel for panel in panels if "data" in panel and "experiment" not in panel]
@@ -107,13 +107,13 @@ def write_data(frame: pd.DataFrame, file: str) -> None:
 
 def read_data(file: str) -> pd.DataFrame:
     """What `write_data` wrote, every number to its last bit."""
-    return pd.read_csv(file, low_memory=False)  # a column of each kind as a whole
+    return pd.read_csv(file, low_memory=False)  # each column read whole, with one type
 
 
 def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, columns: int) -> Figure:
-    """The figure of a table made by `data`: as wide as one text column for one column of panels, as two for more.
+    """The figure of a table made by `data`: one text column wide for one column of panels, otherwise two.
 
-    frame: best the csv read back (`read_data`), so that what is drawn is what stands there. columns: panels in a row.
+    frame: preferably the csv file read back (`read_data`), so that the figure shows exactly its content. columns: panels per row.
     """
     rows = math.ceil(len(panels) / columns)
     width = style.NARROW if columns == 1 else style.WIDE
@@ -142,7 +142,7 @@ def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, column
 
 
 def _places(figure: Figure, panels: list[dict[str, Any]], rows: int, columns: int) -> np.ndarray:
-    """Axes (rows, columns) for panels, row by row, and for what room they leave in the last one."""
+    """Axes (rows, columns) for panels, row by row, including empty places in the last row."""
     projections = [getattr(kind_module(panel["kind"]), "PROJECTION", None) for panel in panels]
     projections += [None] * (rows * columns - len(panels))
     places = [figure.add_subplot(rows, columns, number + 1, projection=projection) for number, projection in enumerate(projections)]
@@ -150,7 +150,7 @@ def _places(figure: Figure, panels: list[dict[str, Any]], rows: int, columns: in
 
 
 def _title(panel: dict[str, Any], frame: pd.DataFrame, scene: Scene) -> str:
-    """A panel's title with the method whose runs it shows, where it is one and there is room: it tells how the curve is read."""
+    """A panel's title with the method whose runs it shows, if there is only one and there is room: it says how to read the curve."""
     words = [panel["title"]] if "title" in panel else []
     methods = frame["method"].dropna().unique() if "method" in frame else []
     if len(methods) == 1 and not (words and scene.narrow):
@@ -159,7 +159,7 @@ def _title(panel: dict[str, Any], frame: pd.DataFrame, scene: Scene) -> str:
 
 
 def _write_notes(row: np.ndarray, notes: list[str]) -> None:
-    """Write the notes of a row of panels between the panels and their titles, all titles at one height."""
+    """Write the notes of a row of panels between the panels and their titles, with all titles at one height."""
     lines = max(len(note.splitlines()) for note in notes)
     top = 3 + 1.25 * style.SMALLEST_TEXT * lines
     place = {"xy": (0, 1), "xycoords": "axes fraction", "xytext": (0, top), "textcoords": "offset points", "va": "top"}
@@ -170,7 +170,7 @@ def _write_notes(row: np.ndarray, notes: list[str]) -> None:
 
 
 def _name_axes_once(grid: np.ndarray) -> None:
-    """Keep axes' names at the left and lower edge of the panels (rows, columns) only, where they are the same for a row or a column."""
+    """Keep axis names only at the left and lower edge of the panels (rows, columns) where a row or a column shares them."""
     for row in grid:
         if len({axes.get_ylabel() for axes in row if axes.get_visible()}) == 1:
             for axes in row[1:]:
@@ -183,17 +183,17 @@ def _name_axes_once(grid: np.ndarray) -> None:
 
 
 def _room(figure: Figure, grid: np.ndarray) -> float:
-    """Room for text above each of the panels (rows, columns), up to what stands beside its neighbour, in points."""
+    """Room for text above each of the panels (rows, columns), up to the text beside its neighbour, in points."""
     width, columns = 72 * figure.get_figwidth(), grid.shape[1]
-    least = 36 if width / columns >= 72 * style.NARROW_PANEL else 30  # what labels of an upright axis take, if they are short
+    least = 36 if width / columns >= 72 * style.NARROW_PANEL else 30  # room for the labels of a vertical axis, if they are short
     margins = 72 * (np.array([[_margins(axes)[:2] for axes in row] for row in grid]) + style.GAP / 2)
     left, right = margins.max(axis=0).T
     return (width - np.maximum(left, least).sum() - right.sum()) / columns + right.min()
 
 
 def _broken(text: str, room: float, size: float) -> str:
-    """Text broken after spaces, commas and slashes into lines that fit a room; room and size of the text in points."""
-    most = int(room / (0.57 * size))  # on average a character of this font is a little less wide than this
+    """Text broken after spaces, commas and slashes into lines that fit a width; width and text size in points."""
+    most = int(room / (0.57 * size))  # the average character of this font is slightly narrower than this
     lines = []
     for paragraph in text.splitlines():
         line = ""
@@ -207,7 +207,7 @@ def _broken(text: str, room: float, size: float) -> str:
 
 
 def _draw_legend(figure: Figure) -> float:
-    """One legend of all panels below them, each label once, in as few rows as fit the width; returns the room for it in inches."""
+    """One legend for all panels below them, with each label once, in as few rows as the width allows; returns the room for it in inches."""
     handles = {}
     for axes in figure.axes:
         for handle, label in zip(*axes.get_legend_handles_labels()):
@@ -222,10 +222,10 @@ def _draw_legend(figure: Figure) -> float:
 
 
 def _lay_out(figure: Figure, grid: np.ndarray, legend: float) -> None:
-    """Place panels (rows, columns), all as wide as the sheet allows, a row's tops level, and fit the sheet's height to them.
+    """Place panels (rows, columns), all as wide as the sheet allows, the tops of each row level, and fit the sheet's height to them.
 
-    Three rounds, because the labels beside a panel depend on its size: ticks, and names of upright axes, which are broken to fit its
-    height. legend: room for it, in inches.
+    Takes three rounds, because the labels beside a panel depend on its size: ticks, and names of vertical axes, which are broken to fit
+    its height. legend: room for it, in inches.
     """
     for _ in range(3):
         margins = np.array([[_margins(axes) for axes in row] for row in grid]) + style.GAP / 2
@@ -248,7 +248,7 @@ def _lay_out(figure: Figure, grid: np.ndarray, legend: float) -> None:
 
 
 def _margins(axes: Axes) -> tuple[float, float, float, float]:
-    """What stands out of a panel to the left, to the right, below and above, in inches."""
+    """How far labels extend beyond a panel to the left, to the right, below and above, in inches."""
     outer = axes.get_tightbbox(for_layout_only=True)
     if outer is None:  # a place without a panel
         return 0.0, 0.0, 0.0, 0.0
@@ -258,7 +258,7 @@ def _margins(axes: Axes) -> tuple[float, float, float, float]:
 
 
 def _shape(axes: Axes) -> float:
-    """Height of a panel as a share of its width: to scale or as the kind asks for it, else the same for all."""
+    """Height of a panel as a share of its width: to scale or as its kind requires, otherwise the same for all."""
     if axes.name == "3d":
         return style.HIGH_PANEL_HEIGHT
     if axes.get_box_aspect() is not None:
@@ -267,7 +267,7 @@ def _shape(axes: Axes) -> float:
 
 
 def save(figure: Figure, svg: str, png: str) -> None:
-    """Save a figure as svg and as png of 300 dots per inch; equal drawings give equal bytes, whenever they are made."""
+    """Save a figure as svg and as png of 300 dots per inch; equal drawings give equal bytes at any time."""
     with mpl.rc_context(style.SETTINGS):
         figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
         figure.savefig(png, format="png", dpi=300, metadata={"Software": None})

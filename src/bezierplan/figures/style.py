@@ -1,6 +1,6 @@
-"""How every figure of the project looks.
+"""The style of every figure of the project.
 
-Colours differ in lightness as well as in hue, and what could be mistaken in a grey print differs in line style, width or mark too.
+Colours differ in lightness as well as in hue, and items that could be confused in a grey print also differ in line style, width or mark.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ SMALLEST_TEXT = 7  # points
 TITLE_TEXT = 8
 
 SETTINGS = {
-    "font.family": "DejaVu Sans",  # comes with matplotlib, so that it is the same everywhere
+    "font.family": "DejaVu Sans",  # ships with matplotlib, so it is the same everywhere
     "font.size": SMALLEST_TEXT,
     "axes.titlesize": TITLE_TEXT,
     "axes.labelsize": SMALLEST_TEXT,
@@ -38,14 +38,14 @@ SETTINGS = {
     "legend.frameon": False,
     "legend.handlelength": 2.2,
     "legend.labelspacing": 0.6,
-    "svg.fonttype": "none",  # words stay words: they can be searched, and read aloud
+    "svg.fonttype": "none",  # text stays text: searchable, and readable by screen readers
     "svg.hashsalt": "bezierplan",  # equal drawings get equal identifiers
 }
 
 RED, BLUE, BLACK, AMBER = "#DD3322", "#004488", "#000000", "#E69F00"
 LIGHT_BLUE = "#B7CDE6"
 
-# What a paper prints, and what is found here: the same in all figures of all papers.
+# Published values and ours: the same style in all figures of all papers.
 PUBLISHED = {"color": BLACK, "linestyle": (0, (5, 2)), "linewidth": 1.1}
 OURS = {"color": BLUE, "linestyle": "-", "linewidth": 1.3}
 
@@ -61,7 +61,7 @@ _MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p")
 # Bars side by side: neighbours differ in lightness and in hatching.
 _FILLS = ("#DCE6F2", "#8FB0D6", "#D55E00", "#F7DDB5", "#0072B2", "#FFFFFF", "#333333", "#BDBDBD")
 _HATCHES = ("", "////", "", "\\\\\\\\", "", "....", "", "xxxx")
-# Numbers take their colours from a scale, the higher the lighter, without its lightest end, which paper swallows.
+# Numbers take their colours from a scale, the higher the lighter, without its lightest end, which is invisible on paper.
 SCALE, _LIGHTEST = "viridis", 0.8
 
 BOX = {"facecolor": LIGHT_BLUE, "edgecolor": BLUE, "linewidth": 0.7}
@@ -71,10 +71,10 @@ FREE, OCCUPIED, SURPLUS = "#FFFFFF", "0.66", "0.94"
 CELL_LINE = "0.85"
 SURPLUS_HATCH = {"hatch": "/////", "hatchcolor": "0.7"}
 
-# A panel narrower than this, in inches, shows the shortest of notes, and names its axes only at the edge of the sheet.
+# A panel narrower than this, in inches, shows only the shortest notes, and names its axes only at the edge of the sheet.
 NARROW_PANEL = 2.0
 
-# Height of a panel with two unlike axes, as a share of its width: usually, and where names beside it need height and leave little width.
+# Height of a panel with two unlike axes, as a share of its width: by default, and if names beside it need height and leave little width.
 # Room between panels, in inches.
 PANEL_HEIGHT = 0.62
 HIGH_PANEL_HEIGHT = 0.9
@@ -82,19 +82,19 @@ GAP = 0.1
 
 
 def ground(share: float) -> str:
-    """The colour of ground at a share of the way from the lowest to the highest: pale, so that lines stand out from it."""
+    """The colour of terrain at a share of the range from the lowest to the highest: pale, so that lines stand out."""
     import matplotlib as mpl
 
     return mpl.colors.to_hex(mpl.colormaps["Purples"](0.6 * share))
 
 
 def interval_band(colour: str) -> dict[str, Any]:
-    """The look of the interval of a line: pale in the line's colour, with an edge that stays visible where bands overlap."""
+    """The style of a line's interval: pale in the line's colour, with an edge that stays visible where bands overlap."""
     return {"facecolor": (colour, 0.12), "edgecolor": (colour, 0.5), "linewidth": 0.4}
 
 
 def lines(values: list[Any]) -> list[dict[str, Any]]:
-    """Looks of lines for values side by side, one each: for numbers a scale of colours, for names unlike colours; with dashes and marks."""
+    """Styles of lines for values side by side, one each: a colour scale for numbers, distinct colours for names; with dashes and marks."""
     import matplotlib as mpl
 
     if len(values) > 1 and not isinstance(values[0], str):
@@ -115,7 +115,7 @@ def lines(values: list[Any]) -> list[dict[str, Any]]:
 
 
 def bars(count: int) -> list[dict[str, Any]]:
-    """Looks of so many bars side by side."""
+    """Styles of the given number of bars side by side."""
     return [
         {"facecolor": _FILLS[i % len(_FILLS)], "hatch": _HATCHES[i % len(_HATCHES)], "edgecolor": BLACK, "linewidth": 0.5}
         for i in range(count)
@@ -123,7 +123,7 @@ def bars(count: int) -> list[dict[str, Any]]:
 
 
 def in_order(values: pd.Series, panel: dict) -> list[Any]:
-    """The different values of a column: those that the panel's `where` lists in its order, then the others sorted."""
+    """The distinct values of a column: those in the panel's `where`, in its order, then the others, sorted."""
     wanted = panel.get("where", {}).get(values.name)
     listed = wanted if isinstance(wanted, list) else []
     present = values.dropna().unique().tolist()
@@ -131,7 +131,7 @@ def in_order(values: pd.Series, panel: dict) -> list[Any]:
 
 
 def printed(value: Any, column: str, labels: dict[str, str]) -> str:
-    """How a value of a column is printed: a name by its label, a number behind the column's."""
+    """How a value of a column is printed: a name as its label, a number after the column's label."""
     return labels.get(value, value) if isinstance(value, str) else f"{column_name(column, labels)} = {value:g}"
 
 

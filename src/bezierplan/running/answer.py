@@ -1,4 +1,4 @@
-"""Whether what a planner answers is a plan: the one check that stands before every row of a runs table and in the contract tests."""
+"""Validate a planner's answer: the one check made before every row of a runs table and in the contract tests."""
 
 import math
 import numbers
@@ -13,15 +13,15 @@ from bezierplan.workspaces.problem import Path, Problem
 
 
 def fault(plan: Any, problem: Problem, taken: Collection[str]) -> str:
-    """The first fault of an answer to a problem, in one line that begins with the field, or nothing.
+    """The first fault in an answer to a problem, as one line that begins with the field; empty if there is none.
 
-    taken: names that no extra column can have.
+    taken: names not allowed for extra columns.
     """
     return plan_fault(plan) or ends_fault(plan, problem) or names_fault(plan, taken)
 
 
 def plan_fault(plan: Any) -> str:
-    """The first field of a plan that has another type or form than `problem.Plan` says, or nothing."""
+    """The first field of a plan whose type or form differs from `problem.Plan`; empty if there is none."""
     if not isinstance(plan, Plan):
         return f"is a {type(plan).__name__}; expected a Plan"
     fit = {
@@ -50,7 +50,7 @@ def _path_fault(path: Path) -> str:
     if not np.isfinite(path.points).all():
         return "path: points: expected finite numbers"
     try:
-        # What the checker refuses would end a study: a coordinate that is too large, a degree that is too high.
+        # A path that the checker rejects would abort a study: a coordinate too large, a degree too high.
         checker.refuse_unfit(curves.bezier_pieces(path))
     except ValueError as error:
         return f"path: {error}"
@@ -58,10 +58,10 @@ def _path_fault(path: Path) -> str:
 
 
 def ends_fault(plan: Plan, problem: Problem) -> str:
-    """Which end of a plan's path is not that of the problem, or nothing.
+    """Which end of a plan's path differs from the problem's; empty if neither does.
 
-    They are compared bit by bit, without a tolerance: a curve begins and ends in control points, to which a planner copies the problem's
-    own numbers, so nothing is rounded on the way.
+    The comparison is bitwise, without a tolerance: a curve begins and ends at control points, into which a planner copies the problem's
+    own numbers, so nothing is rounded.
     """
     if plan.path is None:
         return ""
@@ -73,7 +73,7 @@ def ends_fault(plan: Plan, problem: Problem) -> str:
 
 
 def names_fault(plan: Plan, taken: Collection[str]) -> str:
-    """Which name of a plan's extra columns is none, or another column has, or nothing."""
+    """The first extra column of a plan whose name is invalid or already taken; empty if there is none."""
     for name in plan.extra:
         if not name.isidentifier():
             return f"extra: {name!r}: expected a name of letters, digits and underscores"
@@ -91,5 +91,5 @@ def _is_whole(value: Any) -> bool:
 
 
 def _is_array(value: Any, dimensions: int, kinds: str) -> bool:
-    """Whether a value is an array of so many dimensions, of a kind of numbers that numpy calls by one of these letters."""
+    """Whether a value is an array with the given number of dimensions and a dtype kind among the given numpy letters."""
     return isinstance(value, np.ndarray) and value.ndim == dimensions and value.dtype.kind in kinds

@@ -1,6 +1,6 @@
-"""Contract tests for a planner, of this package or a reader's own: what `problem.py` asks of it, tried on small and degenerate problems.
+"""Contract tests for a planner, from this package or your own: the requirements of `problem.py`, on small and degenerate problems.
 
-A planner with settings needs a value for each. The budget is counted by the planner itself: what it says is checked, not what it does.
+Every setting of a planner needs a value. The planner counts its own budget: the tests check its count, not its actual work.
 """
 
 import copy
@@ -28,14 +28,14 @@ from bezierplan.workspaces.files import to_json
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem, Workspace
 
-# A plan is made for each of so many generators.
+# Number of generators, with one plan for each.
 _GENERATORS = 3
 
 _UNIT = "unit"
 
 
 class Finding(NamedTuple):
-    """What one fact of the contract came to on one problem. detail: the fault of a fact that failed, otherwise what there is to know."""
+    """The result of one test of the contract on one problem. detail: the fault if it failed, otherwise additional information."""
 
     problem: str
     fact: str
@@ -47,9 +47,9 @@ class Finding(NamedTuple):
 
 
 def check_planner(planner: str, settings: dict[str, Any]) -> Iterator[Finding]:
-    """Findings on a planner, a name or the path of a file, with these settings; each is made when it is asked for.
+    """Findings on a planner, given as a name or the path of a file, with these settings; computed lazily.
 
-    Raises Fault, in one line, before the first finding: for a file that is no planner, and for settings that are missing or do not fit.
+    Raises Fault, in one line, before the first finding: for a file that is not a planner, and for missing or invalid settings.
     """
     module = _loaded(planner)
     first = _check_settings(module, settings, planner)
@@ -65,7 +65,7 @@ def _loaded(planner: str) -> ModuleType:
         raise Fault(f"{planner}: unknown planner, and not the path of a file that ends in .py{closest(planner, known_planners())}")
     try:
         module = planner_module(planner)
-    except Exception as error:  # a reader's file can fail in any way
+    except Exception as error:  # a user's file can fail in any way
         raise Fault(f"{planner}: cannot be loaded ({_told(error)})") from error
     if not inspect.isfunction(getattr(module, "plan", None)):
         raise Fault(f"{planner}: has no function plan(problem, rng, *, <settings>)")
@@ -77,7 +77,7 @@ def _loaded(planner: str) -> ModuleType:
 
 
 def _check_signature(module: ModuleType, planner: str) -> None:
-    """Raise Fault unless every setting is annotated as `problem.py` says, without a default value."""
+    """Raise Fault unless every setting is annotated as `problem.py` requires, without a default value."""
     expected = "expected bool, int, float, Literal, or Annotated with a Range"
     for name, parameter in inspect.signature(module.plan).parameters.items():
         if parameter.kind is inspect.Parameter.KEYWORD_ONLY and parameter.annotation is inspect.Parameter.empty:
@@ -92,7 +92,7 @@ def _check_signature(module: ModuleType, planner: str) -> None:
 
 
 def _check_settings(module: ModuleType, settings: dict[str, Any], planner: str) -> list[Finding]:
-    """What is found while settings are checked: whether the planner's own check, if it has one, leaves them as they are. Raises Fault."""
+    """Findings from the check of settings: whether the planner's own check, if any, leaves them unchanged. Raises Fault."""
     accepted = planner_settings(module)
     for name in settings:
         if name not in accepted:
@@ -116,13 +116,13 @@ def _check_settings(module: ModuleType, settings: dict[str, Any], planner: str) 
 
 
 def _wanted(annotation: Any) -> str:
-    """What a setting takes, in words."""
+    """The values that a setting accepts, in words."""
     limits = [str(part) for part in typing.get_args(annotation) if isinstance(part, Range)]
     return " ".join([setting_fault(annotation, object()), *limits])
 
 
 def _told(error: Exception) -> str:
-    """An error in one line."""
+    """An error as one line."""
     return " ".join(f"{type(error).__name__}: {error}".split())
 
 
@@ -136,8 +136,8 @@ _SEALED = "sealed target"
 _ON_BOUNDARY = "start on a boundary"
 _FAR = "far from the origin"
 
-# Rows from the top; S start, T target, B both. Start and target are centres of cells, for planners over cells serve no others; so there
-# is no start on a boundary.
+# Rows from the top; S start, T target, B both. Start and target are cell centres, the only places that grid planners support; so no
+# start lies on a boundary.
 _GRIDS = {
     "open": ("......", ".S..T.", "..#...", "......"),
     _IN_THE_WAY: ("......", ".S#.T.", "..#...", "......"),
@@ -148,10 +148,10 @@ _GRIDS = {
     "3 x 5": ("..#..", "S.#.T", "....."),
     _FAR: ("......", "..#...", ".S#.T.", "......"),
 }
-# A grid of a map file begins at the origin; what can be far is the end of large cells.
+# The grid of a map file begins at the origin; only large cells can extend far from it.
 _LARGE_CELL = 15_000.0
 
-# The other workspaces are this field, moved for the problem that lies far from the origin.
+# The other workspaces are this field, shifted for the problem far from the origin.
 _FIELD = (0.0, 10.0, 0.0, 10.0)
 _MOVED = (90_000.0, -70_000.0)
 
@@ -222,11 +222,11 @@ PROBLEMS = {"grid": _grid_problems, "circles": _circle_problems, "polygons": _po
 
 
 # ---------------------------------------------------------------------------------------------------------------------
-# Runs. The state of numpy's global generator can be had by its old functions only, which ruff (NPY002) warns of.
+# Runs. Only numpy's legacy functions, which ruff (NPY002) warns about, give access to the state of its global generator.
 
 
 class _Run(NamedTuple):
-    """plan: what came back. used: global generators that moved. changed: whether the problem is another than before."""
+    """plan: the answer. used: global generators whose state changed. changed: whether the planner altered the problem."""
 
     plan: Any
     used: list[str]
@@ -234,9 +234,9 @@ class _Run(NamedTuple):
 
 
 class _Case(NamedTuple):
-    """A planner's plans for one problem, all of them fit to be looked at.
+    """A planner's plans for one problem, all of them valid.
 
-    blocked: the region of the problem. plans: one a generator. again: the first of them made again. reseeded: likewise, with the global
+    blocked: the region of the problem. plans: one per generator. again: the first of them reproduced. reseeded: likewise, with the global
     generators in another state. runs: all of these. columns: names of extra columns on the first problem. exact, keeps_best: what the
     planner declares.
     """
@@ -273,7 +273,7 @@ def _findings(module: ModuleType, settings: dict[str, Any]) -> Iterator[Finding]
 
 
 def _runs(module: ModuleType, problem: Problem, settings: dict[str, Any]) -> tuple[list[_Run], str]:
-    """Runs in the order that `_findings` takes them, or the fault for which there are none to look at."""
+    """Runs in the order that `_findings` expects, or the fault that left none to inspect."""
     runs = []
     for seed, surroundings in [(0, 0), (0, 0), (0, 1), *((seed, 0) for seed in range(1, _GENERATORS))]:
         try:
@@ -287,7 +287,7 @@ def _runs(module: ModuleType, problem: Problem, settings: dict[str, Any]) -> tup
 
 
 def _run(module: ModuleType, problem: Problem, settings: dict[str, Any], seed: int, surroundings: int) -> _Run:
-    """One run on a copy of a problem. surroundings: seed of the global generators, which get their state back afterwards."""
+    """One run on a copy of a problem. surroundings: seed of the global generators, whose state is restored afterwards."""
     given = copy.deepcopy(problem)
     kept = np.random.get_state(), random.getstate()  # noqa: NPY002
     try:
@@ -320,7 +320,7 @@ def _content(problem: Problem) -> tuple:
 
 
 # ---------------------------------------------------------------------------------------------------------------------
-# Facts: each tells whether it holds for a case, and a detail
+# Facts: each returns whether it holds for a case, and a detail
 
 
 def _has_its_ends(case: _Case) -> tuple[bool, str]:
@@ -334,7 +334,7 @@ def _has_its_ends(case: _Case) -> tuple[bool, str]:
 
 def _history_falls(case: _Case) -> tuple[bool, str]:
     for plan in case.plans:
-        # Written so that a value that is not a number fails as well.
+        # Written so that NaN fails as well.
         if not (plan.history[1:] <= plan.history[:-1]).all():
             return False, "rises; expected the best objective so far"
         if plan.path is not None and plan.history[-1] != plan.objective and (case.keeps_best or plan.history[-1] > plan.objective):
@@ -358,7 +358,7 @@ def _repeats(case: _Case) -> tuple[bool, str]:
 
 
 def _draws_from_its_own(case: _Case) -> tuple[bool, str]:
-    """A result that no repeat would give is not held against the global generators."""
+    """A result that no rerun would reproduce is not blamed on the global generators."""
     used = next((run.used for run in case.runs if run.used), [])
     if used:
         return False, f"uses {' and '.join(used)}; expected rng alone"
@@ -398,18 +398,18 @@ def _finds_no_way(case: _Case) -> tuple[bool, str]:
 
 
 def _feasible(plans: list[Plan], blocked: Region) -> int:
-    """Number of plans whose path is feasible by the checker."""
+    """Number of plans whose path the checker accepts as feasible."""
     return sum(plan.path is not None and checker.check(curves.bezier_pieces(plan.path), blocked).feasible for plan in plans)
 
 
 def _difference(one: Plan, other: Plan) -> str:
-    """The first field in which two plans differ by a bit, or nothing."""
+    """The first field in which two plans differ bitwise; empty if there is none."""
     bits = zip(_bits(one).items(), _bits(other).values(), strict=True)
     return next((field for (field, value), counterpart in bits if value != counterpart), "")
 
 
 def _bits(plan: Plan) -> dict[str, Any]:
-    """The fields of a plan as values that are equal exactly if their bits are."""
+    """The fields of a plan as values that are equal exactly when their bits are."""
     return {
         "path": plan.path and (plan.path.curve, plan.path.points.shape, plan.path.points.tobytes()),
         "objective": np.float64(plan.objective).tobytes(),

@@ -16,12 +16,12 @@ PACKAGE = Path(__file__).parents[1]
 ROOT = PACKAGE.name
 
 
-# What decides how a job starts and ends, never what it writes.
+# Modules that affect how a job starts and ends, but never what it writes.
 NEUTRAL = {f"{ROOT}.running.{name}" for name in ("digest", "kernel_cache", "log")}
 
 
 class _Module(NamedTuple):
-    """A module by its dotted name, and the folder in which that name is looked up: this package's, or that of a file outside of it."""
+    """A module by its dotted name, and the folder in which that name is looked up: this package's, or that of a file outside it."""
 
     home: Path
     name: str
@@ -32,13 +32,13 @@ class _Module(NamedTuple):
         return next((file for file in (place.with_suffix(".py"), place / "__init__.py") if file.is_file()), None)
 
     def parents(self) -> set["_Module"]:
-        """The packages that the module lies in."""
+        """The packages that contain the module."""
         parts = self.name.split(".")
         return {_Module(self.home, ".".join(parts[:n])) for n in range(1, len(parts))}
 
 
 def _module(name: str) -> _Module:
-    """A module as `source_digest` is given it."""
+    """A module from an argument of `source_digest`."""
     if name.endswith(".py"):
         file = Path(name).resolve()
         return _Module(file.parent, file.stem)
@@ -47,7 +47,7 @@ def _module(name: str) -> _Module:
 
 @cache
 def _parsed(file: Path) -> tuple[str, frozenset[tuple[int, str, str]]]:
-    """What a file computes, as text: its syntax tree without docstrings; and what it imports: (dots before, module, name in it)."""
+    """What a file computes, as text: its syntax tree without docstrings; and what it imports: (leading dots, module, name in it)."""
     tree = ast.parse(file.read_text(encoding="utf-8"))
     imports = set()
     for node in ast.walk(tree):
@@ -62,7 +62,7 @@ def _parsed(file: Path) -> tuple[str, frozenset[tuple[int, str, str]]]:
 
 @cache
 def _imports(module: _Module) -> set[_Module]:
-    """The modules of this package, and of a file outside of it those beside the file, that a module imports; their packages included."""
+    """The modules that a module imports, with their packages: from this package and, for a file outside it, from the file's folder."""
     file = module.file()
     packages = module.name.split(".") if file.name == "__init__.py" else module.name.split(".")[:-1]
     found = set()
@@ -71,17 +71,17 @@ def _imports(module: _Module) -> set[_Module]:
         base = ".".join([*above, *filter(None, [base])])
         for full in filter(None, {base, ".".join(filter(None, [base, name]))}):
             found.add(_Module(PACKAGE.parent if full.split(".")[0] == ROOT else module.home, full))
-    # What lies beside this package is no part of it.
+    # Modules next to this package are not part of it.
     ours = {each for each in found if (each.home != PACKAGE.parent or each.name.split(".")[0] == ROOT) and each.file()}
     return ours.union(*(each.parents() for each in ours))
 
 
 @cache
 def source_digest(*modules: str) -> str:
-    """Digest of modules and of every module that they import, directly or not: of this package, and beside a file those of its folder.
+    """Digest of modules and everything that they import, directly or indirectly, from this package or, for a file, from its folder.
 
-    A module is a dotted name of this package or the path of a file, such as a reader's planner. Comments, docstrings and layout do not
-    count: the digest is taken over syntax trees. Raises ValueError for a module that is not there.
+    A module is a dotted name of this package or the path of a file, such as a user's planner. Comments, docstrings and layout do not
+    count: the digest is taken over syntax trees. Raises ValueError for a missing module.
     """
     todo, texts = [], {}
     for module in map(_module, modules):
@@ -98,25 +98,25 @@ def source_digest(*modules: str) -> str:
 
 @cache
 def content_digest(*files: str) -> str:
-    """Digest of the content of files, in their order: unlike a date, it says whether one of them changed."""
+    """Digest of the content of files, in the given order: unlike a timestamp, it shows whether one of them changed."""
     contents = (Path(file).read_bytes() for file in files)
     return hashlib.sha256(b"".join(hashlib.sha256(content).digest() for content in contents)).hexdigest()[:16]
 
 
-# numba tries them in this order; the others serve the libraries that keep kernels of their own.
+# numba tries them in this order; the others serve libraries with kernels of their own.
 LOCATORS = "bezierplan.running.kernel_cache.KernelCacheLocator,InTreeCacheLocator,UserWideCacheLocator"
 
 
 def kernel_folder(module: str, file: str) -> Path:
-    """The folder of compiled kernels of a module, of this package or a reader's own, in its present state."""
+    """The folder of compiled kernels for the current state of a module, from this package or the user's own."""
     ours = module.split(".")[0] == ROOT and _module(module).file() is not None
     return Path(os.environ["NUMBA_CACHE_DIR"]) / f"{Path(file).stem}-{source_digest(module if ours else file)}"
 
 
 def point_numba_cache() -> None:
-    """Give compiled kernels a place: `.cache/kernels` of the working tree or, where that cannot be written, of the user's home.
+    """Set the folder for compiled kernels: `.cache/kernels` in the working tree or, if that is not writable, in the user's home.
 
-    numba reads the variables once, when it is imported; so an earlier import is corrected as well.
+    numba reads the variables once, on import; so an earlier import is corrected as well.
     """
     tree = PACKAGE.parents[1]
     place = tree if os.access(tree, os.W_OK) else Path.home()

@@ -1,15 +1,15 @@
-"""One chunk of runs: a method on every condition of an experiment, a block of repeats.
+"""One chunk of runs: one method on every condition of an experiment, for a block of repeats.
 
-A job is a mapping with these keys, all of them names and plain values (`study.job` makes it):
+A job is a mapping with these keys, all of them names and plain values (built by `study.job`):
 
     study, experiment, method    names
     planner, settings            the planner and its settings, by name
-    problems                     problem name -> its workspace's name, and if it has them layout, obstacles, and settings that go with it
+    problems                     problem name -> its workspace's name and, if present, layout, obstacles and settings of the problem
     vary                         setting or preset -> list of values; every combination of problems and values is a condition
     presets                       preset -> value, as text -> settings that go with it
     seeds                        a run's seed comes from its id (`own`), from its id without the method (`shared`), or from study,
-                                 experiment, layout and repeat alone (`common`: all methods and conditions share their random numbers)
-    time_limit                   seconds after which a run ends its job, compiling included; no limit without this key
+                                 experiment, layout and repeat alone (`common`: all methods and conditions share random numbers)
+    time_limit                   seconds, including compilation, after which a run ends its job; no limit without this key
     repeats                      [first, last): the repeats to run
 """
 
@@ -52,14 +52,14 @@ JOINED = ("straight_line", "bound", "least_length", "bound_path", "octile_bound"
 TAKEN = frozenset((*RUN_COLUMNS, *PLACE, *JOINED))
 """Names that no planner's extra column can have; the job's settings and what it varies are others."""
 
-# Runs are thrown away until so many in a row take the same CPU time but for this share, or so many seconds have gone into it after the
-# first, or one of them took so long that what it loaded is small beside it.
+# Warm-up runs are discarded until this many in a row agree in CPU time to within this share, until those after the first have taken this
+# many seconds, or until one takes so long that its loading time is negligible.
 _ALIKE = 3
 _STABLE = 0.1
 _WARM_UP = 0.2
 _LONG_RUN = 1.0
 
-# After so many runs each a line goes to the log.
+# Number of runs between two lines of the log.
 _LOGGED = 100
 
 NO_PATH = checker.Check(False, math.nan, math.nan, math.nan, math.nan, 0)
@@ -89,8 +89,8 @@ def run_id(job: dict, condition: Condition, repeat: int) -> str:
 
 
 def settings_in(job: dict, condition: Condition) -> dict[str, Any]:
-    """The settings of the job's method under a condition: what goes with its problem is put in, then what is varied. Presets stand for the
-    settings that go with them; what is varied and is no setting of the planner is left out.
+    """The settings of the job's method under a condition: those of its problem are applied first, then the varied values. Presets expand to
+    their settings; varied values that are not settings of the planner are left out.
     """
     settings = job["settings"] | job["problems"][condition.problem].get("settings", {})
     for name, value in condition.values.items():
@@ -100,7 +100,7 @@ def settings_in(job: dict, condition: Condition) -> dict[str, Any]:
 
 
 def generator(job: dict, condition: Condition, repeat: int) -> np.random.Generator:
-    """The random generator of a run, from names only, so that nothing depends on order, cores or chunks."""
+    """The random generator of a run, seeded from names only, so that nothing depends on order, cores or chunks."""
     layout = job["problems"][condition.problem].get("layout", "")
     parts = {
         "own": [condition.name, job["method"]],
@@ -120,8 +120,8 @@ def run(job: dict, condition: Condition, repeat: int, problem: Problem) -> Plan:
 def row(job: dict, condition: Condition, repeat: int, plan: Plan, problem: Problem, blocked: Region) -> dict[str, Any]:
     """One row of the runs table; `blocked` is the region of the problem's workspace.
 
-    Raises RuntimeError, naming the run and the field, if the plan is none for this problem (`answer.fault`): a path that begins or ends
-    elsewhere, a column that would take the place of another.
+    Raises RuntimeError, naming the run and the field, if the plan is not valid for this problem (`answer.fault`): for example, if its path
+    begins or ends elsewhere, or a column would overwrite another.
     """
     settings = settings_in(job, condition)
     fault = answer.fault(plan, problem, {*TAKEN, *settings, *condition.values})
@@ -160,9 +160,9 @@ def row(job: dict, condition: Condition, repeat: int, plan: Plan, problem: Probl
 
 
 def run_chunk(problems: dict[str, Problem], job: dict) -> tuple[pa.Table, pa.Table]:
-    """The runs of a job (`RUN_COLUMNS`) and, in a table of their own because they never repeat, their times: id, cpu_s, wall_s.
+    """The runs of a job (`RUN_COLUMNS`) and, in a separate table because they are never reproducible, their times: id, cpu_s, wall_s.
 
-    Raises RuntimeError, naming the run, if a planner fails, or answers with something that is no plan for the problem (`row`).
+    Raises RuntimeError, naming the run, if a planner fails or does not return a valid plan for the problem (`row`).
     """
     blocked = {name: region(problem.workspace) for name, problem in problems.items() if name in job["problems"]}
     given = list(conditions(list(job["problems"]), job["vary"]))
@@ -188,16 +188,16 @@ def run_chunk(problems: dict[str, Problem], job: dict) -> tuple[pa.Table, pa.Tab
 
 
 def _table(rows: list[dict[str, Any]]) -> pa.Table:
-    """Rows as a table. Not every condition has the same columns, so they are gathered over all rows."""
+    """Rows as a table. Conditions may differ in their columns, so columns are collected over all rows."""
     columns = dict.fromkeys(column for each in rows for column in each)
     return pa.table({column: [each.get(column) for each in rows] for column in columns})
 
 
 def _order(job: dict, conditions: int, repeats: range) -> list[tuple[int, int]]:
-    """All pairs of a condition's number and a repeat, in an order drawn from the job's name.
+    """All pairs of a condition's number and a repeat, in a random order seeded by the job's name.
 
-    A processor's speed drifts, and a first call of compiled code loads it. In this order neither falls on one condition. No result depends
-    on it but times.
+    A processor's speed drifts, and the first call of compiled code loads it. This order spreads both effects over all conditions. It
+    affects only times.
     """
     pairs = list(itertools.product(range(conditions), repeats))
     name = "/".join([job["study"], job["experiment"], job["method"], str(repeats.start), "order"])
@@ -206,7 +206,7 @@ def _order(job: dict, conditions: int, repeats: range) -> list[tuple[int, int]]:
 
 
 def _warm_up(once: Callable[[], tuple[Plan, float, float]]) -> None:
-    """Throw runs away until their CPU time is stable or they are long: the first ones of a process load code and wake the processor."""
+    """Discard runs until their CPU time is stable or they are long: the first ones of a process load code and wake the processor."""
     taken = []
     while len(taken) < _ALIKE or max(taken[-_ALIKE:]) > (1 + _STABLE) * min(taken[-_ALIKE:]):
         taken.append(once()[1])
@@ -215,7 +215,7 @@ def _warm_up(once: Callable[[], tuple[Plan, float, float]]) -> None:
 
 
 def _guarded_run(job: dict, condition: Condition, repeat: int, problem: Problem, watch: Callable[[str], None]) -> tuple[Plan, float, float]:
-    """The plan of one run, its CPU and its wall seconds. Raises RuntimeError, naming the run, if the planner fails."""
+    """The plan of one run, its CPU seconds and its wall-clock seconds. Raises RuntimeError, naming the run, if the planner fails."""
     watch(f"run {run_id(job, condition, repeat)}: planner {job['planner']}")
     try:
         cpu, wall = time.process_time(), time.perf_counter()

@@ -1,4 +1,4 @@
-"""What every job of the workflow does: end with its parent, write to its log, leave whole files only, and report a failure in one line."""
+"""Common behaviour of workflow jobs: end with the parent, write to the log, leave only complete files, report a failure in one line."""
 
 import ctypes
 import logging
@@ -15,17 +15,17 @@ PR_SET_PDEATHSIG = 1
 
 
 def end_with_parent() -> None:
-    """Have the kernel end this process when its parent ends, so that no job writes on after its workflow was killed (Linux only)."""
+    """Have the kernel end this process when its parent ends, so that no job keeps writing after its workflow is killed (Linux only)."""
     if sys.platform == "linux":
         ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
 @contextmanager
 def job(given: Any) -> Iterator[Any]:
-    """Do a job: given is the `snakemake` of its script, and the block gets names to write the output files under.
+    """Run a job: `given` is its script's `snakemake` object; the block receives temporary names for the output files.
 
-    The files take their own names when the block has ended. An exception is written to the job's log in full and ends the process with
-    its one line.
+    The files get their final names when the block ends. An exception is written to the job's log in full and ends the process with a
+    one-line message.
     """
     end_with_parent()
     logging.basicConfig(filename=given.log[0], filemode="w", level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s")
@@ -39,9 +39,9 @@ def job(given: Any) -> Iterator[Any]:
 
 @contextmanager
 def whole_files(files: Any) -> Iterator[Any]:
-    """Names in another folder for a job's files, which all lie in one; they take their own names when the block has ended without a fault.
+    """Temporary names in another folder for a job's files, all of one folder; they get their final names once the block succeeds.
 
-    So a file that is there is whole, whenever its job was killed.
+    So an existing file is always complete, even if its job was killed.
     """
     place = Path(files[0]).parent
     with tempfile.TemporaryDirectory(prefix=".part-", dir=place) as folder:
@@ -52,7 +52,7 @@ def whole_files(files: Any) -> Iterator[Any]:
 
 
 def damaged(files: Iterable[str]) -> str:
-    """What to do about the first Parquet file that cannot be read, such as one that was cut off; empty if there is none."""
+    """What to do about the first unreadable Parquet file, such as a truncated one; empty if there is none."""
     import pyarrow as pa
     import pyarrow.parquet as parquet
 

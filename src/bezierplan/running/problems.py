@@ -1,9 +1,9 @@
-"""The problems of an experiment: made from their descriptions, and kept in a file with one row a problem.
+"""The problems of an experiment: built from their descriptions, and kept in a file with one row per problem.
 
 Columns of a problem file: problem, workspace (its name), start_x, start_y, target_x, target_y (units), drawn (the workspace itself, as
 JSON: `workspaces.files.to_json`). Columns of a file of bounds: problem, straight_line, bound (units; infinite without a free path),
-least_length (what the checker's tolerance leaves of it), bound_path (the shortest path, flat as x0, y0, x1, y1, ...),
-the least of all lengths that count cells, `cell_length`, in units; otherwise not a number).
+least_length (the bound less an allowance for the checker's tolerance), bound_path (the shortest path, flat as x0, y0, x1, y1, ...),
+octile_bound (the least of all lengths counted in cells, `cell_length`, in units; NaN without a grid).
 """
 
 import math
@@ -21,9 +21,9 @@ from bezierplan.workspaces.problem import Problem, Workspace
 
 
 def build(name: str, description: dict, workspace: Workspace) -> Problem:
-    """A problem from its description: start and target, (x, y) in units, or start_cell and target_cell, numbers of a grid's cells.
+    """A problem from its description: start and target, (x, y) in units, or start_cell and target_cell, cell numbers of a grid.
 
-    Raises ValueError, naming key and value, unless start and target are free places of the workspace.
+    Raises ValueError, naming key and value, unless start and target lie in free space.
     """
     return Problem(name, workspace, _end("start", description, workspace), _end("target", description, workspace))
 
@@ -53,9 +53,9 @@ def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, floa
 
 
 def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, str]]:
-    """Problems and the names of their workspaces, both by problem, from their descriptions (`study.problems_job`).
+    """Problems and the names of their workspaces, both keyed by problem, from their descriptions (`study.problems_job`).
 
-    Map files are sought in a folder. Raises ValueError for a fault in any of them.
+    Map files are looked up in the folder. Raises ValueError for a fault in any of them.
     """
     fixed = {name: files.load(each, folder) for name, each in job["workspaces"].items() if not each["kind"].startswith("random_")}
     layouts: dict[tuple[str, int], Circles] = {}
@@ -80,12 +80,12 @@ def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, st
     return problems, {name: description["workspace"] for name, description in job["problems"].items()}
 
 
-# How near to the printed optimal length of a scenario ours must be, in cells.
+# Tolerance between our optimal length of a scenario and the printed one, in cells.
 _SAME_OPTIMUM = 1e-3
 
 
 def scenario(description: dict, number: int, workspace: Grid, folder: Path) -> dict:
-    """Start and target of a scenario. Raises ValueError if it does not fit the map, or its length is not ours."""
+    """Start and target of a scenario. Raises ValueError if it does not fit the map, or its length differs from ours."""
     from bezierplan.geometry import shortest_paths
 
     found = files.scenario(description, number, workspace, folder)
@@ -97,12 +97,12 @@ def scenario(description: dict, number: int, workspace: Grid, folder: Path) -> d
     return {"start": found.start, "target": found.target}
 
 
-# How near to the wanted length that of the shortest lattice path must be, in cells.
+# Tolerance between the shortest lattice path's length and the wanted one, in cells.
 _SAME_LENGTH = 1e-4
 
 
 def _block_map(description: dict, problem: dict, name: str) -> Grid:
-    """The first map of blocks whose shortest path over the 8-connected lattice has the wanted length, in cells, if one is wanted.
+    """The first map of blocks whose shortest path over the 8-connected lattice has the wanted length, in cells, if one is given.
 
     Raises ValueError if there is none.
     """
@@ -137,7 +137,7 @@ def write(problems: dict[str, Problem], workspaces: dict[str, str], file: str) -
 
 
 def read(file: str) -> dict[str, Problem]:
-    """The problems of a file, by name, in its order. Problems in the same workspace share it."""
+    """The problems of a file, by name, in file order. Problems in the same workspace share one object."""
     table = parquet.read_table(file).to_pylist()
     drawn = {text: files.from_json(text) for text in {row["drawn"] for row in table}}
     return {

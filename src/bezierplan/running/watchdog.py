@@ -1,8 +1,8 @@
 """End a process whose run takes too long, whatever it is doing.
 
-A compiled kernel gives nothing back to Python before it ends, so neither a signal handler nor a thread of the same process could act. The
-watchdog is a process of its own. It reads from a pipe which run has begun, costs a run two short writes, and ends with the process that it
-watches, whose pipe then closes.
+A compiled kernel does not yield to Python before it ends, so neither a signal handler nor a thread of the same process could act. The
+watchdog is therefore a separate process. It reads from a pipe which run has begun, costs a run two short writes, and ends with the
+process that it watches, whose pipe then closes.
 """
 
 import os
@@ -15,10 +15,10 @@ from contextlib import contextmanager
 
 @contextmanager
 def watching(limit: float | None) -> Iterator[Callable[[str], None]]:
-    """Give a function that is told what begins, and is called with an empty text when it has ended.
+    """Yield a function to call with the name of a run when it begins, and with an empty text when it ends.
 
-    What takes longer than `limit` seconds ends this process by SIGKILL, after one line that names it on stderr and in the file that this
-    process logs to, if it does. Without a limit nothing is watched.
+    A run longer than `limit` seconds ends this process by SIGKILL, after one line that names the run on stderr and in this process's log
+    file, if any. Without a limit nothing is watched.
     """
     if limit is None:
         yield lambda begun: None
@@ -27,7 +27,7 @@ def watching(limit: float | None) -> Iterator[Callable[[str], None]]:
     import subprocess
 
     log = next((each.baseFilename for each in logging.getLogger().handlers if isinstance(each, logging.FileHandler)), os.devnull)
-    # Neither the environment nor site-packages are read. A session of its own leaves it to the pipe when it ends.
+    # Neither the environment nor site-packages are read. In a session of its own, only the closing pipe ends the watchdog.
     command = [sys.executable, "-I", "-S", __file__, str(os.getpid()), str(limit), log]
     with subprocess.Popen(command, stdin=subprocess.PIPE, start_new_session=True) as watchdog:
 
@@ -38,7 +38,7 @@ def watching(limit: float | None) -> Iterator[Callable[[str], None]]:
 
 
 def _watch(process: int, limit: float, log: str) -> None:
-    """Read from stdin what begins, a line each, and end a process if no other line follows within the limit."""
+    """Read from stdin the name of each run that begins, one per line, and end a process if no line follows within the limit."""
     begun = b""
     while select.select([0], [], [], limit if begun else None)[0]:
         told = os.read(0, 1 << 16)

@@ -1,4 +1,4 @@
-"""Choices that a paper leaves open: which alternatives are tried, on which methods and claims."""
+"""Choices that a paper leaves open: which alternatives are tried, with which methods and claims."""
 
 import dataclasses
 import itertools
@@ -26,12 +26,12 @@ def tried(study: Study) -> list[str]:
 
 
 def assumption_of(study: Study, identity: str) -> Assumption:
-    """The assumption of that id."""
+    """The assumption with this id."""
     return next(assumption for assumption in study.assumptions if assumption.id == identity)
 
 
 def concerned(study: Study, assumption: Assumption) -> list[str]:
-    """Methods whose setting an assumption governs, baselines and variants apart; those that its default names, if it names any."""
+    """Methods whose setting an assumption governs, except baselines and variants; only those that its default names, if any."""
     methods = [name for name, method in study.methods.items() if name not in study.baselines and not method.variant_of]
     if isinstance(assumption.default, dict):
         methods = [method for method in methods if method in assumption.default]
@@ -55,13 +55,13 @@ def with_alternative(study: Study, name: str) -> Study:
 
 
 def headline_claims(study: Study, name: str) -> list[Claim]:
-    """The claims on which an alternative is tried, in their deciding variant alone."""
+    """The claims on which an alternative is tried, in their primary variant only."""
     wanted = assumption_of(study, alternatives(study)[name][0]).claims
     return [claim.but(variants={}) for claim in study.claims if claim.id in wanted]
 
 
 def alternatives_described(study: Study) -> dict[str, dict]:
-    """What `analysis.sensitivity` prints of each alternative, by its name."""
+    """What `analysis.sensitivity` prints about each alternative, by name."""
     described = {}
     for name in tried(study):
         identity, value = alternatives(study)[name]
@@ -72,7 +72,7 @@ def alternatives_described(study: Study) -> dict[str, dict]:
 
 
 def methods_of_claims(study: Study, claims: list[Claim], experiment: str) -> list[str]:
-    """Methods of an experiment without variants that claims compare; all of them where a check names none."""
+    """Methods of an experiment, without variants, that claims compare; all of them if a check names none."""
     methods = [name for name in study.experiments[experiment].methods if not study.methods[name].variant_of]
     named = set()
     for claim in claims:
@@ -83,7 +83,7 @@ def methods_of_claims(study: Study, claims: list[Claim], experiment: str) -> lis
 
 
 def _compared(study: Study, claim: Claim, check: Check) -> set[str]:
-    """Methods that a check names; of `rest` those of the claim's table."""
+    """Methods that a check names; for `rest`, those of the claim's table."""
     found = set(one_or_list(check.where.get("method", [])))
     if check.cells == "method":
         found.update(check.groups_named)
@@ -94,7 +94,7 @@ def _compared(study: Study, claim: Claim, check: Check) -> set[str]:
 
 
 def experiments_of_claims(claims: list[Claim]) -> list[str]:
-    """Names of the experiments on whose runs claims are judged, each once, in order; variants may name further ones."""
+    """Names of the experiments whose runs decide claims, each once, in order; variants may name more."""
     named = [name for claim in claims for check in claim.checks for name in check.experiments]
     named += itertools.chain.from_iterable(one_or_list(value) for claim in claims for value in claim.variants.get("experiment", []))
     return list(dict.fromkeys(named))

@@ -1,4 +1,4 @@
-"""What `artefacts.yaml` says: tables and figures, and how names are printed."""
+"""Models of `artefacts.yaml`: tables and figures, and how names are printed."""
 
 from typing import Annotated, ClassVar, Literal
 
@@ -28,7 +28,7 @@ Columns = listed(Annotated[Name, Names("level")], least=0)
 
 
 class Table(Model):
-    """Keys of a table of every kind. smoke: the kind as which the small subset counts it."""
+    """Keys common to all kinds of table. smoke: the kind that it represents in the small subset."""
 
     smoke: ClassVar[str] = ""
 
@@ -71,14 +71,14 @@ class Pivot(Table):
 
 
 class Transcribed(Table):
-    """A published file as it stands."""
+    """A published file, unchanged."""
 
     kind: Literal["transcribed"] = Field(description="transcribed")
     published: PublishedFile = Field(description="a file in the study's folder `published`")
 
 
 class FunctionTable(Table):
-    """What a function of the study's module returns."""
+    """The result of a function in the study's module."""
 
     kind: Literal["function"] = Field(description="function")
     function: Function = Field(
@@ -87,7 +87,7 @@ class FunctionTable(Table):
 
 
 class Comparison(Table):
-    """The published numbers of other tables beside ours, with the range that experiments of the paper's size give."""
+    """The published numbers of other tables next to ours, with prediction intervals for experiments of the paper's size."""
 
     kind: Literal["comparison"] = Field(description="comparison")
     of: listed(Annotated[Name, Names("compared")]) = Field(description="a list of tables with published numbers")

@@ -1,8 +1,8 @@
-"""YAML files read strictly, within stated limits; every fault in one line that says where it is.
+"""YAML files read strictly, within stated limits; every fault is reported in one line with its place.
 
-YAML is written by people and read from folders of unknown origin, so what could stop the reader is refused before it is built: files
-that are no regular files, long ones, deep nesting, and aliases that stand for more than a file could hold. Tags are not read, for plain
-scalars have their types without them.
+YAML is written by people and read from folders of unknown origin, so anything that could overload the reader is rejected before it is
+built: files that are not regular, long files, deep nesting, and aliases that expand beyond what a file could hold. Tags are not
+supported, because plain scalars get their types without them.
 """
 
 import difflib
@@ -23,14 +23,14 @@ MOST_NODES = 200_000
 
 
 class Fault(ValueError):
-    """Something in a file that a reader has to mend, in one line: whatever the file holds, no character of it breaks the line."""
+    """A problem in a file that the user must fix, in one line: no character from the file can break the line."""
 
     def __init__(self, text: str) -> None:
         super().__init__("".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text))
 
 
 class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):
-    """YAML 1.2's plain scalars: `no` is a word, `0_15` is a word, `010` is ten, `1e-3` is a number; a key may stand only once."""
+    """YAML 1.2's plain scalars: `no` is a word, `0_15` is a word, `010` is ten, `1e-3` is a number; a key may occur only once."""
 
 
 _Loader.yaml_implicit_resolvers = {}
@@ -60,12 +60,12 @@ _Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
 
 
 def read(file: Path, place: str | None = None) -> Any:
-    """The content of a YAML file. Raises Fault, beginning with a place, the file's name unless given."""
+    """The content of a YAML file. Raises Fault, beginning with the place (by default the file's name)."""
     return parse(text_of(file, place or str(file)), place or str(file))
 
 
 def text_of(file: Path, place: str) -> str:
-    """The text of a file. Raises Fault, beginning with a place, for what is no regular file of text of at most `LONGEST_FILE` bytes."""
+    """The text of a file. Raises Fault, beginning with a place, unless it is a regular text file of at most `LONGEST_FILE` bytes."""
     try:
         found = file.stat()
         if not stat.S_ISREG(found.st_mode):
@@ -84,7 +84,7 @@ def parse(text: str, place: str) -> Any:
         return yaml.load(text, _Loader)
     except yaml.MarkedYAMLError as error:
         raise Fault(f"{_line(place, error.problem_mark)}: {error.problem}") from None
-    except yaml.YAMLError as error:  # characters that YAML does not allow
+    except yaml.YAMLError as error:  # characters not allowed in YAML
         raise Fault(f"{place}: not YAML ({str(error).splitlines()[0]})") from None
 
 
@@ -93,9 +93,9 @@ def _line(place: str, mark: Any) -> str:
 
 
 def _check_size(text: str, place: str) -> None:
-    """Raise Fault for nesting, aliases and tags beyond the limits, from the events alone: nothing of it is built."""
+    """Raise Fault for nesting and aliases beyond the limits, and for tags, from the events alone, before anything is built."""
     sizes: dict[str, int] = {}  # of nodes with an anchor
-    opened = [("", 0)]  # anchor and values so far of what is open
+    opened = [("", 0)]  # anchor and value count so far of each open node
     for event in yaml.parse(text, _Loader):
         anchor, size = getattr(event, "anchor", None) or "", 0
         if getattr(event, "tag", None):

@@ -1,5 +1,5 @@
-"""What no file of a study can say by itself: names that stand in other files, planners and their settings, places that are free, published
-numbers that fit. Every fault is reported in one line.
+"""Checks across the files of a study: names defined in other files, planners and their settings, free places, matching published
+numbers. Every fault is reported in one line.
 """
 
 import importlib
@@ -29,7 +29,7 @@ from bezierplan.workspaces.problem import Problem
 
 
 def check(study: Study) -> None:
-    """Raise Fault for what is wrong in a study whose files are right by themselves."""
+    """Raise Fault for anything wrong in a study whose files are each valid on their own."""
     _check_experiments(study, relative(study.folder / "experiments.yaml"))
     design, functions = Design(study), _functions(study)
     place = relative(study.folder / "artefacts.yaml")
@@ -51,7 +51,7 @@ def check(study: Study) -> None:
 
 
 def _check_ids(entries: Sequence[Claim] | Sequence[Assumption], place: str) -> None:
-    """Every id stands once, for alternatives and results are found by it."""
+    """Every id is unique, because alternatives and results are looked up by it."""
     ids = [entry.id for entry in entries]
     for number, identity in enumerate(ids):
         if identity in ids[:number]:
@@ -99,7 +99,7 @@ def _check_experiments(study: Study, place: str) -> None:
 
 
 def _check_shared_settings(study: Study, used: set[str], place: str) -> None:
-    """Settings of all methods, of a planner's methods, and of presets are settings that a planner has."""
+    """Settings of all methods, of a planner's methods, and of presets exist in some planner."""
     for setting in study.settings:
         if setting not in used:
             raise Fault(f"{place}: settings: {setting}: no planner of this study has this setting{closest(setting, used)}")
@@ -116,7 +116,7 @@ def _check_shared_settings(study: Study, used: set[str], place: str) -> None:
 
 
 def _check_workspace(study: Study, name: str, place: str) -> None:
-    """A fixed workspace can be loaded; random ones are drawn with the problems."""
+    """A fixed workspace loads; random ones are drawn with the problems."""
     workspace = study.workspaces[name]
     for key, file in files_of(workspace).items():
         inside(study.folder, file, f"{place}: {key}: {file}")
@@ -128,7 +128,7 @@ def _check_workspace(study: Study, name: str, place: str) -> None:
 
 
 def _check_problem(study: Study, built: Callable[[str], Problem], name: str, place: str) -> None:
-    """Start and target are free, in the first layout where the workspace is drawn."""
+    """Start and target are free; in the first layout if the workspace is random."""
     problem, home = study.problems[name], study.workspace_of(name)
     drawn = [kind for kind, model in WORKSPACES.items() if model.drawn]
     if bool(home.drawn) != (problem.layouts is not None):
@@ -151,7 +151,7 @@ def _check_problem(study: Study, built: Callable[[str], Problem], name: str, pla
 
 
 def _built(study: Study, name: str) -> Problem:
-    """A problem as planners meet it, in the first layout where the workspace is drawn. Raises ValueError."""
+    """A problem as planners see it, in the first layout if the workspace is random. Raises ValueError."""
     problem, home = study.problems[name], study.workspace_of(name)
     drawn = {"layout": 0, "obstacles": max(problem.obstacles)} if home.drawn else {}
     described = {name: problem.plain("settings", "layouts") | drawn}
@@ -178,7 +178,7 @@ def _check_experiment(study: Study, built: Callable[[str], Problem], name: str, 
 
 
 def _check_method_in(study: Study, built: Callable[[str], Problem], name: str, method: str, place: str) -> None:
-    """A method's planner serves the problems of an experiment, and its settings are right under every condition."""
+    """A method's planner supports the problems of an experiment, and its settings are valid under every condition."""
     module, experiment = planner_module(study.planner(method)), study.experiments[name]
     for problem in experiment.problems:
         kind = study.kind_of(problem)
@@ -188,18 +188,18 @@ def _check_method_in(study: Study, built: Callable[[str], Problem], name: str, m
         if hasattr(module, "serves"):
             asked(module.serves, f"{place}: methods: {method}: problem {problem}", built(problem))
     described = job(study, name, method, "full", 0)
-    # One problem for each set of settings that go with problems.
+    # One problem for each distinct set of problem settings.
     apart = {str(met.get("settings")): problem for problem, met in reversed(described["problems"].items())}
     for condition in conditions(list(apart.values()), experiment.vary):
         where = f"{place}: vary: {condition.name}: {method}" if condition.values else f"{place}: methods: {method}"
         check_settings(module, settings_in(described, condition), where)
 
 
-# Names that stand elsewhere, in artefacts.yaml and claims.yaml
+# Names defined elsewhere, in artefacts.yaml and claims.yaml
 
 
 def _check_names(design: Design, functions: list[str], model: Model, place: str) -> None:
-    """Names in a model are those of something. Of a panel that shows no runs the columns are a function's own."""
+    """Names in a model refer to something that exists. The columns of a panel without runs belong to its function."""
     study = design.study
     experiments = one_or_list(getattr(model, "experiment", None) or [])
     known: Mapping[str, Iterable[str]] = {
@@ -229,7 +229,7 @@ def _check_names(design: Design, functions: list[str], model: Model, place: str)
 
 
 def _at(place: str, path: tuple[str, ...]) -> str:
-    """The keys that lead to a name in a list, which is known by itself, without its number; those of lists of mappings stay."""
+    """The keys that lead to a name, without its index if it is in a list of names; indices in lists of mappings stay."""
     return ": ".join([place, *(path[:-1] if path[-1].isdecimal() else path)])
 
 
@@ -263,7 +263,7 @@ def _check_claim(design: Design, functions: list[str], claim: Claim, place: str)
 
 
 def check_assumption(study: Study, assumption: Assumption, place: str) -> None:
-    """An assumption's claims are claims of the study, its default is in force, and every alternative is a legal value of its setting."""
+    """An assumption's claims belong to the study, its default is in force, and every alternative is a valid value of its setting."""
     for identity in assumption.claims:
         _known(identity, [claim.id for claim in study.claims], f"{place}: claims")
     if not assumption.setting:
@@ -285,8 +285,8 @@ def check_assumption(study: Study, assumption: Assumption, place: str) -> None:
 
 
 def _check_in_force(study: Study, assumption: Assumption, methods: list[str], place: str) -> None:
-    """The default is what runs get: those of each method that it names; without names those of the methods that have no value of their own
-    or, if all have one, of one of them.
+    """The default is what runs use: those of each method that it names; without names, those of the methods without a value of their own
+    or, if all have one, of at least one of them.
     """
     in_force = {method: study.resolved(method)[assumption.setting] for method in methods}
     default = assumption.default

@@ -1,6 +1,6 @@
-"""What `claims.yaml` and `assumptions.yaml` say: sentences of a paper as checks, and what a paper leaves open.
+"""Models of `claims.yaml` and `assumptions.yaml`: sentences of a paper as checks, and what a paper leaves open.
 
-Each kind of check has its own keys, which stand beside what it does (`analysis.claims.kinds`).
+Each kind of check has its own keys, defined next to its code (`analysis.claims.kinds`).
 """
 
 from typing import Annotated, Any, Literal
@@ -72,7 +72,7 @@ class ClaimsFile(Model):
 
 
 class Assumption(Model):
-    """What a paper leaves open, and what is in force here."""
+    """What a paper leaves open, and the choice in force here."""
 
     id: Annotated[str, matching(r"^[OM][1-9][0-9]*[a-z]?$", "O or M and a number")] = Field(
         description="O or M and a number, such as O1; O1b for a second setting of the same point"

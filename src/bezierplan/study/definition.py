@@ -1,4 +1,4 @@
-"""A study as its files say it."""
+"""A study as defined by its files."""
 
 import importlib.util
 import itertools
@@ -17,10 +17,10 @@ from bezierplan.workspaces import files
 
 @dataclass(frozen=True)
 class Study:
-    """A study as its files say it: a paper of this project or a reader's own folder of the same form (config/README.md).
+    """A study as defined by its files: a paper of this project or a user's own folder of the same form (config/README.md).
 
-    key: its name; folder: where it lies; the others: experiments.yaml, artefacts.yaml, claims.yaml and assumptions.yaml. methods:
-    baselines as well; baselines: their names. settings: of all methods; planner_settings: planner -> settings of its methods alone.
+    key: its name; folder: its location; the others: experiments.yaml, artefacts.yaml, claims.yaml and assumptions.yaml. methods:
+    includes baselines; baselines: their names. settings: of all methods; planner_settings: planner -> settings of its methods only.
     """
 
     key: str
@@ -41,28 +41,28 @@ class Study:
     assumptions: list[Assumption]
 
     def accepted(self, method: str) -> dict[str, Any]:
-        """Settings that the planner of a method has, with their annotations."""
+        """Settings accepted by a method's planner, with their annotations."""
         return planner_settings(planner_module(self.planner(method)))
 
     def resolved(self, method: str) -> dict[str, Any]:
-        """All settings of a method, by name: the study's where its planner has them, those of its planner, and its own."""
+        """All settings of a method, by name: the study's that its planner accepts, those of its planner, and its own."""
         accepted = self.accepted(method)
         common = {name: value for name, value in self.settings.items() if name in accepted}
         return common | self.planner_settings.get(self.methods[method].planner, {}) | self.methods[method].settings
 
     def planner(self, method: str) -> str:
-        """The planner of a method: a name, or the path of a file as seen from here."""
+        """The planner of a method: a name, or the path of a file relative to the working folder."""
         planner = self.methods[method].planner
         return relative(self.folder / planner) if planner.endswith(".py") else planner
 
     def methods_of(self, experiment: str) -> list[str]:
-        """Methods of an experiment, and behind them the baselines that serve all its workspaces."""
+        """Methods of an experiment, followed by the baselines that support all its workspaces."""
         content = self.experiments[experiment]
         kinds = {self.kind_of(problem) for problem in content.problems}
         return content.methods + [name for name in self.methods if name in self.baselines and self._serves(name, kinds, content)]
 
     def _serves(self, baseline: str, kinds: set[str], experiment: Experiment) -> bool:
-        """Whether a baseline can join: its planner serves these kinds of workspace, and has no setting that the experiment varies."""
+        """Whether a baseline can join: its planner supports these kinds of workspace, and has no setting that the experiment varies."""
         module = planner_module(self.planner(baseline))
         varied = set(experiment.vary) & set(planner_settings(module))
         return kinds <= set(getattr(module, "workspaces", kinds)) and not varied
@@ -72,12 +72,12 @@ class Study:
         return self.workspaces[self.problems[problem].workspace]
 
     def kind_of(self, problem: str) -> str:
-        """The kind of workspace that planners meet in a problem."""
+        """The kind of workspace that planners see in a problem."""
         workspace = self.workspace_of(problem)
         return workspace.drawn or workspace.made or workspace.kind
 
     def problems_of(self, experiment: str, scale: str) -> dict[str, dict]:
-        """Descriptions of an experiment's problems, by name, as plain values. One with layouts stands for a problem each layout and
+        """Descriptions of an experiment's problems, by name, as plain values. One with layouts expands to a problem for each layout and
         number of obstacles.
         """
         described = {}
@@ -92,29 +92,29 @@ class Study:
         return described
 
     def maps(self, workspaces: Iterable[str]) -> list[str]:
-        """Map files of workspaces as seen from here, each once."""
+        """Map files of workspaces relative to the working folder, each once."""
         described = [self.workspaces[name].plain() for name in workspaces]
         return sorted({relative(file) for each in described for file in files.sources(each, self.folder)})
 
     def compared(self) -> dict[str, Pivot]:
-        """The tables of runs, which are compared with published numbers; the others stand for themselves (`listing_job`)."""
+        """The tables of runs, which are compared with published numbers; for the others see `listing_job`."""
         return {name: table for name, table in self.tables.items() if isinstance(table, Pivot)}
 
     def published_file(self, table: str) -> str | None:
-        """The file of a table's published numbers as seen from here, or None."""
+        """The file of a table's published numbers relative to the working folder, or None."""
         file = getattr(self.tables[table], "published", None)
         return file and relative(self.folder / "published" / file)
 
     def published_files(self) -> list[str]:
-        """All files of published numbers as seen from here."""
+        """All files of published numbers, relative to the working folder."""
         return [relative(file) for file in sorted((self.folder / "published").glob("*.csv"))]
 
     def variants(self) -> dict[str, str]:
-        """Method -> the method whose published numbers it stands beside."""
+        """Method -> the method whose published numbers it is compared with."""
         return {name: method.variant_of for name, method in self.methods.items() if method.variant_of}
 
     def module(self) -> str | None:
-        """The module with what only this study needs, or None."""
+        """The study's own module, or None."""
         name = f"bezierplan.analysis.papers.{self.key}"
         return name if importlib.util.find_spec(name) else None
 
@@ -125,6 +125,6 @@ def files_of(workspace: Workspace) -> dict[str, str]:
 
 
 def relative(path: Path) -> str:
-    """A path from the working folder if it lies inside, so that a moved tree finds its results again; otherwise as it is."""
+    """A path relative to the working folder if it lies inside, so that a moved tree still finds its results; otherwise unchanged."""
     here = os.path.relpath(path)
     return str(path) if here.startswith("..") else here

@@ -1,4 +1,4 @@
-"""The runs of an experiment before any is made: methods, problems, settings, and what selects or mixes them."""
+"""The planned runs of an experiment: methods, problems, settings, and how they are selected or mixed."""
 
 from functools import cache
 from typing import Any
@@ -15,15 +15,15 @@ from bezierplan.study.model import one_or_list
 
 Row = dict[str, Any]
 
-# What one unit of a comparison has one value of; several, and their runs would be mixed without a word.
+# Columns with one value per unit of a comparison; several values would silently mix their runs.
 _FACTORS = ("experiment", "condition", "method")
-# Columns of which a design does not hold every value.
+# Columns for which a design does not hold every value.
 _MANY = ("repeat", "layout", "problem", "condition", "id")
 
 
 class Design:
-    """The runs of a study's experiments, one row each, without repeats; of a problem that is drawn several times two layouts stand for
-    all.
+    """The runs of a study's experiments, one row each, without repeats; two layouts represent all layouts of a problem that is drawn
+    several times.
     """
 
     def __init__(self, study: Study) -> None:
@@ -65,11 +65,11 @@ class Design:
         )
 
     def check_where(self, experiments: list[str], where: dict[str, Any], place: str, *, baselines: bool = True) -> None:
-        """A selection names columns, values that runs have, and not a combination that no run has. Raises Fault, beginning with a place."""
+        """A selection names existing columns and values, in a combination that some run has. Raises Fault, beginning with a place."""
         known = frozenset().union(*map(self.columns, experiments))
         rows = self.selectable(experiments, baselines)
         for column, wanted in where.items():
-            # A condition may also be on an outcome, which some planners alone report.
+            # A condition may also concern an outcome, which only some planners report.
             if column not in known and column not in METRICS:
                 raise Fault(f"{place}: {column}: unknown{closest(column, known)}")
             values = self.values(experiments, column, rows)
@@ -82,12 +82,12 @@ class Design:
             )
 
     def selectable(self, experiments: list[str], baselines: bool) -> list[Row]:
-        """Rows of experiments; those of baselines are no part of claims."""
+        """Rows of experiments; claims do not include those of baselines."""
         rows = [row for name in experiments for row in self.rows(name)]
         return [row for row in rows if baselines or row["method"] not in self.study.baselines]
 
     def values(self, experiments: list[str], column: str, rows: list[Row]) -> list[Any]:
-        """All values that a column has in rows of experiments; none where a design does not hold them."""
+        """All values of a column in rows of experiments; empty if a design does not hold them."""
         if column == "problem":
             return [name for experiment in experiments for name in self.study.problems_of(experiment, "full")]
         if column in _MANY or all(column not in row for row in rows):
@@ -95,13 +95,13 @@ class Design:
         return list({repr(row[column]): row[column] for row in rows if column in row}.values())
 
     def hint(self, value: Any, values: list[Any]) -> str:
-        """`; did you mean ...?` for a value of a column; a baseline that stands where methods are compared is named as such."""
+        """`; did you mean ...?` for a value of a column; a baseline named among compared methods is pointed out as such."""
         if value in self.study.baselines:
             return f" here: a baseline; claims compare methods, known: {', '.join(map(str, values))}"
         return closest(value, values)
 
     def check_mixtures(self, check: Check, where: dict[str, Any], place: str) -> None:
-        """What a unit of a comparison, told apart by the check's columns, has several of would be mixed. Raises Fault."""
+        """Raise Fault if a unit of a comparison, as identified by the check's columns, would mix several values of a column."""
         keys = [*check.every, *getattr(check, "pool", ()), *([check.cells] if check.cells else []), check.replicate]
         rows = [row for row in self.selectable(check.experiments, baselines=False) if _fits(row, where)]
         found: dict[tuple, Row] = {}
@@ -114,7 +114,7 @@ class Design:
 
 
 def _fits(row: Row, where: dict[str, Any]) -> bool:
-    """Whether a run is of the conditions of a selection, as far as that can be told before it is made."""
+    """Whether a run matches the conditions of a selection, as far as that is known before it is run."""
     for column, wanted in where.items():
         outcome = column in METRICS or (column in RUN_COLUMNS and column not in row) or column in ("repeat", "layout")
         drawn = column == "problem" and "layout" in row
@@ -124,7 +124,7 @@ def _fits(row: Row, where: dict[str, Any]) -> bool:
 
 
 def in_first_variant(claim: Claim, check: Check) -> dict[str, Any]:
-    """The selection of a check in the deciding variant: a column of which no check names the first value is one more condition."""
+    """The selection of a check in the primary variant: a column whose first value no check names becomes one more condition."""
     extra = {}
     for column, values in claim.variants.items():
         firsts = one_or_list(values[0])

@@ -1,4 +1,4 @@
-"""What `experiments.yaml` says: methods, workspaces, problems, experiments."""
+"""Models of `experiments.yaml`: methods, workspaces, problems, experiments."""
 
 import math
 from typing import Annotated, Any, ClassVar, Literal
@@ -66,8 +66,8 @@ class Method(Model):
 
 
 class Workspace(Model):
-    """What every description of a workspace has. drawn: of one that is drawn at random, the kind that planners meet; made: of one that is
-    made from files of another form, the kind that planners meet; with_side: whether its problems have a `side`.
+    """Keys common to all workspaces. drawn: for a random workspace, the kind that planners see; made: for one converted from files of
+    another format, the kind that planners see; with_side: whether its problems have a `side`.
     """
 
     drawn: ClassVar[str | None] = None
@@ -102,7 +102,7 @@ class PolygonMap(Workspace):
 
 
 class Raster(Workspace):
-    """Cells drawn from polygons."""
+    """Cells rasterized from polygons."""
 
     made: ClassVar[str] = "grid"
 
@@ -245,7 +245,7 @@ class Experiment(Model):
 
     @property
     def paired(self) -> bool:
-        """Do runs of equal repeats share a seed?"""
+        """Whether runs with equal repeat numbers share a seed."""
         return self.seeds != "own"
 
 

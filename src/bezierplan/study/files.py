@@ -6,8 +6,8 @@ from bezierplan.study.checked import LONGEST_FILE, Fault
 
 
 def inside(folder: Path, name: str, place: str) -> Path:
-    """A file of a study's folder. Raises Fault, beginning with a place, for one that is not there, that lies outside the folder, also by
-    a link, for what is no regular file, and for one of more than `LONGEST_FILE` bytes.
+    """A file in a study's folder. Raises Fault, beginning with a place, if it is missing, lies outside the folder (also through a link), is
+    not a regular file, or has more than `LONGEST_FILE` bytes.
     """
     file = folder / name
     try:

@@ -1,6 +1,6 @@
 """The jobs, inputs and targets that follow from a study.
 
-What a script gets to see is a job: plain values only, so that Snakemake can tell whether one changed.
+A script receives a job: plain values only, so that Snakemake can detect changes.
 """
 
 import itertools
@@ -15,7 +15,7 @@ from bezierplan.study.model import one_or_list
 
 
 def problems_job(study: Study, experiment: str, scale: str) -> dict:
-    """What the problems of an experiment depend on, the content of map files apart."""
+    """What the problems of an experiment depend on, except the content of map files."""
     described = {
         name: {key: value for key, value in problem.items() if key != "settings"}
         for name, problem in study.problems_of(experiment, scale).items()
@@ -25,7 +25,7 @@ def problems_job(study: Study, experiment: str, scale: str) -> dict:
 
 
 def job(study: Study, experiment: str, method: str, scale: str, chunk: int) -> dict:
-    """A chunk of runs, as `running.run_chunk` takes it. A chunk is run whole, whatever the number of repeats asked for."""
+    """A chunk of runs, as `running.run_chunk` takes it. A chunk always runs whole, whatever the number of requested repeats."""
     content = study.experiments[experiment]
     size = content.chunk[scale]
     return {
@@ -44,7 +44,7 @@ def job(study: Study, experiment: str, method: str, scale: str, chunk: int) -> d
 
 
 def _problems_met(study: Study, experiment: str, method: str, scale: str) -> dict[str, dict]:
-    """Places of an experiment's problems, by name, with the settings that go with them where a method leaves these open."""
+    """Places of an experiment's problems, by name, with those of their settings that a method leaves open."""
     accepted = study.accepted(method).keys() - study.methods[method].settings.keys()
     met = {}
     for name, problem in study.problems_of(experiment, scale).items():
@@ -54,21 +54,21 @@ def _problems_met(study: Study, experiment: str, method: str, scale: str) -> dic
 
 
 def _place(problem: dict) -> dict:
-    """What the runs table says of a problem's place."""
+    """What the runs table records about a problem's place."""
     return {key: problem[key] for key in PLACE if key in problem}
 
 
 def chunks(study: Study, experiment: str, scale: str) -> range:
-    """Numbers of the chunks that hold the repeats of an experiment at a scale."""
+    """Numbers of the chunks that contain an experiment's repeats at a scale."""
     content = study.experiments[experiment]
     return range(-(-content.repeats[scale] // content.chunk[scale]))
 
 
 def table_job(study: Study, table: str, scale: str) -> dict:
-    """What a table depends on beside runs, problems, bounds and the file of published numbers."""
+    """What a table depends on in addition to runs, problems, bounds and the file of published numbers."""
     spec = study.compared()[table]
     experiment = study.experiments[spec.experiment]
-    # The experiment's own methods unless the table chooses: baselines stand in the comparison alone.
+    # The experiment's own methods unless the table selects some: baselines appear only in the comparison.
     where = {"method": experiment.methods} | spec.where
     return {
         "name": f"{study.key}/{table}",
@@ -82,12 +82,12 @@ def table_job(study: Study, table: str, scale: str) -> dict:
 
 
 def listing_job(study: Study, table: str) -> dict:
-    """What a table depends on that shows no runs, beside the files of published numbers."""
+    """What a table without runs depends on, in addition to the files of published numbers."""
     return {"spec": study.tables[table].plain(), "module": study.module(), "labels": study.labels}
 
 
 def figure_job(study: Study, figure: str, scale: str) -> dict:
-    """What a figure depends on beside runs, problems and bounds, and map files where it draws a workspace without runs."""
+    """What a figure depends on in addition to runs, problems and bounds, and to map files if it draws a workspace without runs."""
     spec = study.figures[figure]
     experiments = experiments_of(study, figure)
     bare = sorted({panel.workspace for panel in spec.panels if getattr(panel, "workspace", None)})
@@ -103,13 +103,13 @@ def figure_job(study: Study, figure: str, scale: str) -> dict:
 
 
 def _jobs_rerun(study: Study, figure: str, scale: str) -> dict[str, dict[str, dict]]:
-    """The jobs of runs that a figure repeats, to draw what no table keeps: experiment -> method -> job."""
+    """The jobs whose runs a figure reruns, to draw what no table keeps: experiment -> method -> job."""
     again = {panel.experiment for panel in study.figures[figure].panels if panel.rerun}
     return {name: {method: job(study, name, method, scale, 0) for method in methods_of(study, figure, name)} for name in sorted(again)}
 
 
 def _unit(study: Study, experiment: str) -> str:
-    """The unit of length of an experiment, that of its first problem's workspace."""
+    """The unit of length of an experiment: that of its first problem's workspace."""
     return study.workspace_of(study.experiments[experiment].problems[0]).unit
 
 
@@ -122,8 +122,8 @@ def experiments_of(study: Study, artefact: str) -> list[str]:
 
 
 def methods_of(study: Study, artefact: str, experiment: str) -> list[str]:
-    """Methods of an experiment whose runs an artefact needs: of a table all (the comparison shows them), of a figure those it selects, by
-    name baselines too.
+    """Methods of an experiment whose runs an artefact needs: all for a table (the comparison shows them), for a figure those it selects,
+    including baselines if named.
     """
     if artefact in study.tables:
         return study.methods_of(experiment)
@@ -136,7 +136,7 @@ def methods_of(study: Study, artefact: str, experiment: str) -> list[str]:
 
 
 def claims_job(study: Study, claims: list[Claim]) -> dict:
-    """What claims depend on beside runs, problems, bounds and the files of published numbers."""
+    """What claims depend on in addition to runs, problems, bounds and the files of published numbers."""
     experiments = {name: study.experiments[name] for name in experiments_of_claims(claims)}
     return {
         "study": study.key,
@@ -151,7 +151,7 @@ def claims_job(study: Study, claims: list[Claim]) -> dict:
 
 
 def kind_of(study: Study, artefact: str) -> str:
-    """The kind of a table, or of the first panel of a figure; of a comparison that of the tables which it is of."""
+    """The kind of a table, or of the first panel of a figure; for a comparison, the kind of its tables."""
     if artefact in study.figures:
         return study.figures[artefact].panels[0].kind
     table = study.tables[artefact]
@@ -181,7 +181,7 @@ def smoke(studies: dict[str, Study]) -> tuple[list[tuple[str, str]], list[tuple[
 
 
 def caption(study: Study, artefact: str, scale: str) -> str:
-    """What stands below a table or figure: its title, and the methods, settings and repeats in force."""
+    """The caption of a table or figure: its title, and the methods, settings and repeats in force."""
     sentences = [(study.tables.get(artefact) or study.figures[artefact]).title]
     for experiment in experiments_of(study, artefact):
         content = study.experiments[experiment]
@@ -206,5 +206,5 @@ def _listed(settings: dict[str, Any], before: str) -> str:
 
 
 def published_drawn(study: Study, figure: str) -> bool:
-    """Does a figure show published numbers?"""
+    """Whether a figure shows published numbers."""
     return any(panel.published_drawn or getattr(panel, "published", False) for panel in study.figures[figure].panels)

@@ -1,5 +1,5 @@
-"""The tables of keys in config/README.md, made from the models: `python -m bezierplan.study.keys` renews them, and a test holds that they
-are up to date.
+"""The tables of keys in config/README.md, generated from the models: `python -m bezierplan.study.keys` updates them, and a test ensures
+that they are up to date.
 """
 
 import re
@@ -38,7 +38,7 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
 }
 """File -> its tables: what stands above, and the model of a mapping or those of its kinds."""
 
-# Keys that stand above a table of kinds.
+# Keys listed above a table of kinds.
 _ABOVE = ("kind", "test", "unit", "title")
 
 
@@ -54,7 +54,7 @@ def _table(model: type[Model]) -> str:
 
 
 def _by_kind(models: dict[str, type[Model]]) -> str:
-    """A row for each key, with the kinds in which it means this."""
+    """A row for each key, with the kinds in which it has this meaning."""
     rows: dict[tuple[str, str | None], list[str]] = {}
     for kind, model in models.items():
         for name, field in keys(model).items():
@@ -67,7 +67,7 @@ def _by_kind(models: dict[str, type[Model]]) -> str:
 
 
 def _name(name: str, field: FieldInfo) -> str:
-    """A key that must be there is bold."""
+    """A required key is bold."""
     return f"**`{name}`**" if field.is_required() else f"`{name}`"
 
 
@@ -76,7 +76,7 @@ def _between(content: str, marks: re.Match) -> str:
 
 
 def renewed(text: str) -> str:
-    """The text of config/README.md with the tables as the models have them now."""
+    """The text of config/README.md with tables that match the current models."""
     for name in GROUPS:
         marked = re.compile(rf"(<!-- keys of {name}\.yaml -->\n).*?(<!-- /keys -->)", re.DOTALL)
         text = marked.sub(partial(_between, described(name)), text)

@@ -1,11 +1,11 @@
-"""What mappings in files may say, as frozen classes, one a kind of mapping, whose fields are the keys.
+"""Mappings in files as frozen classes, one per kind of mapping, whose fields are the keys.
 
-pydantic makes them. Snakemake has loaded it already when a study is read, so it costs the start nothing (msgspec would take 0.05 s of
-its own), and it reports every fault as a record of kind, place and input, from which one line is made here that names place, key, value
-and what would be right. msgspec ends at the first fault, and a misspelt key is then reported as a missing one.
+They are built with pydantic. Snakemake has already loaded it when a study is read, so it adds nothing to the start-up time (msgspec
+would add 0.05 s), and it reports every fault as a record of kind, place and input, from which this module makes one line that names
+place, key, value and what would be right. msgspec stops at the first fault and then reports a misspelt key as a missing one.
 
-The description of a field is written once and serves three ends: the message about a wrong value, the tables of config/README.md, and
-whoever reads the class. The types below refuse what `pydantic` would convert: a number stays the whole number or the fraction that was
+The description of a field is written once and serves three purposes: the message about a wrong value, the tables of config/README.md,
+and the reader of the class. The types below reject what `pydantic` would convert: a number stays the integer or the decimal that was
 written.
 """
 
@@ -26,14 +26,14 @@ LONGEST_VALUE = 100
 
 
 class Model(BaseModel):
-    """A mapping with the fields as its keys and no others. Raises Fault from `parsed` alone."""
+    """A mapping whose keys are exactly the fields. Only `parsed` raises Fault."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
     @model_validator(mode="before")
     @classmethod
     def _check_keys(cls, given: Any) -> Any:
-        """Unknown keys first: a misspelt one is also a missing one."""
+        """Report unknown keys first: a misspelt key is also a missing one."""
         fields = keys(cls)
         if not isinstance(given, dict):
             raise wrong(
@@ -52,7 +52,7 @@ class Model(BaseModel):
     @field_validator("*", mode="wrap")
     @classmethod
     def _describe(cls, value: Any, handler: Callable[[Any], Any], info: Any) -> Any:
-        """Report a value that is wrong as a whole by the description of its field."""
+        """Report a value that is wrong as a whole with the description of its field."""
         try:
             return handler(value)
         except ValidationError as error:
@@ -62,13 +62,13 @@ class Model(BaseModel):
             raise wrong(_fault(error.errors(include_url=False)[0], field)) from None
 
     def plain(self, *without: str) -> dict[str, Any]:
-        """The mapping as it was written, of plain values, for jobs; some keys can be left out."""
+        """The mapping as written, in plain values, for jobs; some keys can be left out."""
         fields = type(self).model_fields.items()
         given = {field.alias or name: getattr(self, name) for name, field in fields if name in self.model_fields_set}
         return {key: plain(value) for key, value in given.items() if key not in without}
 
     def but(self, **changed: Any) -> Self:
-        """The same with other values, which are not checked."""
+        """A copy with changed values, which are not checked."""
         return self.model_copy(update=changed)
 
 
@@ -81,7 +81,7 @@ def keys(model: type[Model]) -> dict[str, FieldInfo]:
 
 
 def plain(value: Any) -> Any:
-    """Models as mappings, wherever they stand in lists and mappings."""
+    """Models as mappings, also inside lists and mappings."""
     if isinstance(value, Model):
         return value.plain()
     if isinstance(value, dict):
@@ -94,14 +94,14 @@ def parsed(model: type[M], content: Any, place: str) -> M:
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        # Behind a key that is wrong itself pydantic puts `[key]`.
+        # After a key that is itself wrong, pydantic puts `[key]`.
         faults = [([str(key) for key in fault["loc"] if key != "[key]"], _fault(fault, None)) for fault in error.errors(include_url=False)]
         path, text = min(faults, key=lambda fault: (": unknown key" not in fault[1], len(fault[0])))
         raise Fault(": ".join([place, *path, text])) from None
 
 
 def wrong(text: str) -> PydanticCustomError:
-    """An error with this text, which ends a line: whole, whatever braces it has."""
+    """An error with this text at the end of the line, unchanged even if it contains braces."""
     return PydanticCustomError("wrong", "{text}", {"text": text})
 
 
@@ -121,7 +121,7 @@ _EXPECTED = {
 
 
 def _fault(fault: Any, field: FieldInfo | None) -> str:
-    """The end of a message, from a record of pydantic; of the value of a field by the field's description."""
+    """The end of a message, from a pydantic record; for the value of a field, from the field's description."""
     context, given = fault.get("ctx", {}), fault["input"]
     if fault["type"] == "wrong":
         return context["text"]
@@ -137,7 +137,7 @@ def _fault(fault: Any, field: FieldInfo | None) -> str:
 
 
 def value(fits: Callable[[Any], bool], expected: str) -> PlainValidator:
-    """A type of single value, as it is written."""
+    """A type of single value, kept as written."""
 
     def check(given: Any) -> Any:
         if not fits(given):
@@ -148,7 +148,7 @@ def value(fits: Callable[[Any], bool], expected: str) -> PlainValidator:
 
 
 def is_number(given: Any) -> bool:
-    """Is it a finite number, not true or false?"""
+    """Whether it is a finite number, and not a boolean."""
     return isinstance(given, int | float) and not isinstance(given, bool) and math.isfinite(given)
 
 
@@ -208,7 +208,7 @@ def one_or_list(given: Any) -> list:
 
 
 def listed(item: Any, *, least: int = 1, single: bool = False) -> Any:
-    """A type of list without repetition, as it is written; with `single` a lone item as well, written without a list."""
+    """A type of list without duplicates, kept as written; with `single`, also a lone item without a list."""
     adapter = TypeAdapter(list[item], config=ConfigDict(strict=True))
 
     def check(given: Any) -> Any:
@@ -237,7 +237,7 @@ Values = listed(Scalar, single=True)
 
 
 def one_of(key: str, models: dict[str, type[Model]]) -> PlainValidator:
-    """A type of mapping whose key says which of the models, named by its values, it is."""
+    """A type of mapping in which the value of one key selects the model."""
 
     def check(given: Any) -> Model:
         if not isinstance(given, dict):
@@ -259,11 +259,11 @@ def mapping_or(mapping: Any, other: Any) -> PlainValidator:
 
 
 def after(check: Callable[[Any], Any]) -> AfterValidator:
-    """A further check of a value that has passed those before."""
+    """A further check of a value that has passed the previous ones."""
     return AfterValidator(check)
 
 
-# Names that stand elsewhere.
+# Names defined elsewhere.
 
 
 class Names(NamedTuple):
@@ -284,7 +284,7 @@ Where = Annotated[dict[Column, Values], Names("where")]
 
 
 def named(model: Model, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], str, Any]]:
-    """Every name in a model that stands elsewhere: the keys that lead to it, what it names, and the name."""
+    """Every name in a model that is defined elsewhere: the keys that lead to it, what it names, and the name."""
     for key, field in type(model).model_fields.items():
         if key in model.model_fields_set:
             yield from _named(getattr(model, key), field.metadata, field.annotation, (*path, key))

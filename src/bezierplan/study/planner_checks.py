@@ -1,4 +1,4 @@
-"""Is a file a planner, and are these its settings? Every fault in one line."""
+"""Checks that a file is a planner and that settings fit it; every fault is reported in one line."""
 
 import inspect
 import traceback
@@ -20,7 +20,7 @@ _EXPECTED = "expected bool, int, float, Literal, or Annotated with a Range"
 
 
 def loaded(study: Study, method: str, place: str) -> ModuleType:
-    """The module of a method's planner. Raises Fault, beginning with a place, unless it keeps the interface of a planner (`problem`)."""
+    """The module of a method's planner. Raises Fault, beginning with a place, unless it has the interface of a planner (`problem`)."""
     name = study.methods[method].planner
     place = f"{place}: planner: {name}"
     if name.endswith(".py"):
@@ -30,7 +30,7 @@ def loaded(study: Study, method: str, place: str) -> ModuleType:
     file = study.planner(method)
     try:
         module = planner_module(file)
-    except (Exception, SystemExit) as error:  # a reader's file can fail in any way
+    except (Exception, SystemExit) as error:  # a user's file can fail in any way
         raise Fault(f"{place}: {_failed(error, file)}") from None
     fault = interface_fault(module)
     if fault:
@@ -39,7 +39,7 @@ def loaded(study: Study, method: str, place: str) -> ModuleType:
 
 
 def interface_fault(module: ModuleType) -> str | None:
-    """What a module lacks of a planner, or None."""
+    """What a module lacks to be a planner, or None."""
     plan = getattr(module, "plan", None)
     if not inspect.isfunction(plan):
         return "no function plan; expected plan(problem, rng, *, <settings>)"
@@ -52,7 +52,7 @@ def interface_fault(module: ModuleType) -> str | None:
             return f"setting {each.name}: has a default value; a study gives a value to every setting"
         if each.kind is each.KEYWORD_ONLY and each.annotation is each.empty:
             return f"setting {each.name}: has no annotation; {_EXPECTED}"
-        # The column `generations` holds how many were really done, beside which a setting of that name says nothing more.
+        # The column `generations` holds the number actually performed, so a setting of that name adds nothing.
         if each.kind is each.KEYWORD_ONLY and each.name in RUN_COLUMNS and each.name != "generations":
             return f"its setting {each.name} is a column of the runs table; give it another name"
     try:
@@ -71,7 +71,7 @@ def interface_fault(module: ModuleType) -> str | None:
 
 
 def _failed(error: BaseException, file: str) -> str:
-    """What went wrong in a file that was executed, with its line where that is known."""
+    """What went wrong in an executed file, with the line number if known."""
     if isinstance(error, SyntaxError):
         line = error.lineno
         text = error.msg
@@ -83,7 +83,7 @@ def _failed(error: BaseException, file: str) -> str:
 
 
 def check_settings(module: ModuleType, settings: dict[str, Any], place: str) -> None:
-    """Settings of one method, each of its type and within its range, and fitting together. Raises Fault, beginning with a place."""
+    """Check that the settings of one method have the right types and ranges and are consistent. Raises Fault, beginning with a place."""
     accepted = planner_settings(module)
     for setting in accepted.keys() & settings.keys():
         if wanted := setting_fault(accepted[setting], settings[setting]):
@@ -93,17 +93,17 @@ def check_settings(module: ModuleType, settings: dict[str, Any], place: str) -> 
 
 
 def asked(check: Callable[..., Any], place: str, *given: Any) -> None:
-    """Call a check of a planner, which raises ValueError with what is wrong. Raises Fault, beginning with a place."""
+    """Call a planner's check, which raises ValueError to report a problem. Raises Fault, beginning with a place."""
     try:
         check(*given)
     except ValueError as error:
         raise Fault(f"{place}: {error}") from None
-    except Exception as error:  # a reader's check can fail in any way
+    except Exception as error:  # a user's check can fail in any way
         raise Fault(f"{place}: {check.__name__} of its planner fails ({type(error).__name__}: {error})") from None
 
 
 def check_complete(study: Study, place: str) -> None:
-    """Every method has a value for each of its settings. Raises Fault that names all that are missing, by planner."""
+    """Every method has a value for each of its settings. Raises Fault, which names all missing ones, by planner."""
     missing: dict[str, dict[str, None]] = {}
     for method in study.methods:
         lacking = [name for name in study.accepted(method) if name not in study.resolved(method)]

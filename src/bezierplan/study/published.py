@@ -1,4 +1,4 @@
-"""Files of published numbers: do their columns, names and numbers fit the table that they are compared with?"""
+"""Files of published numbers: checks that their columns, names and numbers fit the table that they are compared with."""
 
 import csv
 import io
@@ -14,7 +14,7 @@ COLUMNS = ("metric", "statistic", "n", "unit", "value")
 
 
 def check(design: Design, table: Pivot) -> None:
-    """Raise Fault for a file of published numbers that does not fit its table: file, line and column, and what would be right."""
+    """Raise Fault, with file, line, column and what would be right, for a file of published numbers that does not fit its table."""
     study, experiment = design.study, table.experiment
     file = study.folder / "published" / table.published
     place = relative(file)

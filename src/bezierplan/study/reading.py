@@ -1,5 +1,5 @@
-"""Studies read from their folders and checked: everything that can be wrong in one is found here, before the first job starts, and
-reported in one line (`checked.Fault`).
+"""Read studies from their folders and check them: every possible fault is found here, before the first job starts, and reported in
+one line (`checked.Fault`).
 """
 
 from collections.abc import Mapping
@@ -21,7 +21,7 @@ M = TypeVar("M", bound=Model)
 
 
 def read_config(given: Mapping[str, Any]) -> list[Path]:
-    """Folders of the studies that a configuration names: config/config.yaml of the working folder, and what was given besides.
+    """Folders of the studies that a configuration names: config/config.yaml in the working folder, updated with the given values.
 
     Raises Fault.
     """
@@ -52,7 +52,7 @@ def load(folders: list[Path]) -> dict[str, Study]:
 
 
 def read_study(folder: Path) -> Study:
-    """The study in a folder, each of its files checked by itself alone. Raises Fault."""
+    """The study in a folder, with each of its files checked on its own. Raises Fault."""
     experiments = _read(folder, "experiments", ExperimentsFile)
     artefacts = _read(folder, "artefacts", ArtefactsFile) or ArtefactsFile()
     claims, assumptions = _read(folder, "claims", ClaimsFile), _read(folder, "assumptions", AssumptionsFile)
@@ -80,7 +80,7 @@ def read_study(folder: Path) -> Study:
 
 
 def _read(folder: Path, name: str, model: type[M]) -> M | None:
-    """A file of a study; None without it, for all but the experiments can be left out."""
+    """A file of a study; None if it is missing, because all but the experiments are optional."""
     file = folder / f"{name}.yaml"
     if name != "experiments" and not file.exists() and not file.is_symlink():
         return None

@@ -1,10 +1,10 @@
-"""What Snakemake asks for a job: its input files, its params, and the files that make up a target.
+"""What Snakemake needs for a job: its input files, its params, and the files that make up a target.
 
-Each function takes the studies by name, and by name the parts of the path that a job writes: scale, study, experiment, method, chunk,
+Each function takes the studies by name, and the parts of a job's output path as keyword arguments: scale, study, experiment, method, chunk,
 table, listing, figure, alternative. Paths are relative to the working folder.
 
-Params hold all that decides what a job writes, and nothing else: names and values (`study`), digests of the code that it calls, and digests
-of the content of maps and published numbers. So no date of a source matters.
+Params hold everything that determines what a job writes, and nothing else: names and values (`study`), digests of the code that it
+calls, and digests of the content of maps and published numbers. So timestamps of sources do not matter.
 """
 
 import os
@@ -29,7 +29,7 @@ def _folder(scale: str, study: str, alternative: str | None = None) -> str:
 
 
 def _chunks(study: Study, scale: str, experiment: str, methods: Iterable[str]) -> list[str]:
-    """Runs of methods of an experiment: as the configuration says, whatever else lies in the folder."""
+    """Chunk files of an experiment's methods as configured, whatever else the folder contains."""
     folder = f"{_folder(scale, study.key)}/runs/{experiment}"
     return [f"{folder}/{method}/{chunk}.parquet" for method in methods for chunk in jobs.chunks(study, experiment, scale)]
 
@@ -43,12 +43,12 @@ def _bounds(scale: str, study: str, experiments: Iterable[str]) -> list[str]:
 
 
 def _code(script: str, *modules: str | None) -> str:
-    """Digest of a script with all that it imports, and of modules that it finds by name."""
+    """Digest of a script with everything that it imports, and of modules that it imports by name."""
     return source_digest(str(SCRIPTS / f"{script}.py"), *filter(None, modules))
 
 
 def _planner(planner: str) -> str:
-    """A planner as `source_digest` takes it."""
+    """A planner as an argument of `source_digest`."""
     return planner if planner.endswith(".py") else f"bezierplan.planners.{planner}"
 
 
@@ -57,7 +57,7 @@ def _planner(planner: str) -> str:
 
 
 def problems_params(given: Studies, scale: str, study: str, experiment: str) -> dict:
-    """Params of the job that makes the problems of an experiment."""
+    """Params of the job that builds the problems of an experiment."""
     return {
         "job": jobs.problems_job(given[study], experiment, scale),
         "folder": definition.relative(given[study].folder),
@@ -72,7 +72,7 @@ def problem_maps(given: Studies, scale: str, study: str, experiment: str) -> lis
 
 
 def bounds_params() -> dict:
-    """Params of the job that finds the bounds of problems."""
+    """Params of the job that computes the bounds of problems."""
     return {"code": _code("bounds")}
 
 
@@ -114,7 +114,7 @@ def table_params(given: Studies, scale: str, study: str, table: str) -> dict:
 
 
 def listing_published(given: Studies, scale: str, study: str, listing: str) -> list[str]:
-    """The file that a transcribed table shows, the comparisons that one is of, or all files of published numbers for a function."""
+    """The file that a transcribed table shows, the comparison files of a comparison table, or all published files for a function."""
     spec, own = given[study].tables[listing], given[study]
     if spec.kind == "comparison":
         return [f"{_folder(scale, study)}/tables/{name}.comparison.csv" for name in spec.of]
@@ -123,7 +123,7 @@ def listing_published(given: Studies, scale: str, study: str, listing: str) -> l
 
 
 def listing_params(given: Studies, scale: str, study: str, listing: str) -> dict:
-    """Params of a table that shows no runs."""
+    """Params of a table without runs."""
     job, kind = jobs.listing_job(given[study], listing), given[study].tables[listing].kind
     sources = [] if kind == "comparison" else listing_published(given, scale, study, listing)
     return {
@@ -157,25 +157,25 @@ def figure_params(given: Studies, scale: str, study: str, figure: str) -> dict:
 
 
 def caption(given: Studies, scale: str, study: str, table: str = "", listing: str = "", figure: str = "") -> str:
-    """What the report says below a table or figure, as reStructuredText in which nothing of a study's files is markup."""
+    """The report's caption of a table or figure, as reStructuredText; nothing from a study's files acts as markup."""
     return escaped(jobs.caption(given[study], table or listing or figure, scale))
 
 
 def escaped(text: str) -> str:
-    """Text as one line of reStructuredText that says just this: no markup, no directive, no HTML."""
+    """Text as one line of literal reStructuredText: no markup, no directive, no HTML."""
     return "".join(f"\\{sign}" if sign.isascii() and not sign.isalnum() and sign != " " else sign for sign in " ".join(text.split()))
 
 
 def _shown(study: Study, artefact: str, job: dict) -> dict:
-    """The job of a table or figure with the words that it prints: without its title, which stands in the caption, and without labels of
-    what it does not show.
+    """The job of a table or figure with the words that it prints: without its title, which is in the caption, and without labels of items
+    that it does not show.
     """
     spec = {key: value for key, value in job["spec"].items() if key != "title"}
     return job | {"spec": spec, "labels": _labels(study, artefact)}
 
 
 def _labels(study: Study, artefact: str) -> dict[str, str]:
-    """Labels without those of methods, problems and workspaces that a table or figure cannot show. A function may name any."""
+    """Labels, except those of methods, problems and workspaces that a table or figure cannot show. A function may name any."""
     spec = (study.tables.get(artefact) or study.figures[artefact]).plain()
     if spec.get("kind") in ("function", "comparison") or any("data" in panel for panel in spec.get("panels", [])):
         return study.labels
@@ -218,7 +218,7 @@ def claims_params(given: Studies, scale: str, study: str) -> dict:
 
 
 def _kinds(claims: list[Claim]) -> list[str]:
-    """Modules of the kinds of check in claims, which are imported by name."""
+    """Modules of the kinds of check used in claims, which are imported by name."""
     return sorted({f"bezierplan.analysis.claims.kinds.{check.test}" for claim in claims for check in claim.checks})
 
 
@@ -241,7 +241,7 @@ def alternative_inputs(given: Studies, scale: str, study: str, alternative: str)
 
 
 def alternative_params(given: Studies, scale: str, study: str, alternative: str) -> dict:
-    """Params of an alternative: `chunks`, the jobs of the runs that it changes, by the files that keep them."""
+    """Params of an alternative: `chunks`, the jobs of the runs that it changes, keyed by output file."""
     own, tried = given[study], alternatives.with_alternative(given[study], alternative)
     claims, changed = alternatives.headline_claims(own, alternative), alternatives.methods_changed(own, alternative)
     chunks = {
@@ -309,7 +309,7 @@ def sensitivity_params(given: Studies, scale: str, study: str) -> dict:
 
 
 def _published_tables(given: Studies) -> dict[tuple[str, str], Pivot]:
-    """The tables that are compared with published numbers, by study and table."""
+    """The tables compared with published numbers, by study and table."""
     return {(key, name): table for key, study in given.items() for name, table in study.compared().items() if table.published}
 
 
@@ -338,7 +338,7 @@ def summary_params(given: Studies, scale: str) -> dict:
 
 
 def check_names(given: Studies, taken: Iterable[str]) -> None:
-    """Raise Fault for a study whose results or targets would be mistaken for another's. taken: names of rules and other targets."""
+    """Raise Fault for a study whose results or targets would clash with others. taken: names of rules and other targets."""
     owners = dict.fromkeys(taken, "the workflow")
     home = PACKAGE.parents[1] / "config" / "studies"
     for key, study in given.items():
@@ -377,7 +377,7 @@ def files_of_study(given: Studies, scale: str, study: str) -> list[str]:
 
 
 def files_of_scale(given: Studies, scale: str) -> list[str]:
-    """Everything at a scale; a summary if there are claims of a study and published numbers of a table."""
+    """Everything at a scale; a summary if some study has claims and some table has published numbers."""
     summary = any(study.claims for study in given.values()) and _published_tables(given)
     return [file for study in given for file in files_of_study(given, scale, study)] + ([f"results/{scale}/summary.md"] if summary else [])
 

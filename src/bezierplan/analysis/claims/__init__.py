@@ -1,1 +1,1 @@
-"""Sentences of a paper as checks: `judge` gives verdicts, `kinds` has one file a kind of test."""
+"""Sentences of a paper as checks: `judge` gives verdicts, `kinds` has one file per kind of test."""

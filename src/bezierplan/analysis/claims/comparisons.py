@@ -1,4 +1,4 @@
-"""From a check of a claim to its comparisons: which runs stand against which, and the published numbers of the same cells."""
+"""From a check of a claim to its comparisons: which runs are compared, and the published numbers of the same cells."""
 
 from collections.abc import Iterator
 from pathlib import PurePath
@@ -17,7 +17,7 @@ from bezierplan.study.checked import Fault
 from bezierplan.study.model import one_or_list
 
 REST = "rest"
-# What one unit of a comparison has one value of; several, and their runs would be mixed without a word.
+# Columns with one value per unit of a comparison; several values would silently mix their runs.
 _FACTORS = ["experiment", "condition", "method"]
 
 
@@ -42,7 +42,7 @@ def with_rest(check: dict, claim: dict, material: Material) -> dict:
 
 
 def _parts_of_artefact(check: dict, claim: dict, material: Material) -> list[dict]:
-    """The tables, and panels of figures, that show a claim's artefacts with runs of the check's experiments."""
+    """The tables and figure panels among a claim's artefacts that show runs of the check's experiments."""
     parts = []
     for name in one_or_list(claim.get("artefact", [])):
         artefact = material.artefacts.get(name, {})
@@ -51,7 +51,7 @@ def _parts_of_artefact(check: dict, claim: dict, material: Material) -> list[dic
 
 
 def _groups_of_artefact(check: dict, claim: dict, material: Material) -> list:
-    """Groups that an artefact shows, each once, in its order; all groups of the experiment where it does not choose."""
+    """Groups that an artefact shows, each once, in its order; all groups of the experiment if it does not select any."""
     across = check.get("across", "method")
     groups = []
     for part in _parts_of_artefact(check, claim, material) or [{}]:
@@ -64,7 +64,7 @@ def _groups_of_artefact(check: dict, claim: dict, material: Material) -> list:
 
 
 def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison]:
-    """The comparisons of a check without `rest`, in an order that does not depend on that of the runs.
+    """The comparisons of a check without `rest`, in an order independent of that of the runs.
 
     Raises Untestable if its experiment was not run, has no such metric, or has no run that satisfies its `where`; Fault if runs of several
     conditions would be mixed.
@@ -114,10 +114,10 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
 
 
 def _measured_runs(check: dict, claim: dict, material: Material) -> pd.DataFrame:
-    """The runs of a check's conditions with the column `value`: not a number where a run does not count.
+    """The runs of a check's conditions with the column `value`, which is NaN where a run does not count.
 
-    A condition on an outcome, such as `feasible: true`, leaves the other runs in, without a value (where failures are last, as failed): a
-    place where none satisfies it stays.
+    A condition on an outcome, such as `feasible: true`, keeps the other runs without a value (or as failed, if failures rank last): a
+    place where no run satisfies it is kept.
     """
     where = check.get("where", {})
     conditions = {column: wanted for column, wanted in where.items() if column not in metrics.METRICS}
@@ -128,7 +128,7 @@ def _measured_runs(check: dict, claim: dict, material: Material) -> pd.DataFrame
             raise Untestable(f"the experiment {name} was not run")
         runs, problems = material.results[name].runs, material.results[name].problems
         if check["metric"] == "rank":
-            # A rank is one among the rows of the artefact, whichever of them the check goes on to compare.
+            # Ranks are taken among all rows of the artefact, whichever of them the check compares.
             for part in _parts_of_artefact(check, claim, material)[:1]:
                 runs = select(runs, part.get("where", {}))
         else:
@@ -151,7 +151,7 @@ def _picked(runs: pd.DataFrame, which: dict) -> pd.DataFrame:
 
 
 def _failure(check: dict) -> float:
-    """The value of a run that has none: dropped, worse than any, or one for which the event is false."""
+    """The value of a run without one: dropped, worse than any other, or one for which the event is false."""
     match check.get("failures", "drop"):
         case "last":
             return np.inf
@@ -162,7 +162,7 @@ def _failure(check: dict) -> float:
 
 
 def _refuse_mixtures(check: dict, claim: dict, runs: pd.DataFrame, keys: list[str]) -> None:
-    """Raises Fault if a unit of a comparison, told apart by the keys, is of several experiments, conditions or methods."""
+    """Raise Fault if a unit of a comparison, as identified by the keys, mixes several experiments, conditions or methods."""
     distinct = runs[[*keys, *(factor for factor in _FACTORS if factor not in keys)]].drop_duplicates()
     mixed = distinct[distinct.duplicated(keys, keep=False)]
     if not mixed.empty:
@@ -181,25 +181,25 @@ def _split(rows: pd.DataFrame, columns: list[str]) -> Iterator[tuple[str, pd.Dat
 
 
 def _unit_table(rows: pd.DataFrame, unit: str, column: str | None) -> pd.DataFrame:
-    """The mean value of each unit (row) in each cell (column); a failed run that counts as such makes its unit one."""
+    """The mean value of each unit (row) in each cell (column); a run that counts as failed makes its unit fail."""
     if column is None:
         return rows.groupby(unit)["value"].mean().to_frame("")
     return rows.groupby([unit, column])["value"].mean().unstack(column)
 
 
 def _is_boolean(check: dict, material: Material) -> bool:
-    """Is the metric a column of truths, and not averaged over the runs of a unit?"""
+    """Whether the metric is a boolean column that is not averaged over the runs of a unit."""
     runs = material.results[one_or_list(check["experiment"])[0]].runs
     return check.get("replicate", "repeat") == "repeat" and check["metric"] in runs and pd.api.types.is_bool_dtype(runs[check["metric"]])
 
 
 def _shares_draws(check: dict, material: Material) -> bool:
-    """Do units of the same number share a drawn workspace or a start?"""
+    """Whether units with the same number share a random workspace or a start."""
     return "replicate" in check or all(material.paired.get(name, False) for name in one_or_list(check["experiment"]))
 
 
 def _note(check: dict, rows: pd.DataFrame, column: str | None, cells: list) -> str:
-    """Says so where two groups are compared on their successes and succeed in different shares of the runs (Fisher's exact test)."""
+    """A note where two groups are compared on their successful runs but differ in success rate (Fisher's exact test)."""
     if len(cells) != 2 or check.get("failures", "drop") != "drop" or not metrics.METRICS[check["metric"]].feasible_only:
         return ""
     from scipy import stats
@@ -210,7 +210,7 @@ def _note(check: dict, rows: pd.DataFrame, column: str | None, cells: list) -> s
 
 
 def _published_tables(check: dict, claim: dict, material: Material) -> list[tuple[str, pd.DataFrame]]:
-    """Experiment and published numbers of each table of the check's experiments, those of the claim's artefacts first."""
+    """Experiment and published numbers of each table of the check's experiments, the claim's artefacts first."""
     own = one_or_list(claim.get("artefact", []))
     tables = []
     for name in [*own, *(name for name in material.artefacts if name not in own)]:

@@ -1,10 +1,10 @@
-"""What a comparison of a claim is, its effect on point values, and the draws and intervals of that effect.
+"""The comparisons of a claim, their effects on point values, and the bootstrap draws and intervals of these effects.
 
-A comparison has cells side by side: a group and the one that it is compared with, several groups, or the values of a factor. Each cell has
-one value a unit (an independent replicate), in one or several conditions that are averaged with equal weight.
+A comparison consists of cells: a group and the one that it is compared with, several groups, or the values of a factor. Each cell has
+one value per unit (an independent replicate), in one or several conditions that are averaged with equal weight.
 
-The interval of a difference of truths is Wald's with one success and one failure added to each group (Agresti and Caffo 2000), or half of
-one to each kind of pair (Agresti and Min 2005): resampling says nothing about what never happened.
+The interval of a difference of booleans is Wald's with one success and one failure added to each group (Agresti and Caffo 2000), or one
+half added to each kind of pair (Agresti and Min 2005): resampling says nothing about events that never happened.
 """
 
 import math
@@ -19,11 +19,11 @@ from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED, TAIL
 from bezierplan.workspaces.seeds import generator
 
 ALPHA = 0.05
-# Share of draws in which a sentence about extremes has to hold.
+# Share of draws in which a sentence about extremes must hold.
 SURE = 0.95
-# So many runs without a counterexample make it 95 % sure that fewer than 5 % of all runs are one.
+# This many runs without a counterexample show with 95 % confidence that fewer than 5 % of all runs are counterexamples.
 LEAST_WITHOUT_EXAMPLE = 59
-# An effect of so many standard errors is found with a power of at least 0.8 (simulated for both rank tests, normal data, 10 to 100 units).
+# An effect of this many standard errors is found with a power of at least 0.8 (simulated: both rank tests, normal data, 10 to 100 units).
 DETECTED = 3.0
 DETECTED_BELOW_20 = 3.2
 
@@ -40,10 +40,10 @@ _EVENTS: dict[str, Callable] = {
 class Comparison(NamedTuple):
     """place: the combination of `every`, as text; name: the comparison in words. cells: groups, or values of x in rising order (k).
 
-    strata: one table (units, k) for each condition that is averaged over (mostly one), by name; not a number where a unit has no value,
-    infinite where it counts as worse than any. In a share the values are whether the event happened.
-    printed: the published numbers of the cells (k,), not a number unless all are printed. paper_units: how many units the paper has.
-    boolean: is the metric true or false? paired: do equal units of the cells belong together? note: what a reader of the row should know.
+    strata: one table (units, k) for each condition that is averaged over (mostly one), by name; NaN where a unit has no value, infinite
+    where it counts as worse than any other. For a share, the values say whether the event happened.
+    printed: the published numbers of the cells (k,), NaN unless all are printed. paper_units: number of units in the paper. boolean:
+    whether the metric is true or false. paired: whether equal units of the cells belong together. note: for the reader of the row.
     factors: the values of `every` at the place, by column.
     """
 
@@ -60,18 +60,18 @@ class Comparison(NamedTuple):
 
     @property
     def counted(self) -> str:
-        """How many units of each cell have a value that can be averaged, of how many: where runs failed, fewer."""
+        """How many units of each cell, out of how many, have a value that can be averaged; fewer if runs failed."""
         found = np.sum([np.isfinite(stratum).sum(axis=0) for stratum in self.strata.values()], axis=0)
         total = sum(map(len, self.strata.values()))
         return ", ".join(f"{number} of {total}" for number in found)
 
 
 class Finding(NamedTuple):
-    """What a test found; not a number for what does not exist.
+    """The result of a test; NaN for quantities that do not exist.
 
-    toward: 1 if the effect points as claimed and matters, -1 if it points against and matters, 0 if neither. negligible: is the interval of
-    the effect within the margin? least_detectable: the effect that would have been found with a power of 0.8.
-    mark: `+`, `-`, `0` or `?` where it does not follow from p (`claim_verdicts.mark`). rho, r_squared: of trends.
+    toward: 1 if the effect matters and points as claimed, -1 if it matters and points the other way, otherwise 0. negligible: whether the
+    interval of the effect lies within the margin. least_detectable: the effect that would have been detected with a power of 0.8.
+    mark: `+`, `-`, `0` or `?` if it does not follow from p (`claim_verdicts.mark`). rho, r_squared: of trends.
     """
 
     effect: float = math.nan
@@ -91,11 +91,11 @@ class Finding(NamedTuple):
     r_squared: float = math.nan
 
 
-# What a claim says about point values. All work on (..., k) numbers of cells, so that they serve ours, printed ones and draws.
+# What a claim says about point values. All take (..., k) numbers of cells, so that they work for ours, printed ones and draws.
 
 
 def event(check: dict, values: np.ndarray) -> np.ndarray:
-    """Did the event of a share happen? As 1 and 0; a value that is not a number stays. Without an event the values are truths already."""
+    """Whether the event of a share happened, as 1 and 0; NaN is kept. Without an event, the values are already boolean."""
     if "event" not in check:
         return values
     ((word, limit),) = check["event"].items()
@@ -103,11 +103,11 @@ def event(check: dict, values: np.ndarray) -> np.ndarray:
 
 
 class Effect(NamedTuple):
-    """How a kind of test makes an effect of point values of cells; all functions take the check first.
+    """How a kind of test computes an effect from point values of cells; all functions take the check first.
 
     of: values (..., k) and the names of the cells (k,) -> effects (...). gradient: values (k,) and names -> how the effect changes with
-    each value (k,), None where it has no linear approximation. claimed: effects (...) and the margin -> is each what the claim says?
-    reference: the cell whose value a relative effect is a share of. statistic: what stands for a cell where the check names none.
+    each value (k,), None without a linear approximation. claimed: effects (...) and the margin -> whether each is what the claim says.
+    reference: the cell to whose value an effect is relative. statistic: the statistic of a cell if the check names none.
     """
 
     of: Callable[[dict, np.ndarray, tuple], np.ndarray]
@@ -129,11 +129,11 @@ def _gradient_of_groups(check: dict, ours: np.ndarray, cells: tuple) -> np.ndarr
 
 
 def on_claimed_side(check: dict, effects: np.ndarray, margin: float) -> np.ndarray:
-    """Does the effect point as claimed, and beyond the claimed least one if there is one?"""
+    """Whether the effect points as claimed and exceeds the claimed least effect, if any."""
     return SIDES[check["direction"]] * effects > check.get("least", 0)
 
 
-# Of two cells, a group and the one that it is compared with.
+# Two cells: a group and the one that it is compared with.
 BETWEEN_GROUPS = Effect(_group_less_other, _gradient_of_groups, on_claimed_side)
 
 
@@ -144,21 +144,21 @@ def pairs_in_words(pairs: Iterable[Sequence], relation: str) -> Iterator[tuple[s
 
 
 def effect(check: dict, points: np.ndarray, cells: tuple) -> np.ndarray:
-    """The effect (...) that point values (..., k) of the cells have."""
+    """The effect (...) of point values (..., k) of the cells."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return kind_of(check).EFFECT.of(check, points, cells)
 
 
 def claimed(check: dict, effects: np.ndarray, margin: float) -> np.ndarray:
-    """Is an effect what the claim says, by its value alone?"""
+    """Whether an effect is what the claim says, by its value alone."""
     return kind_of(check).EFFECT.claimed(check, effects, margin)
 
 
 def margin_of(check: dict, comparison: Comparison) -> float:
-    """The smallest effect that matters: as given, or as a share.
+    """The smallest effect that matters: given as a number or as a share.
 
-    `{published: share}`: a share of the other group's value (of that at the lowest x; of truths the share itself), or the printed
-    difference of the same cells where that is smaller and points as claimed. Not a number for tests without a margin.
+    `{published: share}`: a share of the other group's value (of the value at the lowest x; for booleans the share itself), or the printed
+    difference of the same cells if that is smaller and points as claimed. NaN for tests without a margin.
     """
     margin = check.get("margin", math.nan)
     if not isinstance(margin, dict):
@@ -172,7 +172,7 @@ def margin_of(check: dict, comparison: Comparison) -> float:
 
 
 def point_statistic(check: dict) -> str:
-    """The statistic that stands for a cell where one number has to."""
+    """The statistic that represents a cell by one number."""
     named = check.get("statistic", "rank")
     return kind_of(check).EFFECT.statistic if named == "rank" else named
 
@@ -181,7 +181,7 @@ def point_statistic(check: dict) -> str:
 
 
 def counted(stratum: np.ndarray, paired: bool) -> list[np.ndarray]:
-    """The values of each cell of a condition (units, k); if paired, of the units that have a value in every cell."""
+    """The values of each cell of a condition (units, k); if paired, only of units with a value in every cell."""
     if paired:
         return list(stratum[~np.isnan(stratum).any(axis=1)].T)
     return [values[~np.isnan(values)] for values in stratum.T]
@@ -201,10 +201,10 @@ def points(comparison: Comparison, statistic: str) -> np.ndarray:
 
 
 def drawn_points(comparison: Comparison, statistic: str, name: str, size: int | None = None) -> np.ndarray:
-    """A named statistic of each cell in draws from its units (DRAWS, k), averaged over the conditions; not a number for an empty cell.
+    """A named statistic of each cell in draws from its units (DRAWS, k), averaged over the conditions; NaN for an empty cell.
 
-    name: from it the draws follow. Cells of the same name in comparisons at the same place are drawn alike, and paired cells unit by unit.
-    size: units in a draw, of which as large a share counts as of ours; None to draw as many as there are.
+    name: seeds the draws. Cells of the same name in comparisons at the same place share their draws; paired cells are drawn unit by unit.
+    size: units in a draw, with the same share of counted units as ours; None to draw as many as there are.
     """
     total = np.zeros((statistics.DRAWS, len(comparison.cells)))
     for stratum_name, stratum in comparison.strata.items():
@@ -220,7 +220,7 @@ def drawn_points(comparison: Comparison, statistic: str, name: str, size: int | 
 
 
 def drawn_effects(check: dict, comparison: Comparison, name: str) -> np.ndarray:
-    """The effect of the check's statistic in bootstrap draws (DRAWS,), or their normal approximation; not a number with an empty cell."""
+    """The effect of the check's statistic in bootstrap draws (DRAWS,), or their normal approximation; NaN with an empty cell."""
     statistic = point_statistic(check)
     if comparison.boolean and statistic == "mean" and check.get("scale") != "relative" and len(comparison.cells) == 2:
         adjusted = [_adjusted_difference(*counted(stratum, comparison.paired), comparison.paired) for stratum in comparison.strata.values()]
@@ -239,7 +239,7 @@ def drawn_effects(check: dict, comparison: Comparison, name: str) -> np.ndarray:
 
 
 def _adjusted_difference(group: np.ndarray, other: np.ndarray, paired: bool) -> tuple[float, float]:
-    """Difference of the shares of two groups of truths, and its variance, with two units added to each; not numbers for an empty group."""
+    """Difference of the shares of two boolean groups, and its variance, with two units added to each; NaN for an empty group."""
     if not len(group) or not len(other):
         return math.nan, math.nan
     if paired:
@@ -251,7 +251,7 @@ def _adjusted_difference(group: np.ndarray, other: np.ndarray, paired: bool) -> 
 
 
 def by_draws(check: dict, comparison: Comparison, name: str) -> Finding:
-    """A sentence about extremes: how often it holds in experiments of the paper's size, drawn from ours."""
+    """Test a sentence about extremes: how often it holds in experiments of the paper's size, drawn from our runs."""
     statistic = point_statistic(check)
     ours = float(effect(check, points(comparison, statistic), comparison.cells))
     margin, n = margin_of(check, comparison), units(comparison)
@@ -267,7 +267,7 @@ def by_draws(check: dict, comparison: Comparison, name: str) -> Finding:
 
 
 def two_sided(draws: np.ndarray) -> float:
-    """Bootstrap p of draws of an effect against none."""
+    """Two-sided bootstrap p of an effect, from its draws."""
     if not np.isfinite(draws).all():
         return math.nan
     return float(min(1.0, 2 * min(np.mean(draws <= 0), np.mean(draws >= 0))))
@@ -281,7 +281,7 @@ def interval(draws: np.ndarray) -> tuple[float, float]:
 
 
 def least_detectable(low: float, high: float, n: int) -> float:
-    """Not a number where the units do not differ: what they would differ by is unknown then."""
+    """NaN if the units do not differ, because their spread is then unknown."""
     if low == high:
         return math.nan
     error = (high - low) / 2 / 1.96
@@ -289,12 +289,12 @@ def least_detectable(low: float, high: float, n: int) -> float:
 
 
 def is_negligible(low: float, high: float, margin: float, n: int, least: float = 0.0) -> bool:
-    """Is the interval of an effect, less the claimed one, within the margin? Units without any difference have to be enough to say so."""
+    """Whether the interval of an effect, less the claimed one, lies within the margin. Identical units must be enough to say so."""
     return bool(max(abs(low - least), abs(high - least)) <= margin and (low < high or n >= LEAST_WITHOUT_EXAMPLE))
 
 
 def no_difference(low: float, high: float, n: int) -> str:
-    """Why units that do not differ say nothing, empty if they do or say something."""
+    """Why identical units say nothing; empty if they differ or are enough."""
     return f"no difference in fewer than {LEAST_WITHOUT_EXAMPLE} units" if low == high == 0 and n < LEAST_WITHOUT_EXAMPLE else ""
 
 
@@ -304,7 +304,7 @@ def units(comparison: Comparison) -> int:
 
 
 def too_few(comparison: Comparison) -> str:
-    """Why a comparison says nothing, empty if it may say something."""
+    """Why a comparison says nothing; empty if it may say something."""
     for stratum in comparison.strata.values():
         for cell, values in zip(comparison.cells, stratum.T):
             if np.isnan(values).all():
@@ -317,5 +317,5 @@ def too_few(comparison: Comparison) -> str:
 
 
 def why_none(number: float) -> str:
-    """Why there is no such p or effect, empty if there is one."""
+    """Why there is no such p or effect; empty if there is one."""
     return "" if math.isfinite(number) else "relative to a value that is zero or does not exist"

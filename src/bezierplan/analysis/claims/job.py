@@ -10,8 +10,8 @@ from bezierplan.analysis.claims import judge
 def run(job: dict, runs: list[str], files: dict[str, list[str]], claims_file: str, checks_file: str) -> None:
     """Judge the claims of a job (`study.targets.claims_params`) and write both tables as csv.
 
-    runs: chunk files, in folders named by experiment and method. files: problems and bounds, a file an experiment in the order of the job,
-    and published numbers.
+    runs: chunk files, in folders named by experiment and method. files: problems and bounds, one file per experiment in the order of the
+    job, and published numbers.
     """
     found = results.read_all(runs, job["repeats"], files["problems"], files["bounds"])
     published = {Path(file).stem: results.published_table(file) for file in files["published"]}

@@ -1,69 +1,69 @@
 """Sentences of a paper, judged on runs and on the paper's own numbers.
 
-A claim is a list of checks; config/README.md says how they are written, `kinds` which test each kind is. Every check gives one or
-several comparisons, every comparison a mark:
+A claim is a list of checks; config/README.md describes their format, `kinds` the test behind each kind. Every check gives one or more
+comparisons, every comparison a mark:
 
 | mark | meaning |
 | --- | --- |
 | + | the sentence holds here: p < 0.05, and the effect points as claimed and is as large as the margin |
-| - | the contrary does |
+| - | the opposite holds |
 | 0 | neither, and the interval of the effect lies within the margin |
-| ? | neither of these; or there is too little to test |
+| ? | none of these, or too little data to test |
 
-A comparison has one mark by itself and one in the family of all comparisons of the claim's deciding checks (`verdicts` says which
-procedure, and why). Where all have to hold, every mark by itself has to be + to support the claim; all else follows from the family's:
+A comparison has one mark on its own and one in the family of all comparisons of the claim's primary checks (`verdicts` explains the
+procedure). If all have to hold, every mark on its own must be + to support the claim; everything else follows from the family's marks:
 
 | verdict | all have to hold | any may hold |
 | --- | --- | --- |
-| supported | every mark + by itself | at least one + |
-| mostly | + in three quarters or more of the decided ones (+, -, 0), yet not all | |
+| supported | every mark + on its own | at least one + |
+| mostly | + in three quarters or more of the decided ones (+, -, 0), but not all | |
 | in part | + in more than a quarter and less than three quarters of them | |
 | seldom | + in a quarter of them or less | |
-| contradicted | no +, and a - | every mark - by itself |
+| contradicted | no +, and a - | every mark - on its own |
 | no effect | every mark 0 | no + and no ?, not all - |
-| undecided | otherwise: a ? stands in the way, or more than half of the marks are ? | a ? stands in the way |
+| undecided | otherwise: a ? prevents a verdict, or more than half of the marks are ? | a ? prevents a verdict |
 | untestable | the reason is given | likewise |
 
-A sentence on seconds is judged on counted work where its check names one (`work`); the seconds stand beside it, and the reason says where
-they disagree.
+A sentence about seconds is judged on counted work if its check names one (`work`); the seconds are reported next to it, and the reason
+says where they disagree.
 
-Columns of claims.csv, one row a claim and variant:
+Columns of claims.csv, one row per claim and variant:
 
 | column | meaning |
 | --- | --- |
 | study, id, place, statement | of the claim |
-| variant | values that take the place of the deciding ones; of the deciding row, those themselves |
-| primary | is this the deciding variant? |
-| finding | is it our own finding, and no sentence of the paper? |
+| variant | values used instead of the primary ones; in the primary row, the primary values |
+| primary | whether this is the primary variant |
+| finding | whether it is our own finding rather than a sentence of the paper |
 | verdict | as above |
-| holds | how many comparisons of the deciding checks are + |
-| where_it_holds | which of them are + in the family, in words; if none is, where the contrary holds; empty where all or none do |
-| published | how many of them hold in the printed numbers, by value alone, of those that are printed |
-| effect ... p_family | of the comparison that decides: the worst -, else that with the largest p; the columns as below |
+| holds | how many comparisons of the primary checks are + |
+| where_it_holds | which of them are + in the family, in words; if none, where the opposite holds; empty if all or none do |
+| published | how many of those that are printed hold in the printed numbers, by value alone |
+| effect ... p_family | of the decisive comparison: the worst -, otherwise that with the largest p; columns as below |
 | replication_probability | share of experiments of the paper's size, drawn from our runs, in which the claim holds by values alone |
-| size | our effect beside the printed one: alike (that lies in our interval), smaller, larger, opposite |
-| artefact | what shows it |
+| size | our effect compared with the printed one: alike (the printed one lies in our interval), smaller, larger, opposite |
+| artefact | the tables and figures that show it |
 | timed | judged on CPU times, which differ from machine to machine |
-| reason | why it is untestable or undecided, and what else a reader should know |
+| reason | why it is untestable or undecided, and other notes for the reader |
 
-Columns of claim_checks.csv, one row a comparison:
+Columns of claim_checks.csv, one row per comparison:
 
 | column | meaning |
 | --- | --- |
 | study, id, variant, timed | as above |
 | check | number of the check within the claim, from 1 |
-| primary | false for checks that are only reported |
+| primary | false for secondary checks, which are only reported |
 | test, metric, statistic, unit | of the check; unit of the metric |
 | condition, comparison | where, and what is compared |
-| mark, mark_family | by itself; in the family, empty for reported checks |
+| mark, mark_family | on its own; in the family, empty for secondary checks |
 | effect, effect_size_name, effect_size | of means, or of the statistic; what is computed from both groups (`kinds`) |
 | low95, high95 | interval of the effect |
-| p, p_family | two-sided; corrected, empty for reported checks and where no p decides |
+| p, p_family | two-sided; corrected, empty for secondary checks and where no p decides |
 | n | units: pairs, or those of the smallest group |
-| counted | how many units of each group have a value, of how many: means, minima and maxima leave failed runs out |
-| margin, least_detectable | the smallest effect that matters; that which a power of 0.8 goes with, empty where the units do not differ |
+| counted | how many units of each group, out of how many, have a value: means, minima and maxima exclude failed runs |
+| margin, least_detectable | the smallest effect that matters; that detected with a power of 0.8, empty if the units do not differ |
 | rho, r_squared | of trends: Spearman's rho and R squared of the conditions' means over x |
-| effect_published, published | the effect in the printed numbers, and does the sentence hold in them? |
+| effect_published, published | the effect in the printed numbers, and whether the sentence holds in them |
 """
 
 import math
@@ -96,7 +96,7 @@ CHECK_COLUMNS = [
 
 
 class _Judged(NamedTuple):
-    """One comparison; `comparison` is None where no runs are compared. primary: False for a reported check."""
+    """One comparison; `comparison` is None if no runs are compared. primary: False for a secondary check."""
 
     number: int
     check: dict
@@ -125,9 +125,9 @@ def judge(
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """The claims of a study as tables with `CLAIM_COLUMNS` and `CHECK_COLUMNS`, described above.
 
-    claims: as in claims.yaml. study: its name; all random draws follow from names. functions: by name, of the study's file in `papers/`.
+    claims: as in claims.yaml. study: its name; all random draws are seeded by names. functions: by name, of the study's file in `papers/`.
     The others as in `Material`. Nothing depends on the order of the runs. Raises Fault for a claim that mixes runs of
-    several conditions, or names an unknown function.
+    several conditions or names an unknown function.
     """
     material = Material(results, published, artefacts, functions, variant_of, paired, repeats, labels or {})
     claim_rows, check_rows = [], []
@@ -148,7 +148,7 @@ def _judge_variant(claim: dict, first: dict, assignment: dict, study: str, mater
     variant = ", ".join(f"{column}={' '.join(map(str, one_or_list(value)))}" for column, value in assignment.items())
     holds = claim.get("holds", "all")
     name = f"{study}/{claim['id']}/{variant}"
-    # `rest` is what it is in the deciding variant, so it is filled in before values are exchanged.
+    # `rest` means the same as in the primary variant, so it is filled in before values are substituted.
     checks = [comparisons.with_rest(check, claim, material) for check in claim["checks"]]
     checks = in_variant(checks, first, assignment)
     described = {
@@ -195,7 +195,7 @@ def _judge_variant(claim: dict, first: dict, assignment: dict, study: str, mater
 
 
 def _findings(number: int, check: dict, claim: dict, name: str, material: Material) -> list[_Judged]:
-    """The comparisons of one check with what they found. Raises Untestable."""
+    """The comparisons of one check with their findings. Raises Untestable."""
     primary, kind = "secondary" not in check, kind_of(check)
     if not issubclass(kind.Options, OfRuns):
         found = kind.findings(check, claim, material)
@@ -212,7 +212,7 @@ def _findings(number: int, check: dict, claim: dict, name: str, material: Materi
 
 
 def _marked(judged: list[_Judged]) -> list[_Judged]:
-    """The comparisons with their marks, the deciding ones also with those of the family."""
+    """The comparisons with their marks, the primary ones also with their marks in the family."""
     tested = [number for number, each in enumerate(judged) if each.primary and not math.isnan(each.finding.p)]
     corrected = dict(zip(tested, verdicts.family(np.array([judged[number].finding.p for number in tested]))))
     marked = []
@@ -224,7 +224,7 @@ def _marked(judged: list[_Judged]) -> list[_Judged]:
 
 
 def _in_words(each: _Judged, deciding: list[_Judged]) -> verdicts.Marked:
-    """A comparison with the factors that tell it from the others of its claim."""
+    """A comparison with the factors that distinguish it from the others of its claim."""
     metrics_differ = len({(other.check.get("metric"), other.check.get("statistic")) for other in deciding}) > 1
     factors: dict[str, Any] = {}
     if each.comparison is not None:
@@ -241,12 +241,12 @@ def _in_words(each: _Judged, deciding: list[_Judged]) -> verdicts.Marked:
 
 
 def _group_in_words(check: dict, group: Any) -> Any:
-    """A group's name; a number with the column that it is a value of."""
+    """A group's name; for a number, with its column."""
     return group if isinstance(group, str) else f"{group:g} {check.get('across', 'method').replace('_', ' ')}"
 
 
 def _disagreement(judged: list[_Judged]) -> str:
-    """Says so where seconds and counted work do not agree, one of which decides and the other is reported."""
+    """A note where seconds and counted work disagree, one of which is primary and the other secondary."""
     others = {(each.condition, each.name, _is_timed(each.check)): each.mark for each in judged if not each.primary}
     deciding = [each for each in judged if each.primary]
     pairs = [(each, others.get((each.condition, each.name, not _is_timed(each.check)))) for each in deciding]
@@ -259,10 +259,10 @@ def _disagreement(judged: list[_Judged]) -> str:
 
 
 def _shown(deciding: list[_Judged], holds: str) -> _Judged:
-    """The comparison that decides.
+    """The decisive comparison.
 
-    If all have to hold, the worst - by effect (of the first check that has one), else that with the largest p, first one without p that is
-    not +. If any may hold, that with the smallest p, of those with a + if there are any.
+    If all have to hold, the worst - by effect (of the first check that has one), otherwise that with the largest p, preceded by any without
+    p that is not +. If any may hold, that with the smallest p, among those with a + if there are any.
     """
 
     def p(each: _Judged) -> float:
@@ -298,7 +298,7 @@ def _published(deciding: list[_Judged]) -> str:
 def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> float:
     """Share of experiments of the paper's size, drawn from our runs, in which the claim holds by point values.
 
-    Not a number where some comparison is not one of all runs of its cells, where a cell is empty, or the paper's size is unknown.
+    NaN if some comparison does not use all runs of its cells, if a cell is empty, or if the paper's size is unknown.
     """
     held = []
     for each in deciding:
@@ -315,7 +315,7 @@ def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> 
 
 
 def _size(each: _Judged) -> str:
-    """Our effect beside the printed one; empty where there is no printed one, or no interval of ours."""
+    """Our effect compared with the printed one; empty without a printed effect or an interval of ours."""
     printed, held = _printed(each)
     finding = each.finding
     if held is None or math.isnan(finding.low):
@@ -336,7 +336,7 @@ def _is_timed(check: dict) -> bool:
 
 
 def _reason(each: _Judged) -> str:
-    """What a reader of a row should know."""
+    """Notes for the reader of a row."""
     unexplained = "too few units to tell" if each.mark == "?" else ""
     note = each.comparison.note if each.comparison else ""
     return "; ".join(filter(None, [each.finding.reason or unexplained, note]))
@@ -370,7 +370,7 @@ def _check_row(each: _Judged, material: Material) -> dict:
 
 
 def _unit(check: dict, material: Material) -> str:
-    """The unit of a check's metric, or of the effect of a function; empty where neither is known."""
+    """The unit of a check's metric, or of the effect of a function; empty if neither is known."""
     if "effect_unit" in check:
         return check["effect_unit"]
     experiments = [name for name in one_or_list(check.get("experiment", [])) if name in material.results]

@@ -1,4 +1,4 @@
-"""What the claims of a study are judged on."""
+"""The data on which a study's claims are judged."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ if TYPE_CHECKING:
 
 
 class Material(NamedTuple):
-    """What the claims of a study are judged on, everything by name.
+    """The data on which a study's claims are judged, everything by name.
 
     results: of each experiment that was run. published: files of published numbers, named without `.csv`. artefacts: descriptions of tables
     and figures as in artefacts.yaml. functions: of the study's file in `papers/`. variant_of: method -> the method whose published numbers
-    count. paired: of each experiment, do runs of equal repeats share a start or a drawn workspace? repeats: how many repeats the paper has
-    of each, which counts where the printed numbers do not say. labels: name -> how readers see it.
+    count. paired: for each experiment, whether runs with equal repeat numbers share a start or a random workspace. repeats: the paper's
+    number of repeats of each, used if the printed numbers do not state it. labels: name -> how it is printed.
     """
 
     results: dict[str, Results]

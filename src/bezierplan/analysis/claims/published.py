@@ -9,24 +9,24 @@ import pandas as pd
 
 from bezierplan.analysis.claims import effects
 
-# Statistics that may stand for a check which names none, the first that is printed of every cell.
+# Statistics for a check that names none: the first that is printed for every cell is used.
 _ANY_STATISTIC = ("mean", "median", "unstated", "share", "count", "min", "max")
 
 
 class Printed(NamedTuple):
-    """Printed numbers of one cell: the number of their table, and statistic -> (row in it, value, how many runs it is of)."""
+    """Printed numbers of one cell: the number of their table, and statistic -> (row in it, value, number of runs)."""
 
     table: int
     statistics: dict[str, tuple[int, float, float]]
 
 
 def printed(check: dict, found: Sequence[Sequence[Printed | None]]) -> tuple[np.ndarray, int | None]:
-    """Printed numbers of cells (k,), averaged over conditions, and how many runs they are of, None if that is not printed.
+    """Printed numbers of cells (k,), averaged over conditions, and their number of runs, None if that is not printed.
 
     found: of each condition, of each cell, its rows as from `rows_of_cell`.
 
-    All of one statistic: the check's own or an unstated one; where it names none, the first of `_ANY_STATISTIC` that is printed of every
-    cell. Not a number where a cell is not printed, or where two cells would have the same row (the paper does not tell them apart).
+    All use one statistic: the check's own or an unstated one; if it names none, the first of `_ANY_STATISTIC` that is printed for every
+    cell. NaN where a cell is not printed, or where two cells share a row (the paper does not distinguish them).
     """
     cells = len(found[0])
     nothing = np.full(cells, np.nan), None
@@ -46,9 +46,9 @@ def printed(check: dict, found: Sequence[Sequence[Printed | None]]) -> tuple[np.
 
 
 def rows_of_cell(cell: pd.DataFrame, metric: str, tables: list[tuple[str, pd.DataFrame]], variant_of: dict[str, str]) -> Printed | None:
-    """The printed numbers of a cell's metric; None if no table has it, or if the cell is several rows of it.
+    """The printed numbers of a cell's metric; None if no table has it, or if the cell matches several rows.
 
-    cell: the columns that tell its runs apart. tables: experiment and published numbers; the first that has the cell serves.
+    cell: the columns that distinguish its runs. tables: experiment and published numbers; the first with the cell is used.
     variant_of: method -> the method whose published numbers count.
     """
     for number, (experiment, table) in enumerate(tables):

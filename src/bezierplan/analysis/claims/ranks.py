@@ -1,8 +1,8 @@
-"""Tests of ranks: Wilcoxon's signed ranks with Pratt's zeros, and Mann and Whitney's test."""
+"""Rank tests: Wilcoxon's signed-rank test with Pratt's zeros, and the Mann-Whitney test."""
 
 import numpy as np
 
-# Of more differences the signed ranks are judged by their normal approximation.
+# With more differences, the signed-rank test uses the normal approximation.
 MOST_EXACT = 50
 
 
@@ -22,15 +22,15 @@ def rank_test(group: np.ndarray, other: np.ndarray, paired: bool) -> tuple[float
 
 
 def signed_rank_test(difference: np.ndarray) -> float:
-    """p of Wilcoxon's signed ranks with Pratt's zeros, against a median of zero; exact, ties or not, of up to `MOST_EXACT` differences.
+    """p of Wilcoxon's signed-rank test with Pratt's zeros, against a median of zero; exact, even with ties, up to `MOST_EXACT` differences.
 
-    scipy's test is as exact with ties up to 13 differences only, and takes a second for it.
+    scipy's test is exact with ties only up to 13 differences, and takes a second for that.
     """
     from scipy import stats
 
     if len(difference) > MOST_EXACT:
         return float(stats.wilcoxon(difference, zero_method="pratt", method="asymptotic").pvalue)
-    # Twice a rank is a whole number, tied or not.
+    # Twice a rank is an integer, tied or not.
     ranks = np.rint(2 * stats.rankdata(np.abs(difference))).astype(int)
     # How many of the equally likely assignments of signs give each sum of the positive ranks.
     signs = np.ones(1)
@@ -41,7 +41,7 @@ def signed_rank_test(difference: np.ndarray) -> float:
 
 
 def wins(group: np.ndarray, other: np.ndarray) -> float:
-    """Share of all pairs in which the first group's value is higher, ties half."""
+    """Share of all pairs in which the first group's value is higher, ties counted half."""
     ordered = np.sort(other)
     above, at_least = (np.searchsorted(ordered, group, side=side).sum() for side in ("left", "right"))
     return float((above + at_least) / 2 / len(group) / len(other))

@@ -1,4 +1,4 @@
-"""The checks of a claim in each of its variants, and those of counted work beside seconds."""
+"""The checks of a claim in each of its variants, and the checks of counted work next to seconds."""
 
 import itertools
 from typing import Any
@@ -8,15 +8,15 @@ from bezierplan.study.model import one_or_list
 
 
 def variants(claim: dict) -> list[dict[str, Any]]:
-    """Every combination of the values of a claim's variants, column -> value; the first one decides."""
+    """Every combination of the values of a claim's variants, column -> value; the first one is primary."""
     columns = claim.get("variants", {})
     return [dict(zip(columns, values)) for values in itertools.product(*columns.values())]
 
 
 def in_variant(checks: list[dict], first: dict[str, Any], assignment: dict[str, Any]) -> list[dict]:
-    """The checks with the values of an assignment in the place of the first ones, wherever a check names those.
+    """The checks with the values of an assignment instead of the first ones, wherever a check names those.
 
-    A list takes the place of a list, member by member. A column of which no check names the first value is one more condition of `where`.
+    Lists are replaced member by member. A column whose first value no check names becomes one more condition of `where`.
     """
     for column, chosen in assignment.items():
         pairs = dict(zip(one_or_list(first[column]), one_or_list(chosen), strict=True))
@@ -56,7 +56,7 @@ def _replaced(values: Any, pairs: dict) -> Any:
 
 
 def with_work(check: dict) -> list[dict]:
-    """A check of seconds that names counted work, as that of the work, which decides, and that of the seconds, which is reported."""
+    """A check of seconds that names counted work, split into a primary check of the work and a secondary one of the seconds."""
     if "work" not in check:
         return [check]
     seconds = {key: value for key, value in check.items() if key != "work"}

@@ -1,16 +1,16 @@
 """From the comparisons of a claim to marks, to one verdict, and to words that say where the claim holds.
 
-A comparison has two marks, one from its own p and one from its p within the family, which are all comparisons of a claim's deciding checks
-in one variant. The procedure is a standard one at each step:
+A comparison has two marks, one from its own p and one from its p within the family: all comparisons of a claim's primary checks in one
+variant. The procedure is a standard one at each step:
 
-- All comparisons have to hold: the sentence is supported if every comparison is `+` by itself. This is an intersection-union test, which
-  needs no correction (Berger 1982, Technometrics 24, 295). Everything else is said with the p of the family.
-- Any comparison may hold: the sentence is supported if one is `+` in the family, and contradicted if every one is `-` by itself.
-- The family is corrected by Benjamini and Hochberg (1995, J. R. Stat. Soc. B 57, 289). It finds something exactly where Simes' global test
+- All comparisons have to hold: the sentence is supported if every comparison is `+` on its own. This is an intersection-union test, which
+  needs no correction (Berger 1982, Technometrics 24, 295). Everything else uses the p of the family.
+- Any comparison may hold: the sentence is supported if one is `+` in the family, and contradicted if every one is `-` on its own.
+- The family is corrected by Benjamini and Hochberg (1995, J. R. Stat. Soc. B 57, 289). It finds something exactly when Simes' global test
   rejects "no effect anywhere" (1986, Biometrika 73, 751), so at most 5 % of sentences without any effect get a mark other than `0` and `?`.
-  Comparisons that share a method depend on each other positively, which the procedure allows (Benjamini and Yekutieli 2001, Ann. Stat. 29,
-  1165). The least p of ten pairs is 0.002: Holm's correction over 30 comparisons can never bring it below 0.05, this one can.
-- A `+` or `-` needs, beside p, an effect of the size of the margin (Goodman, Spruill and Komaroff 2019, Am. Stat. 73, 168).
+  Comparisons that share a method are positively dependent, which the procedure allows (Benjamini and Yekutieli 2001, Ann. Stat. 29,
+  1165). The least p of ten pairs is 0.002: Holm's correction over 30 comparisons can never bring it below 0.05; this one can.
+- In addition to p, a `+` or `-` needs an effect as large as the margin (Goodman, Spruill and Komaroff 2019, Am. Stat. 73, 168).
 - A `0` needs an interval within the margin (two one-sided tests, Schuirmann 1987, J. Pharmacokinet. Biopharm. 15, 657).
 """
 
@@ -22,11 +22,11 @@ import numpy as np
 from bezierplan.analysis.claims.effects import ALPHA, Finding
 
 VERDICTS = ("supported", "mostly", "in part", "seldom", "contradicted", "no effect", "undecided", "untestable")
-# Of the comparisons that are decided at least this share makes it `mostly`, at most the rest `seldom`; of all as many have to be decided.
+# Least share of + among decided comparisons for `mostly` (1 minus it is the most for `seldom`); least share of all that must be decided.
 MOSTLY, DECIDED = 0.75, 0.5
-# So many names are listed; of more only the number is given. So many mixed groups are described one by one.
+# Up to this many names are listed, otherwise only counted. Up to this many mixed groups are described one by one.
 MOST_LISTED, MOST_MIXED = 4, 3
-# By so many factors comparisons are split.
+# Number of factors by which comparisons are split.
 DEPTH = 2
 
 
@@ -38,7 +38,7 @@ def family(p: np.ndarray) -> np.ndarray:
 
 
 def mark(finding: Finding, p: float) -> str:
-    """The mark of a comparison by a p of its own or of its family."""
+    """The mark of a comparison, from its own p or that of its family."""
     if finding.mark:
         return finding.mark
     if finding.toward and p < ALPHA:
@@ -47,7 +47,7 @@ def mark(finding: Finding, p: float) -> str:
 
 
 def verdict(alone: Sequence[str], together: Sequence[str], holds: str) -> str:
-    """The verdict on a claim that holds if `all` or `any` comparisons do, by the marks of each alone and in the family (at least one)."""
+    """The verdict on a claim that holds if `all` or `any` comparisons do, from their marks alone and in the family (at least one)."""
     found = set(together)
     if set(alone) == {"+"} or (holds == "any" and "+" in found):
         return "supported"
@@ -72,7 +72,7 @@ def _partly(marks: Sequence[str]) -> str:
 
 
 class Marked(NamedTuple):
-    """A comparison as far as words tell of it: factor -> value (`against`, `group`, `in`, columns), and its mark."""
+    """A comparison for its description in words: factor -> value (`against`, `group`, `in`, columns), and its mark."""
 
     factors: Mapping[str, Any]
     mark: str
@@ -81,9 +81,9 @@ class Marked(NamedTuple):
 def where_it_holds(comparisons: Sequence[Marked], labels: Mapping[str, str]) -> str:
     """Which comparisons of a claim hold and which do not, in words; empty if all or none do.
 
-    The comparisons are split by the factor that separates best what holds from what does not, and what is mixed once more by another one;
-    numbers in brackets are how many of those left hold.
-    labels: name -> how readers see it. Example: `against 5 of 7: all but Circle and Sinusoidal`.
+    The comparisons are split by the factor that best separates those that hold from those that do not; mixed groups are split again by
+    another factor. Numbers in brackets say how many of the remaining ones hold.
+    labels: name -> how it is printed. Example: `against 5 of 7: all but Circle and Sinusoidal`.
     """
     wanted = "+" if any(each.mark == "+" for each in comparisons) else "-"
     holding = [each.mark == wanted for each in comparisons]
@@ -114,7 +114,7 @@ def _described(comparisons: Sequence[Marked], wanted: str, labels: Mapping[str, 
 
 
 def _best_factor(comparisons: Sequence[Marked], wanted: str) -> str | None:
-    """The factor of all comparisons whose values are least mixed (by Gini's impurity), the first of equals; None if none has two values."""
+    """The factor of all comparisons with the least mixed values (Gini impurity), the first among equals; None if none has two values."""
     best, least = None, np.inf
     for factor in [factor for factor in comparisons[0].factors if all(factor in each.factors for each in comparisons)]:
         parts: dict[Any, list[bool]] = {}
@@ -127,7 +127,7 @@ def _best_factor(comparisons: Sequence[Marked], wanted: str) -> str | None:
 
 
 def _chosen(factor: str, chosen: list, every: list, labels: Mapping[str, str]) -> str:
-    """Words for some of the values of a factor."""
+    """Words for a subset of a factor's values."""
     others = [value for value in every if value not in chosen]
     few = len(chosen) > len(others) and len(others) <= MOST_LISTED and len(every) > MOST_LISTED
     if few and _before(factor).startswith("at "):

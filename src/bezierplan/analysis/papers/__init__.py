@@ -1,1 +1,1 @@
-"""What only one paper needs: one file a paper, with its audit and the claims that no kind of test fits."""
+"""Code specific to one paper: one file per paper, with its audit and the claims that fit no kind of test."""

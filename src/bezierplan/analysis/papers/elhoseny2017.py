@@ -1,5 +1,5 @@
-"""elhoseny2017: the worked example of the Q statistic, claims on printed numbers, an audit of its tables and text, the radius of the
-obstacles that fits the printed lengths, and its drawings.
+"""elhoseny2017: the worked example of the Q statistic, claims about printed numbers, an audit of its tables and text, the obstacle
+radius that fits the printed lengths, and its drawings.
 
 Numbers of equations, sections, tables and figures are the paper's.
 """
@@ -35,12 +35,12 @@ def solutions(published: dict[str, pd.DataFrame]) -> dict[str, np.ndarray]:
 
 
 def counts(one: np.ndarray, other: np.ndarray) -> dict[str, int]:
-    """Section 3.3: the numbers of genes that have these values in one solution and in the other."""
+    """Section 3.3: the number of genes with each pair of values in one solution and the other."""
     return {f"N{a}{b}": int(((one == a) & (other == b)).sum()) for a, b in ((1, 1), (0, 0), (1, 0), (0, 1))}
 
 
 def q_table(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """Table 1 with what follows from it: genes of the solutions, counts and Q (equation 10) of their pairs, and the mean Q."""
+    """Table 1 and derived quantities: genes of the solutions, counts and Q (equation 10) of their pairs, and the mean Q."""
     genes = solutions(published)
     rows = [{"solutions": name, **{f"gene {gene}": value for gene, value in enumerate(values, 1)}} for name, values in genes.items()]
     pairs = [
@@ -54,7 +54,7 @@ def q_table(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
 
 
 def q_example(check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]) -> tuple[str, float, None, int]:
-    """Claim C20: do the Q statistics of Table 1 agree with the text? The effect is the largest difference from a printed value."""
+    """Claim C20: whether the Q statistics of Table 1 agree with the text. The effect is the largest difference from a printed value."""
     genes = solutions(published)
     found = {pair: q_of_rows(genes[pair[0]], genes[pair[1]]) for pair in SAID_Q}
     mean = float(np.mean(list(found.values())))
@@ -64,11 +64,11 @@ def q_example(check: dict, results: dict[str, Results], published: dict[str, pd.
 
 
 def printed_over_bound(check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]) -> tuple[str, float, None, int]:
-    """Claim C23: is no printed length of a rival larger than such fields explain?
+    """Claim C23: whether no printed length of a rival is larger than such fields explain.
 
     A path that never turns back in x or in y counts at most two cells for every cell of the side. Shortest paths among such obstacles do
-    not turn back, so a printed mean above that is more than the fields explain. The effect is the largest printed length over the mean of
-    the least path of cells in our fields; the units are the fields.
+    not turn back, so the fields cannot explain a larger printed mean. The effect is the largest printed length over the mean length of
+    the shortest path of cells in our fields; the units are the fields.
     """
     ratios, explained, fields = [], [], 0
     for name, table in (("fields100", "table2"), ("fields200", "table3")):
@@ -83,12 +83,12 @@ def printed_over_bound(check: dict, results: dict[str, Results], published: dict
 
 
 def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
-    """What of the printed numbers does not fit the text, other tables or the rule by which lengths are counted.
+    """Printed numbers that contradict the text, other tables or the rule for counting lengths.
 
-    A straight diagonal counts 1.5 cells for each of the side, which no path between opposite corners falls below; a path that never turns
-    back counts at most 2. Sentences of Section 4.6 stand beside the tables: PRM the longest, the proposed method cheaper than all others
-    in all cases. Two tables print times of methods of the same name. Section 3.3.1 counts pairs of its example, and Section 3.3 has eta
-    decrease linearly to 0.
+    A straight diagonal counts 1.5 cells per cell of the side, the minimum for a path between opposite corners; a path that never turns
+    back counts at most 2. Sentences of Section 4.6 are checked against the tables: PRM the longest, the proposed method cheaper than all
+    others in all cases. Two tables print times for methods of the same name. Section 3.3.1 counts pairs of its example, and in Section
+    3.3 eta decreases linearly to 0.
     """
     rows = []
     for table, side in (("table2", 100), ("table3", 200)):
@@ -148,12 +148,12 @@ def _row(item: str, place: str, rule: str, printed: float, limit: float, consist
 
 
 def _place(row: tuple) -> str:
-    """Which cell of Table 2 or 3 a printed number is."""
+    """The cell of Table 2 or 3 that holds a printed number."""
     return f"route={row.route}, obstacles={row.obstacles}, method={row.method}"
 
 
 # ---------------------------------------------------------------------------------------------------------------------
-# The radius of the obstacles, which the paper does not give, from its lengths
+# The radius of the obstacles, which the paper does not state, inferred from its lengths
 
 
 def printed_times(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
@@ -169,10 +169,10 @@ MORE_OBSTACLES = (25, 50, 100, 200, 400)
 
 
 def memory() -> pd.DataFrame:
-    """What empty fields of some sides take in memory, and one side's with many obstacles; columns: side, obstacles, held (what is),
+    """Memory used by empty fields of several sides, and by one with many obstacles; columns: side, obstacles, held (what is stored),
     megabytes.
 
-    The occupied cells serve all planners; the certified check has them once more, with all edges and corners of cells.
+    All planners share the occupied cells; the certified check stores them again, with all edges and corners of cells.
     """
     empty = [(side, 0, Circles((0.0, side, 0.0, side), np.empty((0, 2)), np.empty(0), "cell")) for side in LARGER_SIDES]
     fields = [(side, count, random_field.from_circles(circles)) for side, count, circles in empty]
@@ -195,8 +195,8 @@ OBSTACLES = (5, 10, 15, 20, 25)
 def expected_length(side: int, radius: float, obstacles: np.ndarray | int) -> np.ndarray | float:
     """Mean of `cells4` of paths between opposite corners that never turn back, in cells; radius: a share of the side.
 
-    Such a path counts 2 cells for each of the side, but 1.5 along the free diagonal. A circle whose centre is uniform in the square leaves
-    the diagonal free with the probability (1 - sqrt(2) radius)^2: the share of the square that is further from it than the radius.
+    Such a path counts 2 cells per cell of the side, but 1.5 along a free diagonal. A circle with its centre uniform in the square leaves
+    the diagonal free with probability (1 - sqrt(2) radius)^2: the share of the square farther from the diagonal than the radius.
     """
     free = (1 - np.sqrt(2) * radius) ** (2 * np.asarray(obstacles))
     return side * (2 - (2 - DIAGONAL) * free)
@@ -210,16 +210,16 @@ def _printed_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
 
 
 def _errors(printed: pd.DataFrame, side: int, radius: float) -> tuple[float, float]:
-    """Mean absolute difference of the printed lengths of a side from the expected ones, in cells, and as a share of their mean."""
+    """Mean absolute difference between printed and expected lengths for a side, in cells, and as a share of their mean."""
     own = printed[printed["side"] == side]
     error = float((own["value"] - expected_length(side, radius, own["obstacles"])).abs().mean())
     return error, error / own["value"].mean()
 
 
 def radius_fit(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """The printed lengths of the proposed method, those expected with obstacles of some radii, and how far these are off.
+    """The printed lengths of the proposed method, those expected for several obstacle radii, and the errors of the latter.
 
-    The last rows have the radius of least error, the mean over both sides of the errors relative to the mean length, among all thousandths
+    The last rows have the radius with the least error (relative to the mean length, averaged over both sides), in steps of a thousandth
     of the side.
     """
     printed = _printed_lengths(published)
@@ -253,7 +253,7 @@ def radius_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
 
 
 def radius_errors(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """How far the expected lengths are off, against the radius; columns: radius (a share of the side), side, relative_error."""
+    """The error of the expected lengths against the radius; columns: radius (a share of the side), side, relative_error."""
     printed = _printed_lengths(published)
     return pd.DataFrame(
         [
@@ -273,10 +273,10 @@ PARENTS = ("0011", "0000")
 
 
 def crossover_and_mutation() -> pd.DataFrame:
-    """Figure 1: marks of the sixteen chromosomes of four digits, once with what crossover makes of the parents of Section 2.2.1, and once
-    with what mutation makes of the first; column operator.
+    """Figure 1: marks of the sixteen four-digit chromosomes, once with the crossover of the parents of Section 2.2.1, and once with the
+    mutation of the first; column operator.
 
-    The first two digits decide the row and the last two the column, so that neighbours differ in one digit.
+    The first two digits give the row and the last two the column, so that neighbours differ in one digit.
     """
     rows, columns = ("10", "00", "01", "11"), ("00", "01", "11", "10")
     at = {row + column: (i, -j) for i, column in enumerate(columns) for j, row in enumerate(rows)}
@@ -304,16 +304,16 @@ def crossover_and_mutation() -> pd.DataFrame:
 
 
 class Verdict(NamedTuple):
-    """What Section 3.2.2 says of a point that is to be a control point: obstacle, too near, or accepted."""
+    """The verdict of Section 3.2.2 on a candidate control point: obstacle, too near, or accepted."""
 
     point: tuple[int, int]
     word: str
 
 
 def verdicts(points: np.ndarray, grid: Grid, least: float) -> list[Verdict]:
-    """The subprocesses `Obstacles` and `Distance Threshold` of Section 3.2.2 for points (n, 2), one after the other, in units of cells.
+    """The subprocesses `Obstacles` and `Distance Threshold` of Section 3.2.2, applied to points (n, 2) in turn, in units of cells.
 
-    least: the smallest distance of a point from those accepted before.
+    least: the smallest allowed distance from the points accepted before.
     """
     found: list[Verdict] = []
     for x, y in points.tolist():
@@ -329,7 +329,7 @@ def verdicts(points: np.ndarray, grid: Grid, least: float) -> list[Verdict]:
 
 
 def curve_through(points: list[tuple[int, int]], start: tuple[int, int], target: tuple[int, int]) -> Path:
-    """The Bezier curve of control points, which are joined by their projection on the line from start to target."""
+    """The Bezier curve of control points, ordered by their projection on the line from start to target."""
     along = np.subtract(target, start)
     order = sorted(points, key=lambda point: float(np.dot(np.subtract(point, start), along)))
     return Path("bezier", np.array([start, *order, target], dtype=float))
@@ -340,7 +340,7 @@ def is_free(path: Path, grid: Grid) -> bool:
     return occupied_cells(*touched_cells(*samples(path, grid)), grid.occupied) == 0
 
 
-# Fig. 3: 25 places. Its field and its points are not told; here one circle covers the cell in the middle.
+# Fig. 3: 25 places. The paper gives neither its field nor its points; here one circle covers the central cell.
 CHROMOSOME_SIDE = 4
 CHROMOSOME_POINTS = 2
 
@@ -348,8 +348,8 @@ CHROMOSOME_POINTS = 2
 def chromosome() -> pd.DataFrame:
     """Figure 3: marks of a field of 25 places, the curve of a valid chromosome in it, and below it the chromosome's genes.
 
-    Every cell is a gene; its number grows by one upwards, and by five to the right. The chromosome is the first valid one of random ones
-    with two control points.
+    Every cell is a gene; its number grows by one upwards, and by five to the right. The chromosome is the first valid one among random
+    ones with two control points.
     """
     side = CHROMOSOME_SIDE
     grid = random_field.from_circles(Circles((0, side, 0, side), np.array([[2.0, 2.0]]), np.array([0.8]), "cell"))
@@ -382,7 +382,7 @@ def chromosome() -> pd.DataFrame:
     return pd.DataFrame(marks)
 
 
-# Fig. 4: ten points, three obstacles and the least distance are told; the field is that of Fig. 2, the radius that of its circles.
+# Fig. 4: the paper gives ten points, three obstacles and the least distance; the field is that of Fig. 2, the radius that of its circles.
 LEAST_DISTANCE = 2.5
 CANDIDATES = 10
 VALIDATION = {"radius": 0.05, "clear_ends": 2.0, "unit": "cell"}
@@ -390,10 +390,10 @@ VALIDATED = {"side": 20, "start": (4, 0), "target": (16, 18), "obstacles": 3}
 
 
 def validation() -> pd.DataFrame:
-    """Figure 4: marks of ten random points in a field, tested one after the other, the circles of the least distance around those that may
-    be control points, and their curve. Further columns: candidate (its number) and verdict.
+    """Figure 4: marks of ten random points in a field, tested in turn, circles of the least distance around the accepted points, and their
+    curve. Further columns: candidate (its number) and verdict.
 
-    Of random fields and points, those of the first number are drawn in which each rule rejects a point and the curve is free.
+    The random fields and points shown are the first in which each rule rejects a point and the curve is free.
     """
     start, target = VALIDATED["start"], VALIDATED["target"]
     for number in itertools.count():

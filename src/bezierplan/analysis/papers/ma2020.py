@@ -1,4 +1,4 @@
-"""ma2020: its drawings, what can be computed from its printed numbers alone, the claim about curvature, and its audit."""
+"""ma2020: its drawings, quantities computed from its printed numbers alone, the claim about curvature, and its audit."""
 
 import math
 
@@ -16,27 +16,27 @@ STRAIGHT = SIDE * math.sqrt(2)
 # Methods that plan on cells.
 LATTICE_METHODS = ("aco", "ga", "aco_ga", "asfa_ga")
 
-# A length s + d sqrt(2) is met if it is no farther than this, in cells: the paper prints four decimals, of a root that may be rounded to
-# 1.414, and no printed minimum of the four lattice methods is farther.
+# Tolerance, in cells, for matching a length s + d sqrt(2): the paper prints four decimals, with a root that may be rounded to 1.414,
+# and every printed minimum of the four lattice methods is within it.
 LATTICE_TOLERANCE = 0.0045
 
-# A time that is at most so many times another one is slightly longer.
+# A time up to this many times another counts as slightly longer.
 SLIGHTLY = 1.5
 
-# The five points of Fig. 1 are a picture; these are points of about such a zigzag.
+# Fig. 1 gives its five points only as a picture; these form a similar zigzag.
 ZIGZAG = np.array([(0, 0), (1.5, 4), (5, 3), (6, 7.5), (10, 6), (11, 10), (14, 12)], dtype=float)
 
-# Two chromosomes of ten genes, cut as in Fig. 2 between the seventh gene and the eighth.
+# Two chromosomes of ten genes, cut between the seventh and eighth gene as in Fig. 2.
 PARENTS = np.array([[380, 341, 322, 283, 264, 205, 167, 128, 69, 39], [361, 342, 303, 245, 206, 187, 149, 110, 72, 18]])
 CUT = 7
 
-# Parameters at which the speed of a curve is taken, and the share of its greatest below which it stands still.
+# Number of parameters at which the speed of a curve is sampled, and the share of its maximum below which it counts as zero.
 SPEED_SAMPLES = 20_001
 STILL = 1e-6
 
 
 def corners_and_curve() -> pd.DataFrame:
-    """Marks of Figure 1, column `drawn`: a path with corners, the Bezier curve with these as its control points, and both."""
+    """Marks of Figure 1, column `drawn`: a path with corners, the Bezier curve with these corners as control points, and both."""
     steps = curves.sample_matrix("bezier", len(ZIGZAG), 201) @ ZIGZAG
     corners = _line(ZIGZAG, "second", "path with corners")
     curve = _line(steps, "first", "Bezier curve")
@@ -53,7 +53,7 @@ def crossover() -> pd.DataFrame:
     frames = []
     for drawn, rows in (("before", PARENTS), ("after", children)):
         for height, row in zip((1.3, 0.0), rows):
-            # A gene keeps the colour of the chromosome that it began in.
+            # A gene keeps the colour of its original chromosome.
             for place, gene in enumerate(row):
                 role = "accent" if gene == PARENTS[0, place] else "muted"
                 box = {"mark": "cell", "role": role, "x": place, "y": height, "width": 0.96, "height": 0.8}
@@ -78,10 +78,10 @@ def _marks(mark: str, points: np.ndarray, role: str, label: str) -> pd.DataFrame
 
 
 def nearest_lattice_length(length: float) -> tuple[int, int]:
-    """Straight and diagonal moves of the paths of 8 neighbours from corner to corner of the map whose length is nearest to a given one.
+    """Straight and diagonal moves of the 8-connected paths from corner to corner of the map whose length is nearest to a given one.
 
-    The half diagonals from start and to target count as one diagonal move. The straight moves are even in number, and with s straight and
-    d diagonal moves s + 2 d is at least twice the side.
+    The half diagonals from start and to target count as one diagonal move. The number of straight moves is even, and with s straight
+    and d diagonal moves, s + 2 d is at least twice the side.
     """
     found = []
     for diagonal in range(1, int(length / math.sqrt(2)) + 2):
@@ -91,10 +91,10 @@ def nearest_lattice_length(length: float) -> tuple[int, int]:
 
 
 def lattice_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """Printed shortest and longest lengths beside the nearest length of a path of 8 neighbours.
+    """Printed shortest and longest lengths next to the nearest length of an 8-connected path.
 
-    Columns: workspace, method, statistic, printed, straight moves, diagonal moves, lattice length, distance (cells), chance (that a length
-    drawn at random is as near, in the range, in whole cells, of the printed lengths of this statistic of the lattice methods), met.
+    Columns: workspace, method, statistic, printed, straight moves, diagonal moves, lattice length, distance (cells), chance (the
+    probability that a random length is as near, over the lattice methods' printed range of this statistic, in whole cells), met.
     """
     lengths = pd.concat([published["table1"], published["table2"]])
     lengths = lengths[(lengths["metric"] == "length") & (lengths["statistic"] != "mean")]
@@ -124,7 +124,7 @@ def lattice_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
 
 
 def chance_of_lattice(low: float, high: float, tolerance: float) -> float:
-    """The probability that a length drawn uniformly from an interval is within a tolerance of one of a path of 8 neighbours."""
+    """The probability that a length drawn uniformly from an interval is within a tolerance of the length of an 8-connected path."""
     diagonal, straight = np.meshgrid(np.arange(1, int(high)), np.arange(0, int(high) + 2, 2))
     lengths = np.sort((straight + diagonal * math.sqrt(2))[straight + 2 * diagonal >= 2 * SIDE])
     starts, ends = np.clip(lengths - tolerance, low, high), np.clip(lengths + tolerance, low, high)
@@ -135,9 +135,9 @@ def chance_of_lattice(low: float, high: float, tolerance: float) -> float:
 def continuous_curvature(
     check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]
 ) -> tuple[str, float, tuple[float, float] | None, int]:
-    """Claim C20: is every feasible path one polynomial piece that stands still nowhere? Then its curvature is continuous.
+    """Claim C20: whether every feasible path is one polynomial piece with non-zero speed everywhere, so that its curvature is continuous.
 
-    The effect is the largest jump of curvature at the joints of pieces, which a path of one piece has none of.
+    The effect is the largest jump of curvature at the joints of pieces; a path of one piece has no joints.
     """
     runs = select(results[check["experiment"]].runs, check.get("where", {}))
     paths = [path_of(run) for _, run in runs[runs["feasible"].astype(bool)].iterrows()]
@@ -154,11 +154,11 @@ def _least_speed(pieces: np.ndarray) -> float:
 
 
 def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
-    """What of the printed numbers cannot be, or does not fit what is printed elsewhere.
+    """Printed numbers that are impossible, or contradict others.
 
-    Every shortest and longest path of the four lattice methods would have the length of a path of 8 neighbours if they plan on cells: all
-    minima have, the maxima have not. No path is shorter than the straight line. Shares of occupied cells are whole numbers of cells. What
-    the text says of lengths and times stands beside the tables.
+    If the four lattice methods plan on cells, each of their shortest and longest paths has the length of an 8-connected path: all minima
+    do, the maxima do not. No path is shorter than the straight line. Shares of occupied cells are whole numbers of cells. Statements in
+    the text about lengths and times are checked against the tables.
     """
     tables = {name: published[name] for name in ("table1", "table2")}
     rows = []

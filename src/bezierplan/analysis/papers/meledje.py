@@ -1,4 +1,4 @@
-"""meledje: what its Figures 2 to 4 draw, and an audit of its Tables 2 to 5.
+"""meledje: the drawings of its Figures 2 to 4, and an audit of its Tables 2 to 5.
 
 Numbers of equations, sections, tables and figures are the paper's. Drawings use the operators of the planner itself.
 """
@@ -20,16 +20,16 @@ from bezierplan.workspaces.ground import centres, ground_of, obstacles_met
 # Figure 2: cells of a grid of 10 x 10, numbered from 1.
 CHROMOSOME = (1, 41, 65, 35, 38, 60, 100)
 SIDE = 10
-BESIDE = 0.45  # of a cell: nearer to the path there is no room for a number
+BESIDE = 0.45  # of a cell: any nearer to the path there is no room for a number
 
-# Figure 3: a parent beside that of Figure 2, and behind how many nodes both are cut.
+# Figure 3: a second parent in addition to that of Figure 2, and the number of nodes after which both are cut.
 OTHER = (1, 22, 54, 77, 100)
 CUT = 3
 
 # Figure 4, on the map `operators`: columns and rows of the nodes of a feasible path, and of one whose second edge meets an obstacle.
 FREE_PATH = ((0, 0), (2, 4), (5, 5), (9, 6))
 BLOCKED_PATH = ((0, 0), (1, 2), (6, 5), (8, 5), (9, 6))
-# The settings in force, as far as operators read them.
+# The settings in force that the operators read.
 RULES = node_genetic.Rules(
     mutation=0,
     population=2,
@@ -51,14 +51,14 @@ RULES = node_genetic.Rules(
     elitism=0,
     best_so_far=False,
 )
-# Among so many seeds one is sought whose mutation shows what the paper says of the operator.
+# Number of seeds to search for one whose mutation shows what the paper says about the operator.
 SEEDS = 1000
 
 TRIALS = 100  # Section 4
 ALPHA = 0.05
 OTHERS = ("random", "ref12", "ref21")
 
-# What Section 4 says of the proposed mutation: (metric, words, 1 if the highest value is meant, -1 if the lowest).
+# What Section 4 says about the proposed mutation: (metric, words, 1 if the highest value is meant, -1 if the lowest).
 SAID = (
     ("optimal", "most optimal solutions", 1),
     ("found", "most optimal and near-optimal solutions together", 1),
@@ -71,12 +71,12 @@ SAID = (
 
 
 def chromosome() -> pd.DataFrame:
-    """Figure 2: the genes (part `genes`), and the path that they are on a grid of 10 x 10 cells (part `path`)."""
+    """Figure 2: the genes (part `genes`), and their path on a grid of 10 x 10 cells (part `path`)."""
     genes = _genes(CHROMOSOME, 0, ["accent", *["muted"] * (len(CHROMOSOME) - 2), "accent"])
     names = [{"mark": "text", "role": "note", "x": x, "y": -0.9, "text": word} for x, word in ((0, "start"), (3, "passage"), (6, "target"))]
     places = [_place(number) for number in CHROMOSOME]
     way = shapely.LineString(places)
-    # Cells that the path crosses between its nodes show no number, which it would make illegible.
+    # Cells that the path crosses between its nodes show no number, because the path would make it illegible.
     numbers = [number for number in range(1, SIDE * SIDE + 1) if shapely.Point(_place(number)).distance(way) > BESIDE]
     cells = [{"mark": "cell", "role": "free", **_box(*_place(number))} for number in range(1, SIDE * SIDE + 1)]
     others = [{"mark": "text", "role": "note", **_words(number, *_place(number))} for number in numbers]
@@ -86,7 +86,7 @@ def chromosome() -> pd.DataFrame:
 
 
 def crossover() -> pd.DataFrame:
-    """Figure 3: two parents (part `parents`) and their children (part `children`), the nodes of each parent in a look of their own."""
+    """Figure 3: two parents (part `parents`) and their children (part `children`), each parent's nodes in a distinct style."""
     one, other = np.array(CHROMOSOME), np.array(OTHER)
     frames = []
     for part, (first, second) in {"parents": (CHROMOSOME, OTHER), "children": (_child(one, other), _child(other, one))}.items():
@@ -105,10 +105,10 @@ def _child(head: np.ndarray, tail: np.ndarray) -> tuple[int, ...]:
 
 
 def mutations(grid: Grid) -> pd.DataFrame:
-    """Figure 4: a path before and after a mutation, by operator, and the cells that were tried in the place of the node.
+    """Figure 4: a path before and after a mutation, by operator, and the cells that were tried instead of the node.
 
     Random mutation makes a feasible path infeasible; reference 12 changes a node that is not before the obstacle, and the path stays
-    infeasible; the proposed mutation changes the one that is. The first seed that does is taken.
+    infeasible; the proposed mutation changes the one that is. The first seed with this result is used.
     """
     frames = []
     for operator, places in (("random", FREE_PATH), ("ref12", BLOCKED_PATH), ("proposed", BLOCKED_PATH)):
@@ -119,7 +119,7 @@ def mutations(grid: Grid) -> pd.DataFrame:
 
 
 def _shown(grid: Grid, operator: str, before: np.ndarray) -> Iterator[tuple[np.ndarray, int]]:
-    """Paths after a mutation that shows what is said of the operator, each with the place of the changed node."""
+    """Paths after a mutation that shows what the paper says about the operator, each with the index of the changed node."""
     ground = ground_of(grid, 1.0)
     drawn = np.setdiff1d(np.flatnonzero(~grid.occupied), before[[0, -1]])
     rules = RULES._replace(mutation=get_args(Mutation).index(operator))
@@ -154,7 +154,7 @@ def _place(number: int) -> tuple[float, float]:
 
 
 def _genes(numbers: Sequence[int], y: float, roles: Sequence[str]) -> Iterator[dict]:
-    """Marks of a chromosome, box beside box."""
+    """Marks of a chromosome, as a row of boxes."""
     for x, (number, role) in enumerate(zip(numbers, roles, strict=True)):
         yield from _gene(number, x, y, role)
 
@@ -173,17 +173,17 @@ def _words(number: int, x: float, y: float) -> dict:
 
 
 def _path(places: Sequence[tuple[float, float]], role: str, label: str) -> Iterator[dict]:
-    """Marks of a line through places, and of its nodes."""
+    """Marks of a line through places and of its nodes."""
     for x, y in places:
         yield {"mark": "line", "role": role, "group": label, "x": x, "y": y, "label": label}
 
 
 def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
-    """What of Tables 2 to 5 does not fit what is printed elsewhere.
+    """Numbers in Tables 2 to 5 that contradict others.
 
-    The three counts of a row add to the trials. What Section 4 says of the proposed mutation stands beside the numbers, by value alone; and
-    for counts beside Fisher's exact test, corrected by Holm over the twelve comparisons of the paper. Environment 2 ranks the operators by
-    optima as environment 1 does.
+    The three counts of a row add up to the trials. What Section 4 says about the proposed mutation is checked against the numbers, by value
+    alone and, for counts, by Fisher's exact test, with Holm's correction over the paper's twelve comparisons. Environment 2 ranks the
+    operators by optima as environment 1 does.
     """
     tables = {name: table.set_index(["method", "metric"])["value"] for name, table in published.items() if "problem" in table}
     rows = []
@@ -208,7 +208,7 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
 
 
 def _fisher_rows(tables: dict[str, pd.Series], metric: str, words: str, sign: int) -> list[dict]:
-    """Is the proposed mutation's count further from each other one than chance would have it?"""
+    """Whether the proposed mutation's count differs from each other one by more than chance."""
     from scipy import stats
 
     pairs = list(itertools.product(tables, OTHERS))

@@ -15,7 +15,7 @@ GENERATIONS = 100  # Section IV
 def genes_in_range(
     check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]
 ) -> tuple[str, float, tuple[float, float] | None, int]:
-    """Claim C8: genes outside of 0 .. 255 after a crossover at every kind of cut and a mutation at any bit, of random chromosomes."""
+    """Claim C8: genes outside 0 .. 255 after a crossover at every kind of cut and a mutation at any bit, in random chromosomes."""
     rng = np.random.default_rng(0)
     outside = 0
     for _ in range(TRIALS):
@@ -27,7 +27,7 @@ def genes_in_range(
 
 
 def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
-    """Does every minimal generation of Table I lie within the generations of Section IV?"""
+    """Whether every minimal generation of Table I lies within the generations of Section IV."""
     table = published["table1"]
     rows = table[table["metric"] == "generation_1pct"]
     return [

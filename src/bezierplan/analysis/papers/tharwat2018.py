@@ -1,4 +1,4 @@
-"""tharwat2018: the claims that a comparison of runs cannot judge, what its figures without runs draw, and an audit of its tables and text.
+"""tharwat2018: the claims that a comparison of runs cannot judge, data of its figures without runs, and an audit of its tables and text.
 
 Numbers of equations, sections, tables and figures are the paper's.
 """
@@ -17,23 +17,23 @@ from bezierplan.planners.parts import chaotic_maps
 from bezierplan.workspaces.problem import Problem, Workspace
 from bezierplan.workspaces.seeds import generator
 
-# Parameters of the maps in common use, where the paper gives a range or nothing.
+# Commonly used parameters of the maps where the paper gives a range or nothing.
 PARAMETERS = chaotic_maps.Parameters(singer_mu=1.07, singer_x4=13.302875, sine_a=4.0, piecewise_p=0.4, sinusoidal_a=2.3)
 
-# The three control points (x, y), in units, of the best single Bezier curves that are known, by workspace: of 300 long runs the ends were
-# improved by sequential quadratic programming. Their lengths are 7.7263 and 7.5180.
+# The three control points (x, y), in units, of the best known single Bezier curves, by workspace: the results of 300 long runs, improved
+# by sequential quadratic programming. Their lengths are 7.7263 and 7.5180.
 BEST_KNOWN = {
     "equal": ((-0.4768, 4.5057), (1.8022, 0.8887), (3.1746, 4.9328)),
     "public": ((0.7197, 2.1662), (-0.1836, 2.8501), (2.2284, 1.1334)),
 }
-# Such curves are sought from so many random ones, first with few samples; the best of these ends are improved with all samples.
+# The search for such curves starts from this many random ones, first with few samples; the best results are improved with all samples.
 STARTS, FEW_SAMPLES, IMPROVED = 40, 34, 10
-SAMPLES = 100  # of a path, as the planner takes
-MOST_POINTS = 4  # control points of the best curves that are sought
+SAMPLES = 100  # of a path, as in the planner
+MOST_POINTS = 4  # control points of the best curves to find
 
-MOVED = 1  # which of them moves in Figures 10 and 11: the middle one
+MOVED = 1  # the one that moves in Figures 10 and 11: the middle one
 GRID = 201  # places along each side of the field
-RIM = 0.01  # how far a valley's edge lies at least above its lowest node, as a share of its value
+RIM = 0.01  # least height of a valley's edge above its lowest node, as a share of its value
 
 START, TARGET = (0.0, 0.0), (4.0, 6.0)  # Section 5.1, in units
 
@@ -44,19 +44,19 @@ MOVED_PARTICLES = ((1.0, 1.5, 3.0, 0.5, 0.3), (13.0, -1.0, 11.5, 0.6, 0.25))
 INERTIA, C1, C2 = 1.0, 1.5, 1.5
 
 SEQUENCES = 100  # of the Gauss map
-FIRST_VALUES = 10  # left out of each of them
+FIRST_VALUES = 10  # discarded from each of them
 
-# Section 5.1: of so many rows each table's ranks are taken; Table 6 ranks the numbers of obstacles.
+# Section 5.1: the number of rows that each table ranks; Table 6 ranks the numbers of obstacles.
 RANKED = {"table3": 8, "table4": 8, "table5": 5, "table6": 10}
 PARTICLES = 20  # Table 2
 REPEATS = 10  # Section 5.1
 WHISKER = 1.5  # interquartile ranges from a box to the ends of its whiskers
-CONVERGED = 0.01  # runs that end so much above the shortest path of their class, as a share, have come to its optimum
+CONVERGED = 0.01  # runs that end within this share of the shortest path of their class have reached its optimum
 
 # The maps of Section 3.3, in its order.
 CHAOTIC = chaotic_maps.MAPS[:8]
 
-# What the text says of best values: (place, method said to be better, method said to be worse).
+# What the text says about best values: (place, method said to be better, method said to be worse).
 SAID = (
     ("5.3, Fig 8", "cpso1_singer", "cpso1_logistic"),
     ("5.3, Fig 8", "cpso1_logistic", "cpso1_sine"),
@@ -72,7 +72,7 @@ SAID = (
 
 
 def chaotic_sequences() -> pd.DataFrame:
-    """Figure 3: a row for each map of the paper and iteration; columns: map, iteration (1 to 500), value. One random start for each map."""
+    """Figure 3: one row per map of the paper and iteration; columns: map, iteration (1 to 500), value. Each map has one random start."""
     rng = np.random.default_rng(0)
     frames = []
     for name in CHAOTIC:
@@ -83,7 +83,7 @@ def chaotic_sequences() -> pd.DataFrame:
 
 
 def ends(workspace: Workspace) -> pd.DataFrame:
-    """Figure 5: marks of start and target, whatever the circles."""
+    """Figure 5: marks of start and target, for any circles."""
     dots = [("dots", role, role, *place) for role, place in (("start", START), ("target", TARGET))]
     return pd.DataFrame(dots, columns=["mark", "role", "label", "x", "y"])
 
@@ -99,7 +99,7 @@ def movement() -> pd.DataFrame:
         parts = {"w v": INERTIA * v, "C1 r1 (p - x)": C1 * r1 * (p - x), "C2 r2 (G - x)": C2 * r2 * (G - x)}
         moved = x + sum(parts.values())
         names = zip(("inertia", "cognition", "social part"), ("third", "first", "second"), parts.items(), strict=True)
-        aside = math.copysign(1.0, G - x)  # words stand beyond the heads
+        aside = math.copysign(1.0, G - x)  # words are placed beyond the heads
         rows.append({"mark": "line", "role": "muted", "group": f"line {number}", "x": -1.0, "y": line})
         rows.append({"mark": "line", "role": "muted", "group": f"line {number}", "x": 15.0, "y": line})
         tail = x
@@ -160,10 +160,10 @@ def flow_chart() -> pd.DataFrame:
 def gauss_above(
     check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]
 ) -> tuple[str, float, tuple[float, float] | None, int]:
-    """Claim C39: the share of values above 0.7 in long sequences of the Gauss map, their first values left out.
+    """Claim C39: the share of values above 0.7 in long sequences of the Gauss map, without their first values.
 
     It has a limit, 1 - log2(1.7) = 0.234, since the map's values have the density 1 / ((1 + x) ln 2). The interval is that of the mean over
-    sequences, each of which is one unit.
+    sequences, each one unit.
     """
     rng = np.random.default_rng(0)
     shares = []
@@ -179,10 +179,10 @@ def gauss_above(
 def bowl_with_local_minima(
     check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]
 ) -> tuple[str, float, tuple[float, float] | None, int]:
-    """Claim C16: is the fitness over one control point a bowl, and are there several local minima in it?
+    """Claim C16: whether the fitness over one control point is a bowl with several local minima.
 
     The effect is Spearman's correlation, over the nodes of `landscape`, of the fitness with the distance to the best node. A bowl has more
-    than 0.5, and a second valley makes several: + if both hold, - if either fails.
+    than 0.5, and a second valley means several minima: + if both hold, - if either fails.
     """
     from scipy import stats
 
@@ -198,7 +198,7 @@ def bowl_with_local_minima(
 def fitness_landscape(results: Results) -> pd.DataFrame:
     """Figures 10 to 12: `landscape` of the problem of runs, with the settings in force.
 
-    Columns: part, x, y, objective; parts: node, minimum (of a valley), lowest (the lowest node), fixed (control points that stay).
+    Columns: part, x, y, objective; parts: node, minimum (of a valley), lowest (the lowest node), fixed (control points that do not move).
     """
     surface = _landscape(results).rename(columns={"fitness": "objective"})
     minima = surface[valleys(surface["objective"].to_numpy().reshape(GRID, GRID)).ravel()]
@@ -233,8 +233,8 @@ def best_curves(workspace: Workspace) -> pd.DataFrame:
 def best_curve(problem: Problem, control_points: int, samples: int) -> tuple[float, np.ndarray]:
     """Length, in units, and control points (control_points + 2, 2) of the shortest free Bezier curve that a search from many starts finds.
 
-    Length and freedom are those of so many samples. The starts, random curves about the straight line and across the field by turns, are
-    the same in every call. Raises ValueError if none of them leads to a free curve.
+    Length and freedom from collision are those of the given number of samples. The starts, alternately random curves about the straight
+    line and across the field, are the same in every call. Raises ValueError if none of them leads to a free curve.
     """
     rng = np.random.default_rng(0)
     x_low, x_high, y_low, y_high = problem.workspace.bounds
@@ -253,7 +253,7 @@ def best_curve(problem: Problem, control_points: int, samples: int) -> tuple[flo
 
 
 def _shortened(problem: Problem, free: np.ndarray, samples: int) -> tuple[float, np.ndarray]:
-    """The end of a sequential quadratic programme from free control points (n, 2): length, infinite if it collides, and all points."""
+    """The result of sequential quadratic programming from free control points (n, 2): length, infinite if it collides, and all points."""
     from scipy import optimize
 
     basis = curves.sample_matrix("bezier", len(free) + 2, samples)
@@ -282,23 +282,23 @@ def _shortened(problem: Problem, free: np.ndarray, samples: int) -> tuple[float,
 
 
 def landscape(problem: Problem, workspace: str, samples: int, beta: float) -> pd.DataFrame:
-    """Figures 10 and 11: fitness of a Bezier curve of which one control point moves over the field, the others as in `BEST_KNOWN`.
+    """Figures 10 and 11: fitness of a Bezier curve with one control point moving over the field, the others as in `BEST_KNOWN`.
 
-    One row a node of a square grid, y changing fastest; columns: x, y and fitness, in units. samples, beta: settings of the planner.
+    One row per node of a square grid, y changing fastest; columns: x, y and fitness, in units. samples, beta: settings of the planner.
     """
     x_low, x_high, y_low, y_high = problem.workspace.bounds
     x, y = np.meshgrid(np.linspace(x_low, x_high, GRID), np.linspace(y_low, y_high, GRID), indexing="ij")
     paths = np.empty((GRID * GRID, len(BEST_KNOWN[workspace]) + 2, 2))
     paths[:] = [problem.start, *BEST_KNOWN[workspace], problem.target]
     paths[:, MOVED + 1] = np.stack([x.ravel(), y.ravel()], axis=1)
-    values = [fitness(part, problem, samples, beta) for part in np.array_split(paths, GRID)]  # of parts, to save memory
+    values = [fitness(part, problem, samples, beta) for part in np.array_split(paths, GRID)]  # in parts, to save memory
     return pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "fitness": np.concatenate(values)})
 
 
 def fitness(paths: np.ndarray, problem: Problem, samples: int, beta: float) -> np.ndarray:
     """Fitness (n,), in units, of Bezier curves with control points (n, k, 2), start and target included: length L (1 + beta V).
 
-    The violation V is, summed over circles, the mean depth of the samples below a circle's edge as a share of its radius (eqs. 19 to 22,
+    The violation V is the sum over circles of the mean depth of the samples inside the circle, as a share of its radius (eqs. 19 to 22,
     whose penalty is not printed).
     """
     points = curves.sample_matrix("bezier", paths.shape[1], samples) @ paths
@@ -311,7 +311,7 @@ def fitness(paths: np.ndarray, problem: Problem, samples: int, beta: float) -> n
 
 
 def local_minima(values: np.ndarray) -> np.ndarray:
-    """Which values of a grid (n, m) are below all their eight neighbours, those at its edge never: (n, m)."""
+    """Which values of a grid (n, m) are below all eight neighbours, never those at its edge: (n, m)."""
     inner = values[1:-1, 1:-1]
     rows, columns = inner.shape
     lower = np.ones(inner.shape, dtype=bool)
@@ -325,8 +325,8 @@ def local_minima(values: np.ndarray) -> np.ndarray:
 def valleys(values: np.ndarray) -> np.ndarray:
     """Which values of a grid (n, m) are the lowest of a valley of their own: (n, m).
 
-    A local minimum is of another's valley if a way over neighbouring nodes leads from it to a lower node and climbs by no more than `RIM`.
-    Along a narrow valley that is oblique to the grid there are many such.
+    A local minimum belongs to another's valley if a path over neighbouring nodes leads from it to a lower node and climbs by no more than
+    `RIM`. A narrow valley oblique to the grid has many such minima.
     """
     from scipy import ndimage
 
@@ -340,9 +340,9 @@ def valleys(values: np.ndarray) -> np.ndarray:
 def several_homotopy_classes(
     check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]
 ) -> tuple[str, float, tuple[float, float] | None, int]:
-    """Claim C17: in how many classes runs converge; two paths of one class pass every circle on the same side.
+    """Claim C17: the number of classes in which runs converge; two paths of one class pass every circle on the same side.
 
-    A class counts if two runs or more end in it within 1 % of the shortest path that any run has there: they have come to the same optimum.
+    A class counts if two or more runs end within 1 % of the shortest path that any run has in it: they have reached the same optimum.
     """
     found = results[check["experiment"]]
     runs = select(found.runs, check.get("where", {}))
@@ -355,9 +355,10 @@ def several_homotopy_classes(
 
 
 def least_above(check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]) -> tuple[str, float, None, int]:
-    """Claim C3: is the least mean value that of more particles than `PARTICLES`?
+    """Claim C3: whether the least mean value belongs to more particles than `PARTICLES`.
 
-    The effect is in which share of bootstrap draws from our repeats it is; those of equal number start alike and are drawn together.
+    The effect is the share of bootstrap draws from our repeats in which it does; repeats with equal numbers start alike and are drawn
+    together.
     """
     runs = select(results[check["experiment"]].runs, check.get("where", {}))
     values = runs.pivot_table(index="repeat", columns="particles", values=check["metric"]).dropna()
@@ -368,9 +369,9 @@ def least_above(check: dict, results: dict[str, Results], published: dict[str, p
 
 
 def outliers_of_others_alone(check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]) -> tuple[str, float, None, int]:
-    """Claim C20: do boxes of the paper's ten runs show outliers of other maps, and none of Singer?
+    """Claim C20: whether box plots of the paper's ten runs show outliers for other maps, but none for Singer.
 
-    The effect is the share of draws of ten runs of each map, in both variants, that do. Of many runs some are outliers always.
+    The effect is the share of draws of ten runs of each map, in both variants, that do. With many runs, some are always outliers.
     """
     runs = select(results[check["experiment"]].runs, check.get("where", {}))
     rng = generator("tharwat2018/C20")
@@ -395,11 +396,11 @@ def _surely(share: float) -> str:
 
 
 def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
-    """What of the printed numbers cannot be, or does not fit what is printed elsewhere.
+    """Printed numbers that are impossible, or contradict others.
 
-    Ranks: of k rows the mean ranks add to k (k + 1) / 2, and none is below 1 (Section 5.1 defines them). Collisions: 20 particles have at
-    most 20 that collide. No path is shorter than the straight line. Table 5 repeats rows of Tables 3 and 4. What the text says of best
-    values and of the second population of Section 5.5 stands beside the tables, and beside itself.
+    Ranks: the mean ranks of k rows add up to k (k + 1) / 2, and none is below 1 (Section 5.1 defines them). Collisions: at most 20 of 20
+    particles collide. No path is shorter than the straight line. Table 5 repeats rows of Tables 3 and 4. Statements in the text about best
+    values and the second population of Section 5.5 are checked against the tables, and against each other.
     """
     tables = {name: published[name] for name in RANKED}
     rows = []
@@ -444,7 +445,7 @@ def _cells(table: pd.DataFrame, metric: str) -> pd.DataFrame:
 
 
 def _place(row: tuple) -> str:
-    """Which cell a printed number is."""
+    """The cell that holds a printed number."""
     obstacles = f", obstacles={row.obstacles}" if hasattr(row, "obstacles") else ""
     return f"method={row.method}{obstacles}, metric={row.metric}"
 
@@ -456,6 +457,6 @@ def _by_method(table: pd.DataFrame, metric: str) -> dict[str, float]:
 
 
 def _said(published: dict[str, pd.DataFrame], quantity: str) -> list[float]:
-    """The values that the text gives a quantity, in its order."""
+    """The values that the text gives for a quantity, in order of appearance."""
     text = published["text_values"]
     return text.loc[text["quantity"] == quantity, "value"].to_list()

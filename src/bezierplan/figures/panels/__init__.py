@@ -1,6 +1,6 @@
-"""One file a kind of panel: `Options`, which keys a panel of this kind may have; `data`, which makes the table that is drawn; `draw`.
+"""One file per kind of panel: `Options`, the keys that a panel of this kind may have; `data`, which makes the table to draw; `draw`.
 
-Options are read at every start of the workflow, so these files import libraries that draw or handle tables inside the functions that
+Options are read at every start of the workflow, so these files import libraries for drawing and tables inside the functions that
 need them.
 """
 
@@ -15,9 +15,9 @@ from bezierplan.study.model import Column, Experiment, Flag, Function, Line, Met
 
 
 class Panel(Model):
-    """Keys of a panel of every kind, and what a kind needs beside its panels.
+    """Keys common to all kinds of panel, and what a kind needs in addition to its panels.
 
-    published_drawn: are published numbers drawn? rerun: are runs repeated, to draw what no table keeps?
+    published_drawn: whether published numbers are drawn. rerun: whether runs are repeated to draw what no table keeps.
     """
 
     published_drawn: ClassVar[bool] = False
@@ -69,7 +69,7 @@ PICK = (
 
 
 def exactly_one(panel: Model, *keys: str) -> None:
-    """Raises the error of a panel that does not have exactly one of the keys."""
+    """Raise the error of a panel that does not have exactly one of the keys."""
     given = [key for key in keys if key in panel.model_fields_set]
     if len(given) != 1:
         raise wrong(f"{' and '.join(given) or 'neither'}: expected either {' or '.join(keys)}")
@@ -77,6 +77,6 @@ def exactly_one(panel: Model, *keys: str) -> None:
 
 @cache
 def kinds() -> dict[str, type[Panel]]:
-    """Kind of panel -> what a panel of this kind may have."""
+    """Kind of panel -> the options of its panels."""
     names = sorted(file.stem for file in Path(__file__).parent.glob("[!_]*.py"))
     return {name: importlib.import_module(f"{__name__}.{name}").Options for name in names}

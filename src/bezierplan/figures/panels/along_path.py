@@ -1,4 +1,4 @@
-"""A quantity along the path of one picked run, beside the limit that the paper claims for it."""
+"""A quantity along the path of one picked run, with the limit that the paper claims for it."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 _SAMPLES = 1001
 
-# A peak of more limits than this would press the curve onto the axis: then the scale ends at fewer, and an arrow stands for the peak.
+# A peak higher than this many limits would flatten the curve onto the axis: then the scale ends lower, and an arrow marks the peak.
 _HIGHEST_PEAK = 10
 _CUT_SCALE = 4
 
@@ -37,9 +37,9 @@ class Options(RunsPanel):
 
 
 def data(results: Results, *, pick: dict[str, Any], quantity: Literal["curvature"], limit: float | None = None) -> pd.DataFrame:
-    """One row a sample of a path, uniform in its parameter; columns: those of `paths.picked`, quantity, limit, t (0 to 1), value.
+    """One row per sample of a path, uniform in its parameter; columns: those of `paths.picked`, quantity, limit, t (0 to 1), value.
 
-    The value of curvature is its magnitude in 1/unit, empty where the curve stands still. Without a path one row with neither t nor value.
+    The value of curvature is its magnitude in 1/unit, empty where the speed is zero. Without a path, one row without t and value.
 
     pick: the run, as in `analysis.results.pick`. limit: the published one, in 1/unit. Raises ValueError unless all runs are of one problem
     and one method.
@@ -75,7 +75,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 
 
 def _mark_highest(axes: Axes, frame: pd.DataFrame, unit: str) -> str:
-    """Mark the highest value and fit the scale to it; returns the words for it, and for the samples left out."""
+    """Mark the highest value and fit the scale to it; returns a note about it and about the samples left out."""
     highest = frame.loc[frame["value"].idxmax()]
     limit = highest["limit"]
     cut = highest["value"] > _HIGHEST_PEAK * limit

@@ -1,4 +1,4 @@
-"""Grouped bars of a metric's statistic with its interval, how many runs are feasible below each bar, and the shortest path as a line."""
+"""Grouped bars of a metric's statistic with its interval, the share or number of feasible runs below, and the shortest path as a line."""
 
 from __future__ import annotations
 
@@ -22,10 +22,10 @@ if TYPE_CHECKING:
 # Metrics that the exact shortest length bounds from below.
 _BOUNDED = ("length", "objective")
 
-# Names of groups that have more characters in all are broken at spaces.
+# Group names with more characters in total than this are broken at spaces.
 _ONE_LINE = 40
 
-# Of the room of a group of bars, what the bars take.
+# The share of a group's room that its bars take.
 _FILLED = 0.84
 
 
@@ -50,13 +50,13 @@ def data(
     statistic: Literal["mean", "median", "share"] = "mean",
     below: Literal["share", "count"] = "share",
 ) -> pd.DataFrame:
-    """One row a bar; columns: those of `lines.summary`, with x and hue by their own names, and bound.
+    """One row per bar; columns: those of `lines.summary`, with x and hue by their own names, and bound.
 
-    bound is the mean exact shortest length of the problems of a bar's feasible runs, those that count for a length, in units; empty for
+    bound is the mean exact shortest length of the problems of a bar's feasible runs (those that count for a length), in units; empty for
     metrics that it does not bound.
 
-    x: a column, a group of bars for each of its values. hue: a column, a bar in each group for each of its values. below: what stands below
-    a bar, the share or the number of feasible runs. Raises KeyError for an unknown metric or column.
+    x: a column, with a group of bars for each of its values. hue: a column, with a bar in each group for each of its values. below: what is
+    printed below a bar, the share or the number of feasible runs. Raises KeyError for an unknown metric or column.
     """
     import pandas as pd
 
@@ -80,7 +80,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     if sum(map(len, names)) > _ONE_LINE:
         names = [name.replace(" ", "\n") for name in names]
     axes.set_xticks(range(len(groups)), names)
-    axes.tick_params(axis="x", length=0, pad=32 if panel.get("below") != "count" else 18)  # below what stands under the bars
+    axes.tick_params(axis="x", length=0, pad=32 if panel.get("below") != "count" else 18)  # below the text under the bars
     axes.set_xlabel(style.column_name(x, scene.labels))
     axes.set_ylabel(axis_label(panel["metric"], scene, panel.get("statistic", "mean")))
     axes.grid(visible=True, axis="y")

@@ -1,4 +1,4 @@
-"""Boxes of a metric, one a method or value of a factor, beside the published means."""
+"""Boxes of a metric, one per method or value of a factor, with the published means."""
 
 from __future__ import annotations
 
@@ -20,14 +20,14 @@ if TYPE_CHECKING:
     from bezierplan.analysis.results import Results
 
 
-# Whiskers end at the last value within so many interquartile ranges of the box.
+# Whiskers end at the last value within this many interquartile ranges of the box.
 _REACH = 1.5
 
-# How a box is called here and in `Axes.bxp`.
+# Names of the parts of a box here and in `Axes.bxp`.
 _PARTS = {"low": "whislo", "quartile1": "q1", "median": "med", "quartile3": "q3", "high": "whishi"}
 
 
-# Published means farther away than so many times the range of all that is found here stand at the edge, with their value.
+# Published means farther away than this many times the range of our values are drawn at the edge, with their value.
 _FAR = 0.25
 
 
@@ -43,14 +43,14 @@ class Options(RunsPanel):
 
 
 def data(results: Results, *, metric: str, by: str = "method", limits: bool = False, limit: float | None = None) -> pd.DataFrame:
-    """One row a part of a box; columns: those of `lines.constants`, `by` by its own name, runs and feasible_runs (counts), part, value.
+    """One row per part of a box; columns: those of `lines.constants`, `by` by its own name, runs and feasible_runs (counts), part, value.
 
     Parts: low and high (where the whiskers end), quartile1, median, quartile3; beyond, a value beyond the whiskers; mean; published, the
-    mean that the paper prints, and published_end, the least and the largest value that it prints. Values are in the metric's unit, of the
-    runs that have the metric. A group without any has no rows. Of no group: limit; and with limits reference (the best known path of the
-    kind) and bound (the exact shortest length), each where all runs share it.
+    mean that the paper prints, and published_end, the least and the largest value that it prints. Values are in the metric's unit, for
+    runs that have the metric. A group without such runs has no rows. Rows without a group: limit; and, with limits, reference (the best
+    known path of the kind) and bound (the exact shortest length), each if all runs share it.
 
-    by: a column of the runs table. limit: the published one. Raises KeyError for an unknown metric or column.
+    by: a column of the runs table. limit: the published limit. Raises KeyError for an unknown metric or column.
     """
     import pandas as pd
 
@@ -70,7 +70,7 @@ def data(results: Results, *, metric: str, by: str = "method", limits: bool = Fa
 
 
 def _box(values: np.ndarray) -> list[tuple[str, float]]:
-    """Parts of the box of sorted values (n,) and where they lie; none without values."""
+    """Parts of the box of sorted values (n,) and their positions; none without values."""
     if not len(values):
         return []
     first, median, third = np.quantile(values, [0.25, 0.5, 0.75])
@@ -112,7 +112,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 
 
 def _draw_far(axes: Axes, groups: list[dict[str, list[float]]], limits: list[float]) -> set[float]:
-    """Mark published means that would press the boxes together at the edge that they lie beyond, and return them.
+    """Mark published means that would squeeze the boxes at the edge that they lie beyond, and return them.
 
     groups: values by part. limits: other values that are shown.
     """
@@ -133,7 +133,7 @@ def _draw_far(axes: Axes, groups: list[dict[str, list[float]]], limits: list[flo
             edge = style.PUBLISHED_MARK | {"marker": ">" if above else "<", "label": "published mean, beyond the scale"}
             axes.plot(1.0 if above else 0.0, height, transform=axes.get_yaxis_transform(), clip_on=False, zorder=5, **edge)
     if far:
-        # Ends of the scale: where means begin to be far, if some are, and otherwise all that is shown with a little room.
+        # Ends of the scale: the threshold for far means, if there are any; otherwise everything shown, with a small margin.
         shown = found + [value for parts in groups for value in parts.get("published", []) if value not in far]
         room = 0.05 * (high - low)
         axes.set_xlim(low - reach if min(far) < low else min(shown) - room, high + reach if max(far) > high else max(shown) + room)
@@ -141,7 +141,7 @@ def _draw_far(axes: Axes, groups: list[dict[str, list[float]]], limits: list[flo
 
 
 def _draw_boxes(axes: Axes, groups: list[dict[str, list[float]]]) -> None:
-    """One box a group of values by part, at heights 0, 1, ..."""
+    """One box per group of values by part, at heights 0, 1, ..."""
     there = {height: parts for height, parts in enumerate(groups) if "median" in parts}
     boxes = [{name: parts[part][0] for part, name in _PARTS.items()} for parts in there.values()]
     thin = {"color": style.BLUE, "linewidth": 0.7}

@@ -1,4 +1,4 @@
-"""The best objective of each generation: one picked run with median and spread of all runs, or a line a method or value of a factor.
+"""The best objective of each generation: one picked run with median and spread of all runs, or one line per method or value of a factor.
 
 A study's label of `generation` names the axis, such as `iteration` for a swarm.
 """
@@ -25,13 +25,13 @@ if TYPE_CHECKING:
     from bezierplan.analysis.results import Results
 
 
-# Least distance of names beside a panel, as a share of its height: a line of text where two panels stand side by side.
+# Least distance between names beside a panel, as a share of its height: a line of text when two panels are side by side.
 _NAME_GAP = 0.08
 
-# Marks on a line of a group, at other generations than those of the other lines.
+# Marks on the line of a group, at generations that differ from those of the other lines.
 _MARKS = 5
 
-# Published means stand side by side at the end of the axis, so far apart, as a share of it: at one place they would hide each other.
+# Distance of published means at the end of the axis, as a share of it: side by side, so that they do not hide each other.
 _MARK_STEP = 0.03
 
 
@@ -70,17 +70,17 @@ def data(
     until: int | None = None,
     printed: str | None = None,
 ) -> pd.DataFrame:
-    """One row a generation, and with `hue` one for each of its values as well. A run that stopped early keeps its last objective.
+    """One row per generation, and with `hue` also per value of it. A run that stopped early keeps its last objective.
 
     Objectives are the planner's own, in units, over all runs, feasible or not; bound is the exact shortest length.
 
     With `pick`, columns: those of `paths.picked`, generation, objective (of the picked run; empty without one), median, quantile10 and
     quantile90, bound. With `hue`, columns: those of `lines.constants`, the hue's own name, runs and feasible_runs (counts), generation,
-    objective (the statistic), low95 and high95 (its 95 % bootstrap interval), bound (empty where problems differ in it). With `reference` a
-    column of that name, the length of the best known path of the methods' own kind, empty where problems differ in it. With `printed` a
-    column of that name, the mean that this published table has for a group, in the row of the last generation.
+    objective (the statistic), low95 and high95 (its 95 % bootstrap interval), bound (empty if problems differ in it). With `reference`, a
+    column of that name: the length of the best known path of the methods' own kind, empty if problems differ in it. With `printed`, a
+    column of that name: the mean that this published table has for a group, in the row of the last generation.
 
-    pick: the run, as in `analysis.results.pick`. hue: a column of the runs table. until: the generation at which rows end, if no run is
+    pick: the run, as in `analysis.results.pick`. hue: a column of the runs table. until: the generation at which rows end, unless a run is
     longer. Raises ValueError unless either pick or hue is given, and with `pick` unless all runs are of one problem and one method.
     """
     if (pick is None) == (hue is None):
@@ -122,7 +122,7 @@ def _of_groups(results: Results, hue: str, statistic: str, generations: int) -> 
 
 
 def _intervals(histories: np.ndarray, statistic: str, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Ends of the 95 % interval of a statistic of histories (n, generations): (generations,) each, all from the same draws of runs."""
+    """Ends of the 95 % interval of a statistic of histories (n, generations): (generations,) each, from the same draws of runs."""
     ends = []
     for generation, values in enumerate(histories.T):
         held = generation > 0 and np.array_equal(values, histories[:, generation - 1])
@@ -132,7 +132,7 @@ def _intervals(histories: np.ndarray, statistic: str, name: str) -> tuple[np.nda
 
 
 def _published_ends(results: Results, frame: pd.DataFrame, hue: str) -> np.ndarray:
-    """For each row of `data` the published mean of its group, at the last generation only."""
+    """For each row of `data`, the published mean of its group, at the last generation only."""
     printed = np.full(len(frame), np.nan)
     last = frame["generation"] == frame["generation"].max()
     for value, own in results.runs.groupby(hue):
@@ -141,7 +141,7 @@ def _published_ends(results: Results, frame: pd.DataFrame, hue: str) -> np.ndarr
 
 
 def _lengthened(history: list[float], generations: int) -> np.ndarray:
-    """A history (generations,) that goes on with its last value."""
+    """A history (generations,) extended with its last value."""
     return np.pad(np.asarray(history, dtype=float), (0, generations - len(history)), mode="edge")
 
 
@@ -190,7 +190,7 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> st
 
 
 def _name_lines(axes: Axes, ends: list[float], names: list[str], looks: list[dict]) -> None:
-    """Write the lines' names (n) beside the panel, each at the end of its line (n) or as near to it as there is room, from high to low."""
+    """Write the lines' names (n) beside the panel, each at the end of its line (n) or as near to it as possible, from high to low."""
     order = np.argsort(ends, kind="stable")
     axes.autoscale_view()
     to_share = axes.transData + axes.transAxes.inverted()
@@ -203,7 +203,7 @@ def _name_lines(axes: Axes, ends: list[float], names: list[str], looks: list[dic
 
 
 def _apart(heights: np.ndarray) -> np.ndarray:
-    """Heights (n,), ascending, moved as little as possible so that they lie a gap apart and between 0 and 1."""
+    """Heights (n,), ascending, moved as little as possible so that they are at least a gap apart and between 0 and 1."""
     from scipy.optimize import isotonic_regression
 
     steps = min(_NAME_GAP, 1 / max(1, len(heights) - 1)) * np.arange(len(heights))

@@ -1,4 +1,4 @@
-"""Mean ranks of methods on one axis, those joined that a Friedman test followed by Nemenyi's cannot tell apart (Demsar 2006)."""
+"""Mean ranks of methods on one axis; bars join those that Friedman's and Nemenyi's tests cannot distinguish (Demsar 2006)."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _LEVEL = 0.05
 
-# Heights in the drawing, in lines of text: of a bar over ranks that cannot be told apart, and above the axis of what stands there.
+# Heights in the drawing, in lines of text: of a bar over indistinguishable ranks, and of the items above the axis.
 _BAR, _ABOVE = 0.45, 3.2
 # Room for names on either side, as a share of the axis.
 _NAMES = 1.2
@@ -38,13 +38,13 @@ class Options(RunsPanel):
 
 
 def data(results: Results, *, metric: str = "objective", printed: str | None = None) -> pd.DataFrame:
-    """One row a rank; columns: method, part, value, until, methods and units (counts), chi2, p_value, difference.
+    """One row per rank; columns: method, part, value, until, methods and units (counts), chi2, p_value, difference.
 
-    Parts: rank (the mean rank of a method, 1 for the lowest values; equal values share the mean of their ranks), published (that of the
-    paper), alike (from value until another rank, no two of which differ by more than the critical difference). A unit is a repeat of a
+    Parts: rank (the mean rank of a method, 1 for the lowest values; ties share the mean of their ranks), published (that of the
+    paper), alike (from one rank to another, between which no two differ by more than the critical difference). A unit is a repeat of a
     condition, in which every method is ranked. chi2 and p_value: Friedman's test; difference: Nemenyi's critical difference at 5 %.
 
-    metric: what is ranked. printed: the published table whose mean ranks are shown besides. Raises ValueError for fewer than three
+    metric: what is ranked. printed: the published table whose mean ranks are also shown. Raises ValueError for fewer than three
     methods, and if a unit lacks one.
     """
     import pandas as pd
@@ -68,7 +68,7 @@ def data(results: Results, *, metric: str = "objective", printed: str | None = N
 
 
 def _alike(ranks: np.ndarray, difference: float) -> list[tuple[float, float]]:
-    """The longest stretches of sorted ranks (n,) that are no longer than a difference, of two ranks at least."""
+    """The longest ranges of sorted ranks (n,) no wider than a difference, with at least two ranks."""
     found = []
     for first, low in enumerate(ranks):
         last = int(np.searchsorted(ranks, low + difference, side="right")) - 1
@@ -106,7 +106,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 
 
 def _draw_scale(axes: Axes, count: int, difference: float) -> None:
-    """The axis from 1 to so many, and above it the critical difference as a length."""
+    """The axis from 1 to `count`, with the critical difference as a length above it."""
     thin = {"color": style.BLACK, "linewidth": 0.8}
     axes.plot([1, count], [0, 0], **thin)
     for rank in range(1, count + 1):

@@ -1,4 +1,4 @@
-"""A drawing made of marks: what a procedure does, step by step, without a run; over a workspace where the panel names one."""
+"""A drawing made of marks: what a procedure does, step by step, without a run; over a workspace if the panel names one."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ _NEEDED = {
     "text": ["text"],
 }
 
-# Colours of what is filled, of what is drawn as a line, and marks of single points, by role. Neighbours differ in lightness or in form.
+# Colours of fills and lines, and marks of single points, by role. Neighbours differ in lightness or in shape.
 _FILL = {
     "obstacle": {"facecolor": style.OCCUPIED, "edgecolor": "0.4"},
     "muted": {"facecolor": style.SURPLUS, "edgecolor": style.CELL_LINE},
@@ -62,14 +62,14 @@ class Options(TablePanel):
 
 
 def data(marks: pd.DataFrame, *, x_label: str | None = None, y_label: str | None = None) -> pd.DataFrame:
-    """One row a mark, or a point of a line or an arrow, with `COLUMNS` and the function's own further ones, in the order of drawing.
+    """One row per mark, or per point of a line or arrow, with `COLUMNS` and the function's own extra columns, in drawing order.
 
     mark: cell (a box about x, y of a width and a height), circle (about x, y, of a radius), line and arrow (through the points of a group),
-    dots (marks at x, y), text (at x, y). role: what decides the look: obstacle, start, target, first, second, third, accent, muted or note.
-    label: what the legend says of it; empty for nothing.
+    dots (marks at x, y), text (at x, y). role: the style: obstacle, start, target, first, second, third, accent, muted or note.
+    label: its entry in the legend; empty for none.
 
     x_label, y_label: what the axes show, with the unit; without them, and without a workspace, a drawing has no scale. Raises
-    ValueError for an unknown mark, and for one without what it needs.
+    ValueError for an unknown mark, and for one that lacks a required value.
     """
     for mark, own in marks.groupby("mark"):
         if mark not in _NEEDED:
@@ -88,7 +88,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
         home = scene.workspaces[panel["workspace"]]
         workspaces.shade(axes, workspaces.parts(home))
         workspaces.scale(axes, home.unit)
-    # Groups of neighbouring rows, so that what stands later in the table lies on top.
+    # Groups of neighbouring rows, so that later rows of the table lie on top.
     names = frame["mark"] + " " + frame["role"] + " " + frame["group"].astype("string").fillna("")
     changed = (names != names.shift()).cumsum()
     for level, (_, own) in enumerate(frame.groupby(changed, sort=True)):
@@ -133,7 +133,7 @@ def _draw_marks(axes: Axes, own: pd.DataFrame, zorder: float) -> None:
         axes.plot(*points.T, linestyle="", zorder=zorder, **_DOTS.get(role, _DOTS["third"]), **label)
     else:
         for at, words in zip(points, own["text"]):
-            # Of nothing but numbers a csv keeps no words.
+            # A csv file reads back a column of digits as numbers, not as words.
             axes.text(
                 *at,
                 words if isinstance(words, str) else f"{words:g}",
@@ -145,7 +145,7 @@ def _draw_marks(axes: Axes, own: pd.DataFrame, zorder: float) -> None:
 
 
 def _fit(axes: Axes, frame: pd.DataFrame) -> None:
-    """Show everything, with a little room around it."""
+    """Show everything, with a small margin around it."""
     half_width = frame["width"].fillna(0) / 2 + frame["radius"].fillna(0)
     half_height = frame["height"].fillna(0) / 2 + frame["radius"].fillna(0)
     low = np.array([(frame["x"] - half_width).min(), (frame["y"] - half_height).min()])

@@ -1,4 +1,4 @@
-"""The objective over two coordinates, as lines of equal value, with its local minima."""
+"""The objective over two coordinates, as contour lines, with its local minima."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 # Steps from the lowest to the highest value, equal on a logarithmic scale.
 _STEPS = 16
-# Numbers beside the scale of colours, of those between the lowest and the highest value.
+# Numbers next to the colour scale, between the lowest and the highest value.
 _NUMBERS = (1, 2, 5)
 
 _LOOK = {
@@ -41,10 +41,10 @@ class Options(RunsPanel):
 
 
 def data(source: tuple[Results, pd.DataFrame]) -> pd.DataFrame:
-    """What is drawn, one row a place; columns: problem, part, x, y (in the workspace's unit), objective (of nodes, in units).
+    """What is drawn, one row per place; columns: problem, part, x, y (in the workspace's unit), objective (of nodes, in units).
 
-    Parts: node (of a grid, y changing fastest), minimum (the lowest node of a valley), lowest (the lowest of the nodes), fixed (what stays
-    where it is), start, target. source: runs of one problem, and the table of a function with the columns part, x, y and objective. Raises
+    Parts: node (of a grid, y changing fastest), minimum (the lowest node of a valley), lowest (the lowest node), fixed (what does not
+    move), start, target. source: runs of one problem, and a function's table with the columns part, x, y and objective. Raises
     ValueError for runs of several problems.
     """
     import pandas as pd
@@ -60,7 +60,7 @@ def data(source: tuple[Results, pd.DataFrame]) -> pd.DataFrame:
 
 
 def nodes(frame: pd.DataFrame) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Coordinates x (n,) and y (m,) of a grid of nodes and the objective there (m, n)."""
+    """Coordinates x (n,) and y (m,) of a grid of nodes, and the objective there (m, n)."""
     grid = frame[frame["part"] == "node"].pivot(index="y", columns="x", values="objective")
     return grid.columns.to_numpy(), grid.index.to_numpy(), grid.to_numpy()
 
@@ -102,7 +102,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 
 
 def minima_note(frame: pd.DataFrame, unit: str) -> str:
-    """The range of the objective, and how many local minima it has."""
+    """The range of the objective, and its number of local minima."""
     values = frame.loc[frame["part"] == "node", "objective"]
     count = int((frame["part"] == "minimum").sum())
     return f"{values.min():.2f} to {values.max():.0f} {unit}; {count} local minim{'um' if count == 1 else 'a'}, {len(values)} nodes"

@@ -21,10 +21,10 @@ if TYPE_CHECKING:
     from bezierplan.analysis.results import Results
 
 
-# Where lines do not join points, the groups of one x take so much of the way to the next.
+# Where lines do not join points, the groups at one x take this share of the distance to the next.
 _SPREAD = 0.7
 
-# Of more points than this only the points are drawn: lines between values that jump would cover the panel.
+# Above this many points, only the points are drawn: lines between jumping values would cover the panel.
 _MOST_JOINED = 100
 
 
@@ -57,11 +57,11 @@ def data(
     repeats: Sequence[int] = (),
     joined: bool = True,
 ) -> pd.DataFrame:
-    """One row a point; columns: hue (if one is given) and x, both by their own names; part (statistic, repeat or value), value.
+    """One row per point; columns: hue (if one is given) and x, both by their own names; part (statistic, repeat or value), value.
 
-    Of runs: the columns of `summary` for the statistic, and repeat, the number of a single run. Of a table: the column `metric` as it is.
+    For runs: the columns of `summary` for the statistic, and repeat, the number of a single run. For a table: the column `metric`, as is.
 
-    x: a numeric column. hue: a column, a line for each of its values. repeats: which single runs are drawn besides. joined: whether lines
+    x: a numeric column. hue: a column, with a line for each of its values. repeats: the single runs to draw as well. joined: whether lines
     join points. Raises ValueError if a single repeat has several runs at one place, and KeyError for an unknown metric or column.
     """
     import pandas as pd
@@ -89,7 +89,7 @@ def summary(results: Results, keys: list[str], metric: str, statistic: str) -> p
     runs = results.runs.assign(value=metrics.values(results.runs, metric, results.problems))
     rows = []
     for key, own in runs.groupby(keys):
-        # Sorted, so that nothing depends on the order in which chunks were read.
+        # Sorted, so that nothing depends on the order in which chunks are read.
         numbers = np.sort(own["value"].dropna().to_numpy())
         named = dict(zip(keys, key))
         name = "/".join([metric, statistic, *(f"{column}={value}" for column, value in named.items())])
@@ -100,11 +100,11 @@ def summary(results: Results, keys: list[str], metric: str, statistic: str) -> p
 
 
 def constants(runs: pd.DataFrame) -> dict[str, Any]:
-    """Problem and method of runs, where they are of one only."""
+    """Problem and method of runs, where they share one."""
     return {column: runs[column].iloc[0] for column in ("problem", "method") if runs[column].nunique() == 1}
 
 
-# Lines that stand beside what is found: the exact shortest length, and the best known path of the methods' own kind.
+# Reference lines: the exact shortest length, and the best known path of the methods' own kind.
 LIMITS = {
     "reference": {**style.REFERENCE, "label": "best known path of the same kind"},
     "bound": {**style.BOUND, "label": "exact shortest path"},
@@ -117,21 +117,21 @@ def shared_limits(runs: pd.DataFrame) -> dict[str, float]:
 
 
 def axis_label(column: str, scene: Any, statistic: str = "") -> str:
-    """Name and unit of what an axis shows; a column that is no metric has its unit in its label, or counts something, or has none."""
+    """Name and unit of what an axis shows; a column other than a metric has its unit in its label, or is a count, or has no unit."""
     if column not in metrics.METRICS and style.column_name(column, scene.labels).endswith(")"):
         return f"{statistic} {style.column_name(column, scene.labels)}".lstrip()
     unit = metrics.unit(column, scene.unit) if column in metrics.METRICS else "-"
     return f"{statistic} {style.column_name(column, scene.labels)}{'' if unit == '-' else f' ({unit})'}".lstrip()
 
 
-# Columns of published numbers that tell no runs apart.
+# Columns of published numbers that do not distinguish runs.
 _PRINTED = ["table", "metric", "statistic", "n", "unit", "value"]
 
 
 def published(results: Results, runs: pd.DataFrame, metric: str, statistic: str = "mean") -> list[float]:
-    """Values of a metric's statistic that the paper prints for the problem, method and settings of runs; a row's empty keys fit all runs.
+    """Values of a metric's statistic that the paper prints for the problem, method and settings of runs; a row's empty keys match all runs.
 
-    A number that stands in several tables is one number.
+    A number repeated in several tables counts once.
     """
     found = results.published
     if found is None:
@@ -149,7 +149,7 @@ def interval_band(axes: Axes, x: pd.Series, low: pd.Series, high: pd.Series, col
 
 
 def runs_note(frame: pd.DataFrame, statistic: str, where: str) -> str:
-    """How many runs a statistic is of, from the columns of `summary`, and which share of them is feasible."""
+    """The number of runs behind a statistic, from the columns of `summary`, and the share of them that is feasible."""
     fewest, most = frame["runs"].min(), frame["runs"].max()
     share = 100 * frame["feasible_runs"] / frame["runs"]
     low, high = f"{share.min():.0f}", f"{share.max():.0f}"
@@ -185,22 +185,22 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 
 
 def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict) -> None:
-    """A line with marks in a band, the interval of its points."""
+    """A line with marks, in a band that shows the interval of its points."""
     interval_band(axes, frame[x], frame["low95"], frame["high95"], look["color"], "95 % interval")
     axes.plot(frame[x], frame["value"], zorder=3, **look)
 
 
 def _draw_apart(axes: Axes, frame: pd.DataFrame, x: str, aside: float, look: dict) -> None:
-    """Marks that no line joins, each with its interval, moved aside so that groups stand beside each other."""
+    """Marks without a line, each with its interval, shifted so that groups are side by side."""
     places = frame[x] + aside
     axes.vlines(places, frame["low95"], frame["high95"], color=look["color"], linewidth=0.8, zorder=2, label="95 % interval")
     axes.plot(places, frame["value"], zorder=3, **look | {"linestyle": ""})
 
 
 def _draw_repeats(axes: Axes, frame: pd.DataFrame, x: str, colour: str | None) -> None:
-    """A thin line for each single repeat; without a colour each gets one of its own and a name."""
+    """A thin line for each single repeat; without a colour, each gets its own colour and a name."""
     repeats = frame["repeat"].unique()
-    looks = style.lines([str(repeat) for repeat in range(len(repeats) + 1)])[1:]  # the first look is the statistic's
+    looks = style.lines([str(repeat) for repeat in range(len(repeats) + 1)])[1:]  # the first style is the statistic's
     for repeat, look in zip(repeats, looks):
         own = frame[frame["repeat"] == repeat]
         thin = look | {"linewidth": 0.6, "markersize": 2.2, "zorder": 2.5}
@@ -208,5 +208,5 @@ def _draw_repeats(axes: Axes, frame: pd.DataFrame, x: str, colour: str | None) -
 
 
 def _joined(look: dict, points: int) -> dict:
-    """The look of a line through so many points of a table."""
+    """The style of a line through the given number of points of a table."""
     return look | ({"marker": ""} if points <= _MOST_JOINED else {"linestyle": "", "marker": ".", "markersize": 1.2})

@@ -1,4 +1,4 @@
-"""A path with its control points: of one picked run, in its workspace beside the exact shortest path, or one that is given.
+"""A path with its control points: that of a picked run, in its workspace next to the exact shortest path, or a given one.
 
 Or several paths in one workspace, a picked run for each value of a column.
 """
@@ -30,13 +30,13 @@ if TYPE_CHECKING:
     from bezierplan.analysis.results import Results
 
 
-# About as many straight steps are drawn for a curve; the ends of its pieces are always among them.
+# Approximate number of straight steps drawn for a curve; they always include the ends of its pieces.
 _STEPS = 600
 
 # Widths of the first and of the last of several paths.
 _WIDEST, _NARROWEST = 2.8, 1.3
 
-# Marks in a narrow panel are so much smaller.
+# Scale factor of marks in a narrow panel.
 _NARROW_MARK = 0.6
 
 _CONTROL_POINT = {"color": style.BLUE, "marker": "o", "markersize": 4.5, "markerfacecolor": style.FREE, "zorder": 5}
@@ -72,7 +72,7 @@ _CHANGED = {
 
 
 def picked(results: Results, pick: dict[str, Any]) -> tuple[pd.Series | None, dict[str, Any]]:
-    """The run that a panel shows, or None if no run is to be picked, and what names it in the columns of the panel's csv.
+    """The run that a panel shows, or None if there is none to pick, and its description in the columns of the panel's csv file.
 
     Columns: problem, method, runs and feasible_runs (counts), run (its id; empty without a run), curve, length (in units), feasible.
     Raises ValueError unless all the panel's runs are of one problem and one method.
@@ -95,7 +95,7 @@ def picked(results: Results, pick: dict[str, Any]) -> tuple[pd.Series | None, di
 
 
 def run_note(frame: pd.DataFrame, *more: str) -> str:
-    """Which run a panel shows, from the columns that `picked` names, and more lines about it; or only that there is none."""
+    """Which run a panel shows, from the columns that `picked` names, and more lines about it; or just that there is none."""
     import pandas as pd
 
     row = frame.iloc[0]
@@ -175,19 +175,19 @@ def data(
     printed: str | None = None,
     view: Sequence[float] | None = None,
 ) -> pd.DataFrame:
-    """What is drawn of a path: one row a point, in the order in which points are joined.
+    """What is drawn of a path: one row per point, in the order in which points are joined.
 
     Columns: those of `picked`, for a run; part (start, target, bound, hull, control or points, occupied: those of them in occupied cells,
-    path, collision: the first one of a path that has one, optimum, and appeared and vanished: centres of changed cells), x, y (in the
-    workspace's unit). Without a run to show, what belongs to the problem only. Only curves that lie within it have a hull, and control
-    points are left out where some are tangents.
+    path, collision: a path's first one, if any, optimum, and appeared and vanished: centres of changed cells), x, y (in the
+    workspace's unit). Without a run to show, only what belongs to the problem. Only curves within their hull have one, and control
+    points are left out if some are tangents.
 
     pick: the run, as in `analysis.results.pick`. explicit: {curve, points}, a path without a run. hue: a column; a run is picked for each
-    of its values, which the rows name, and drawn without control points; the column `measure` has this metric of it. bare: start and target
-    alone, whatever the run. control: whether control points are drawn with their polygon and hull, alone, or not at all. letters: what is
-    written beside start and target. changed_from: the problem whose occupied cells were others. cell_optimum: whether the least path along
-    cell centres is drawn. printed: a published table; the column of this name has its shortest length for the runs. view: what is seen of
-    the workspace, as its bounds; all rows are here nevertheless.
+    of its values, which the rows name, and drawn without control points; the column `measure` has its value of this metric. bare: only
+    start and target, whatever the run. control: whether control points are drawn with polygon and hull, alone, or not at all. letters:
+    those next to start and target. changed_from: the problem with different occupied cells. cell_optimum: whether the shortest path along
+    cell centres is drawn. printed: a published table; the column of this name has its shortest length for the runs. view: the visible part
+    of the workspace, as bounds; the rows still include everything.
     Raises ValueError unless either pick or explicit is given and all runs, of one value of hue, are of one problem and one method, and if a
     curve cannot have such points.
     """
@@ -230,7 +230,7 @@ def data(
 
 
 def _drawn(path: Path, control: str) -> dict[str, np.ndarray]:
-    """Points (n, 2) of a path by the part that they make."""
+    """Points (n, 2) of a path by the part that they form."""
     import shapely
 
     drawn = {}
@@ -249,13 +249,13 @@ def _other(results: Results, name: str) -> Problem:
 
 
 def _changed_cells(grid: Grid, before: Grid) -> dict[str, np.ndarray]:
-    """Centres (n, 2), in units, of cells that are occupied now alone (appeared) and that were before (vanished)."""
+    """Centres (n, 2), in units, of cells that are occupied only now (appeared) or only before (vanished)."""
     changes = {"appeared": grid.occupied & ~before.occupied, "vanished": before.occupied & ~grid.occupied}
     return {part: np.reshape([grid.centre(int(number)) for number in np.flatnonzero(cells)], (-1, 2)) for part, cells in changes.items()}
 
 
 def _cell_optimum(problem: Problem, run: pd.Series) -> np.ndarray:
-    """Points (n, 2) of the least path from cell centre to cell centre, under the rules of a run of meledje's planner."""
+    """Points (n, 2) of the shortest path from cell centre to cell centre, under the rules of a run of meledje's planner."""
     from scipy.sparse import csgraph
 
     grid = problem.workspace
@@ -270,7 +270,7 @@ def _cell_optimum(problem: Problem, run: pd.Series) -> np.ndarray:
 
 
 def _shortest_printed(results: Results, name: str) -> float:
-    """The shortest length that a published table has for runs; not a number without one."""
+    """The shortest length in a published table for the runs; NaN without one."""
     table = results.published[results.published["table"] == name]
     return next(iter(published(results._replace(published=table), results.runs, "length", "min")), np.nan)
 
@@ -335,7 +335,7 @@ def _draw_changes(axes: Axes, frame: pd.DataFrame, workspace: Workspace) -> None
 
 
 def _write_letter(axes: Axes, place: np.ndarray, letter: str) -> None:
-    """Write a letter beside a place, on the side of the panel's middle."""
+    """Write a letter next to a place, on the side towards the panel's centre."""
     from matplotlib import patheffects
 
     inwards = np.where(place <= [np.mean(axes.get_xlim()), np.mean(axes.get_ylim())], 1, -1)
@@ -345,12 +345,12 @@ def _write_letter(axes: Axes, place: np.ndarray, letter: str) -> None:
 
 
 def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the paths of all values of hue, each in a look of its own, and what belongs to their problem once; returns their measures."""
+    """Draw the paths of all values of hue, each in its own style, and what belongs to their problem once; returns their measures."""
     hue = panel["hue"]
     values = style.in_order(frame[hue], panel)
     measure = panel.get("measure", "length")
     given = []
-    # The first path is the widest, so that those on top of it hide nothing.
+    # The first path is the widest, so that paths on top do not hide it.
     widths = np.linspace(_WIDEST, _NARROWEST, len(values))
     for value, look, width in zip(values, style.lines(values), widths):
         own = frame[frame[hue] == value]
@@ -365,7 +365,7 @@ def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict)
 
 
 def draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> None:
-    """Draw the points of each part; what lies beyond the panel only if they are not clipped."""
+    """Draw the points of each part; anything beyond the panel only if they are not clipped."""
     for part, look in _LOOK.items():
         points = frame.loc[frame["part"] == part, ["x", "y"]]
         if not points.empty:
@@ -374,7 +374,7 @@ def draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> 
 
 
 def _note(frame: pd.DataFrame, unit: str, narrow: bool) -> str:
-    """Which run it is, and its length; a narrow panel has room for no more."""
+    """The run and its length; a narrow panel has no room for more."""
     row = frame.iloc[0]
     if not (frame["part"] == "path").any():
         return run_note(frame, "no path")
@@ -400,5 +400,5 @@ def _joined(points: pd.DataFrame) -> float:
 
 
 def _decimal(number: float) -> str:
-    """A number to two decimals, as far as they are not 0."""
+    """A number to two decimals, without trailing zeros."""
     return f"{number:.2f}".rstrip("0").rstrip(".")

@@ -15,15 +15,15 @@ if TYPE_CHECKING:
     from mpl_toolkits.mplot3d import Axes3D
 
 
-# The axes that a panel needs.
+# The kind of axes that a panel needs.
 PROJECTION = "3d"
 
-# Where it is seen from, in degrees.
+# Viewing angles, in degrees.
 _VIEW = {"elev": 45, "azim": -60}
 
 
 def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the nodes of `data`, at a logarithmic height; returns the note below the panel's title."""
+    """Draw the nodes of `data` at a logarithmic height; returns the note below the panel's title."""
     unit = scene.problems[panel["experiment"]][frame["problem"].iloc[0]].workspace.unit
     x, y, values = landscape.nodes(frame)
     colours = landscape.scale_of(values).to_rgba(values)

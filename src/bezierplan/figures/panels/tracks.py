@@ -1,4 +1,4 @@
-"""How runs came to their paths: the way of one control point of the best path through the iterations, or the first and the last path."""
+"""How runs arrived at their paths: the track of one control point of the best path over the iterations, or the first and the last path."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from bezierplan.analysis.results import Results
 
 
-# Lines of equal value below a way, from the lowest to the highest.
+# Contour lines below a track, from the lowest to the highest.
 _LEVELS = 14
 
 _NAMES = ("first run", "second run", "third run", "fourth run", "fifth run")
@@ -45,17 +45,17 @@ class Options(RunsPanel):
 
 
 def data(source: Results | tuple[Results, pd.DataFrame], *, by: str, runs: int, point: int | None = None) -> pd.DataFrame:
-    """What is drawn, one row a place; columns: problem, method, candidates (feasible runs), groups (values of the metric among them), part,
-    run (its id), length (of the run's path, in units), iteration, x, y (in the workspace's unit), objective (of nodes, in units).
+    """What is drawn, one row per place; columns: problem, method, candidates (feasible runs), groups (values of the metric among them),
+    part, run (its id), length (of the run's path, in units), iteration, x, y (in the workspace's unit), objective (of nodes, in units).
 
-    Parts: start, target; way, a control point of the best path after iteration 0, 1, ...; without a point path, points along the best path
-    after iteration 0 and after the last one; node, of the landscape below a way.
+    Parts: start, target; way, a control point of the best path after iteration 0, 1, ...; without a point: path, points along the best path
+    after iteration 0 and after the last one; node, of the landscape below a track.
 
-    The runs are made again, since no table keeps what they passed through. source: runs with their jobs, of one problem and one method
-    whose planner has `track`; with them the table of a landscape, as in `landscape.data`. by: a metric; of the feasible runs the best one
-    of each of its commonest values is drawn. runs: of so many values, at most five. point: number of the control point, 0 for the start.
-    Raises ValueError for runs of several problems or methods, for a point that the curve does not have, and if a run made again ends in
-    another path.
+    The runs are reproduced, because no table keeps their intermediate states. source: runs with their jobs, of one problem and one method
+    whose planner has `track`; optionally with the table of a landscape, as in `landscape.data`. by: a metric; for each of its commonest
+    values, the best feasible run is drawn. runs: the number of these values, at most five. point: number of the control point, 0 for the
+    start. Raises ValueError for runs of several problems or methods, for a point that the curve does not have, and if a reproduced run
+    ends in a different path.
     """
     import pandas as pd
 
@@ -81,13 +81,13 @@ def data(source: Results | tuple[Results, pd.DataFrame], *, by: str, runs: int, 
 
 
 def _commonest(groups: pd.Series) -> list[float]:
-    """The different values, the commonest first, equally common ones by size."""
+    """The distinct values, the commonest first, ties by size."""
     counts = groups.value_counts().rename_axis("group").reset_index(name="count")
     return counts.sort_values(["count", "group"], ascending=[False, True])["group"].to_list()
 
 
 def _tracked(run: pd.Series, job: dict, problem: Problem) -> list[Path]:
-    """The best path after each iteration of a run, made again from its job."""
+    """The best path after each iteration of a run, reproduced from its job."""
     from bezierplan.analysis.results import path_of
 
     condition = next(each for each in execution.conditions(list(job["problems"]), job["vary"]) if each.name == run["condition"])
@@ -139,7 +139,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 
 
 def _draw_way(axes: Axes, way: pd.DataFrame, look: dict) -> None:
-    """The way of a control point, from a circle with an arrow to a cross."""
+    """The track of a control point, from a circle with an arrow to a cross."""
     if way.empty:
         return
     axes.plot(way["x"], way["y"], linewidth=1.1, marker=".", markersize=4, zorder=5, **look)
@@ -153,7 +153,7 @@ def _draw_way(axes: Axes, way: pd.DataFrame, look: dict) -> None:
 
 
 def _draw_paths(axes: Axes, paths: pd.DataFrame, look: dict) -> None:
-    """The first path of a run thin and dotted, the last one thick."""
+    """The first path of a run, thin and dotted, and the last one, thick."""
     for iteration, own in paths.groupby("iteration"):
         last = iteration == paths["iteration"].max()
         thin = {"linewidth": 0.9, "linestyle": (0, (1, 1)), "label": "path after iteration 0"}

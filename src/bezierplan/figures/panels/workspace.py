@@ -1,4 +1,4 @@
-"""A workspace: cells with their numbers, circles or polygons; nothing planned."""
+"""A workspace: cells with their numbers, circles or polygons, without any path."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ _OUTLINE = {"facecolor": "none", "edgecolor": style.BLACK, "linewidth": 0.8, "li
 START = {"color": style.BLACK, "linestyle": "", "marker": "s", "markersize": 7, "label": "start", "zorder": 4.5}
 TARGET = {"color": style.BLACK, "linestyle": "", "marker": "*", "markersize": 12, "label": "target", "zorder": 4.5}
 
-# A grid that was drawn from circles or polygons shows its cells only up to this number of them; of more the shapes tell enough.
+# A grid drawn from circles or polygons shows its cells only up to this number; above it, the shapes suffice.
 _MOST_CELLS = 2500
 
 _COLUMNS = ["part", "x", "y", "size", "obstacle", "ring", "number"]
@@ -51,14 +51,14 @@ class Options(Panel):
 
 
 def data(workspace: Workspace, *, numbers: Literal["all", "free", "none"] = "none", embed: bool = False) -> pd.DataFrame:
-    """What is drawn of a workspace, in its unit: one row a corner of its bounds, a cell, a circle, or a point of a ring.
+    """What is drawn of a workspace, in its unit: one row per corner of its bounds, cell, circle, or point of a ring.
 
     Columns: part (corner, free, occupied, surplus, circle, ring), x, y (a cell's or circle's centre), size (a cell's side, a circle's
     radius), obstacle and ring (polygons only), number (of the cells that show it; see `workspaces.grid`), height (of the cells of a grid
-    that has heights, in its unit).
+    with heights, in its unit).
 
-    numbers: which cells show their number. embed: put a grid into one of a power of two of rows and columns, its surplus cells marked.
-    Raises ValueError if numbers or embedding are asked of a workspace without cells.
+    numbers: which cells show their number. embed: embed a grid in one with powers of two of rows and columns, with surplus cells marked.
+    Raises ValueError if numbers or embedding are requested for a workspace without cells.
     """
     if isinstance(workspace, Grid):
         whole = replace(workspace, occupied=embed_cells(workspace.occupied)) if embed else workspace
@@ -69,7 +69,7 @@ def data(workspace: Workspace, *, numbers: Literal["all", "free", "none"] = "non
 
 
 def parts(workspace: Workspace) -> pd.DataFrame:
-    """What is drawn of a workspace as it is, without numbers: rows as in `data`."""
+    """What is drawn of a workspace itself, without numbers: rows as in `data`."""
     if isinstance(workspace, Grid):
         source = workspace.drawn
         cells = [] if source and workspace.occupied.size > _MOST_CELLS else [_cells(workspace, workspace, "none")]
@@ -89,7 +89,7 @@ def _discs(circles: Circles) -> pd.DataFrame:
 
 
 def _table(bounds: tuple[float, float, float, float], *drawn: pd.DataFrame) -> pd.DataFrame:
-    """The corners of the bounds and all that is drawn within them, with all columns; heights only where there are some."""
+    """The corners of the bounds and everything drawn within them, with all columns; heights only if there are any."""
     import pandas as pd
 
     corners = pd.DataFrame({"part": "corner", "x": bounds[:2], "y": bounds[2:]})
@@ -98,7 +98,7 @@ def _table(bounds: tuple[float, float, float, float], *drawn: pd.DataFrame) -> p
 
 
 def _cells(whole: Grid, own: Grid, numbers: str) -> pd.DataFrame:
-    """Cells of a grid, those beyond its own part surplus."""
+    """Cells of a grid; those beyond its own part are surplus."""
     import pandas as pd
 
     own_rows, own_columns = own.occupied.shape
@@ -128,7 +128,7 @@ def _rings(workspace: Polygons) -> pd.DataFrame:
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     """Draw the rows of `data`; returns the note below the panel's title.
 
-    Cells that show their numbers need no scale: it would take the room that makes the numbers legible.
+    Cells that show their numbers need no scale: it would take up the room that keeps the numbers legible.
     """
     unit = scene.workspaces[panel["workspace"]].unit
     shade(axes, frame)
@@ -145,15 +145,15 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 
 
 def scale(axes: Axes, unit: str) -> None:
-    """Name the two coordinates of a workspace, with ticks at edges of cells of side 1."""
+    """Label the two coordinates of a workspace, with ticks at edges of cells of side 1."""
     axes.locator_params(nbins=8, steps=[1, 2, 4, 5, 10])
     axes.set_xlabel(f"x ({unit})")
     axes.set_ylabel(f"y ({unit})")
 
 
 def shade(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
-    """Draw the rows of `data` or `parts` without numbers or labels of the axes, to scale; of circles and polygons the outlines alone, if
-    something else fills the panel, as the cells of a grid that was drawn from them.
+    """Draw the rows of `data` or `parts` to scale, without numbers or axis labels; only the outlines of circles and polygons if something
+    else fills the panel, such as the cells of a grid drawn from them.
     """
     corners = frame[frame["part"] == "corner"]
     axes.set_xlim(corners["x"].min(), corners["x"].max())
@@ -204,7 +204,7 @@ def _polygons(rings: pd.DataFrame) -> list[PathPatch]:
 
 
 def _oriented(obstacle: pd.DataFrame) -> list[np.ndarray]:
-    """The rings (n, 2) of an obstacle, the outer one counterclockwise and its holes clockwise: only so do holes stay open."""
+    """The rings (n, 2) of an obstacle, the outer one counterclockwise and its holes clockwise: only then do holes stay open."""
     rings = []
     for number, ring in obstacle.groupby("ring"):
         points = ring[["x", "y"]].to_numpy()

@@ -1,15 +1,15 @@
-"""One file a kind of test.
+"""One file per kind of test.
 
-Every file has `Options`, which keys a check of this kind may have. A kind that judges runs (its `Options` are `OfRuns`) also has
+Every file has `Options`, the keys that a check of this kind may have. A kind that judges runs (its `Options` are `OfRuns`) also has
 
 | name | means |
 | --- | --- |
-| `EFFECT` | how the point values of the cells make an effect: an `effects.Effect` |
+| `EFFECT` | how an effect follows from the point values of the cells: an `effects.Effect` |
 | `cells(check, rows)` | the cells of each comparison, with its name in words, among the runs of one place |
-| `find(check, comparison, name)` | the `effects.Finding` of a comparison; all random draws follow from the name |
+| `find(check, comparison, name)` | the `effects.Finding` of a comparison; all random draws are seeded by the name |
 
-and any other kind `findings(check, claim, material)`: condition, name and finding of each comparison; it raises `Untestable` where there is
-nothing to judge. A check is a mapping, as it stands in claims.yaml. All p are two-sided and all intervals 95 %, by bootstrap over units
+and any other kind `findings(check, claim, material)`: condition, name and finding of each comparison; it raises `Untestable` if there is
+nothing to judge. A check is a mapping, as written in claims.yaml. All p are two-sided and all intervals 95 %, by bootstrap over units
 within each condition; above `statistics.MOST_RESAMPLED` units by its normal approximation.
 
 Options are read at every start of the workflow, so these files import scipy and pandas inside the functions that need them.
@@ -53,7 +53,7 @@ class PublishedMargin(Model):
 
 Margin = Annotated[Any, mapping_or(PublishedMargin, Positive)]
 
-# Descriptions of keys that several kinds of check have.
+# Descriptions of keys shared by several kinds of check.
 SECONDARY = "true: shown, does not decide; left out otherwise"
 EXPERIMENT = "the name of an experiment, or a list of at least two"
 PAIRED = "whether equal units are compared with each other, true or false; left out: as the experiment is drawn"
@@ -84,10 +84,10 @@ def named_groups(check: Mapping[str, Any]) -> list:
 
 
 class Check(Model):
-    """A check of any kind: what others ask of it, whether it has the keys or not.
+    """A check of any kind, with defaults for keys that other modules ask for.
 
-    of_printed: does the kind judge the printed numbers themselves? against: does it compare one group with another? cells_key: the key that
-    names the column whose values are compared, if any.
+    of_printed: whether the kind judges the printed numbers themselves. against: whether it compares one group with another. cells_key: the
+    key that names the column whose values are compared, if any.
     """
 
     of_printed: ClassVar[bool] = False
@@ -98,7 +98,7 @@ class Check(Model):
 
     @property
     def primary(self) -> bool:
-        """Does it count for the verdict?"""
+        """Whether it counts for the verdict."""
         return not getattr(self, "secondary", None)
 
     @property
@@ -143,13 +143,13 @@ def kind_of(check: Mapping[str, Any]) -> ModuleType:
 
 
 def cell_column(check: Mapping[str, Any]) -> str | None:
-    """The column whose values are the cells; None for a kind that has one cell."""
+    """The column whose values are the cells; None for a kind with one cell."""
     key = kind_of(check).Options.cells_key
     return check.get(key, "method") if key else None
 
 
 @cache
 def kinds() -> dict[str, type[Check]]:
-    """Kind of test -> what a check of this kind may have."""
+    """Kind of test -> the options of its checks."""
     names = sorted(file.stem for file in Path(__file__).parent.glob("[!_]*.py"))
     return {name: importlib.import_module(f"{__name__}.{name}").Options for name in names}

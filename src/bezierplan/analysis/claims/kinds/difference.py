@@ -1,7 +1,7 @@
-"""Groups differ at all.
+"""Whether groups differ at all.
 
-The effect is the range of the means. Two groups are tested as by `lower`; more by Friedman's test (paired; Kendall's W), else by Kruskal
-and Wallis's (epsilon squared).
+The effect is the range of the means. Two groups are tested as in `lower`; more by Friedman's test (paired; Kendall's W), otherwise by the
+Kruskal-Wallis test (epsilon squared).
 """
 
 from __future__ import annotations
@@ -44,12 +44,12 @@ class Options(Comparing):
 
 
 def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
-    """All groups side by side."""
+    """All groups as the cells of one comparison."""
     yield ", ".join(map(str, check["groups"])), check["groups"]
 
 
 def _range(check: dict, points: np.ndarray, cells: tuple) -> np.ndarray:
-    """The range of more than two groups, if relative to their mean; the difference of two."""
+    """The range of more than two groups, relative to their mean if so asked; the difference of two."""
     if len(cells) == 2:
         return BETWEEN_GROUPS.of(check, points, cells)
     return np.ptp(points, axis=-1) / (points.mean(axis=-1) if check.get("scale") == "relative" else 1)
@@ -63,7 +63,7 @@ EFFECT = BETWEEN_GROUPS._replace(of=_range, gradient=_gradient, claimed=lambda c
 
 
 def find(check: dict, comparison: Comparison, name: str) -> Finding:
-    """Do the cells differ at all?"""
+    """Test whether the cells differ at all."""
     from scipy import stats
 
     ours = float(effect(check, points(comparison, "mean"), comparison.cells))

@@ -1,4 +1,4 @@
-"""Two groups differ by no more than the margin.
+"""Whether two groups differ by no more than the margin.
 
 Two one-sided tests: the 90 % interval of the difference, less the target, lies within the margin. Effect and effect size are the difference
 of the statistic that the check names.
@@ -52,12 +52,12 @@ class Options(Comparing):
 
 
 def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
-    """Each group beside each of the others."""
+    """Each group paired with each of the others."""
     return pairs_in_words(itertools.product(check["groups"], check["than"]), "as")
 
 
 def claimed(check: dict, effects: np.ndarray, margin: float) -> np.ndarray:
-    """Is the effect, less the target, within the margin?"""
+    """Whether the effect, less the target, lies within the margin."""
     return np.abs(effects - check.get("target", 0)) <= margin
 
 
@@ -65,7 +65,7 @@ EFFECT = BETWEEN_GROUPS._replace(claimed=claimed)
 
 
 def find(check: dict, comparison: Comparison, name: str) -> Finding:
-    """Is the difference of two cells, less the target, within the margin? Two one-sided tests; p of being outside where it is outside."""
+    """Two one-sided tests of whether two cells' difference, less the target, lies within the margin; p of being outside where it is."""
     ours = float(effect(check, points(comparison, point_statistic(check)), comparison.cells))
     n, reason = units(comparison), too_few(comparison)
     if reason:

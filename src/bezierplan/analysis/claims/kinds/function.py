@@ -1,7 +1,7 @@
-"""What a function of the study's module finds, for sentences that no other kind fits.
+"""The finding of a function in the study's module, for sentences that fit no other kind.
 
-It gets the check, the results by experiment and the published numbers by file, and answers with a mark, the effect, its 95 % interval or
-None, and how many units it saw.
+It takes the check, the results by experiment and the published numbers by file, and returns a mark, the effect, its 95 % interval or
+None, and the number of units.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Options(Check):
 
 
 def findings(check: dict, claim: dict, material: Material) -> list[tuple[str, str, Finding]]:
-    """The answer. Raises Untestable if the experiment was not run, Fault if there is no function of that name."""
+    """The function's finding. Raises Untestable if the experiment was not run, Fault if there is no function of that name."""
     for experiment in one_or_list(check.get("experiment", [])):
         if experiment not in material.results:
             raise Untestable(f"the experiment {experiment} was not run")

@@ -1,14 +1,14 @@
-"""Groups are lower, or higher, than others.
+"""Whether groups are lower, or higher, than others.
 
 | statistic | test | effect size |
 | --- | --- | --- |
 | `rank` | Wilcoxon's signed ranks, Pratt's zeros (paired), Mann-Whitney | A12 in the claimed direction |
-| `rank` of truths | McNemar's exact test (paired), Fisher's exact test | odds ratio |
+| `rank` of booleans | McNemar's exact test (paired), Fisher's exact test | odds ratio |
 | `mean` | Student's t of the differences (paired), Welch's t | A12 |
-| another, or several conditions | bootstrap | A12, of spreads the difference |
+| any other, or several conditions | bootstrap | A12; for spreads the difference |
 | `min`, `max`, `range` | how often the sentence holds in draws of the paper's number of runs, on which they depend | the difference |
 
-The effect is the group's value less the other's: of means, or of the statistic that the check names.
+The effect is the group's value minus the other's: of means, or of the statistic that the check names.
 """
 
 from __future__ import annotations
@@ -96,13 +96,13 @@ class Options(Comparing):
 
 
 def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
-    """Each pair, or each group beside each of the others."""
+    """Each pair, or each group paired with each of the others."""
     pairs = check["pairs"] if "pairs" in check else itertools.product(check["groups"], check["than"])
     return pairs_in_words(pairs, f"{check['direction']} than")
 
 
 def find(check: dict, comparison: Comparison, name: str) -> Finding:
-    """Is the first cell lower (higher) than the second one?"""
+    """Test whether the first cell is lower (higher) than the second."""
     ours = float(effect(check, points(comparison, point_statistic(check)), comparison.cells))
     n, reason = units(comparison), too_few(comparison)
     if reason:
@@ -128,7 +128,7 @@ def find(check: dict, comparison: Comparison, name: str) -> Finding:
         p = _t_test(*_shifted(check, *finite(stratum, comparison.paired)), comparison.paired)
     else:
         p, ranked = rank_test(*_shifted(check, group, other), comparison.paired)
-        # The means have to differ in the direction of the ranks, unless some values have no mean.
+        # The means must differ in the direction of the ranks, unless some values have no mean.
         toward = side * ranked if np.isinf(stratum).any() or toward == side * ranked else 0
     infinite = any(np.isinf(each).any() for each in comparison.strata.values())
     if not (math.isfinite(ours) or infinite):
@@ -141,7 +141,7 @@ def find(check: dict, comparison: Comparison, name: str) -> Finding:
 
 
 def _t_test(group: np.ndarray, other: np.ndarray, paired: bool) -> float:
-    """p of two means; of the ranks where values that do not spread leave no t."""
+    """p of two means; of the ranks if values without spread leave t undefined."""
     from scipy import stats
 
     spread = (group - other).std() if paired else group.std() + other.std()
@@ -152,7 +152,7 @@ def _t_test(group: np.ndarray, other: np.ndarray, paired: bool) -> float:
 
 
 def _shifted(check: dict, group: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Values of both groups, the other's moved by the claimed least effect; infinite ones replaced by one beyond any difference."""
+    """Values of both groups, the other's shifted by the claimed least effect; infinite ones replaced by a value beyond any difference."""
     finite = np.concatenate([values[np.isfinite(values)] for values in (group, other)])
     worst = finite.max() + 2 * np.ptp(finite) + 1
     group, other = (np.where(np.isinf(values), worst, values) for values in (group, other))
@@ -161,7 +161,7 @@ def _shifted(check: dict, group: np.ndarray, other: np.ndarray) -> tuple[np.ndar
 
 
 def _boolean_test(group: np.ndarray, other: np.ndarray, paired: bool) -> float:
-    """McNemar's exact p of pairs of truths, Fisher's of two groups."""
+    """McNemar's exact p for pairs of booleans, Fisher's for two groups."""
     from scipy import stats
 
     if paired:
@@ -175,7 +175,7 @@ def _contingency(group: np.ndarray, other: np.ndarray) -> list[list[int]]:
 
 
 def _effect_size(check: dict, comparison: Comparison, side: int, ours: float) -> tuple[str, float]:
-    """Name and value: odds ratio of truths; A12, the share of pairs won in the claimed direction; or the difference itself."""
+    """Name and value: odds ratio of booleans; A12, the share of pairs won in the claimed direction; or the difference itself."""
     pairs = [counted(stratum, comparison.paired) for stratum in comparison.strata.values()]
     if comparison.boolean and len(pairs) == 1:
         ((group, other),) = pairs

@@ -1,4 +1,4 @@
-"""Tiers of groups, each lower, or higher, than the next: every group against every one of the next tier, as `lower` does it."""
+"""Tiers of groups, each lower, or higher, than the next: every group is compared with every one of the next tier, as in `lower`."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Options(Comparing):
 
 
 def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
-    """Each group beside each of the next tier."""
+    """Each group paired with each of the next tier."""
     tiers = itertools.pairwise(check["order"])
     pairs = itertools.chain.from_iterable(itertools.product(better, worse) for better, worse in tiers)
     return pairs_in_words(pairs, f"{check['direction']} than")

@@ -1,4 +1,4 @@
-"""The paper's own numbers against each other."""
+"""The paper's own numbers checked against each other."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 Selected = dict[str, Values]
 
-# Columns of published files that tell no cells apart.
+# Columns of published files that do not distinguish cells.
 _NOT_KEYS = ("value", "n", "unit")
 
 
@@ -45,7 +45,7 @@ class Options(Check):
 
 
 def findings(check: dict, claim: dict, material: Material) -> list[tuple[str, str, Finding]]:
-    """One of each cell. Raises Untestable if a printed cell is empty."""
+    """One finding per cell. Raises Untestable if a printed cell is empty."""
     computed = arithmetic(check, material.published)
     if empty := [finding.reason for _, finding in computed if finding.mark == "?"]:
         raise Untestable(empty[0])
@@ -53,11 +53,11 @@ def findings(check: dict, claim: dict, material: Material) -> list[tuple[str, st
 
 
 def arithmetic(check: dict, published: dict[str, pd.DataFrame]) -> list[tuple[str, Finding]]:
-    """Do printed numbers fit each other? One finding for each cell of the first selector, with the cell's name.
+    """Test whether printed numbers agree. One finding for each cell of the first selector, with the cell's name.
 
-    `difference`: the second less the first; `increase_percent`: of the second over the first; `equal`: the first alone. Cells of several
-    selectors belong together where the columns that no selector names are equal; a lone cell belongs to every other. What is computed may
-    differ from what is printed by half a unit of the last printed digit. Not a number where a cell is empty or missing.
+    `difference`: the second minus the first; `increase_percent`: of the second over the first; `equal`: the first alone. Cells of several
+    selectors are matched by equal values of the columns that no selector names; a lone cell matches every other. The computed number
+    may differ from the printed one by half a unit of the last printed digit. NaN where a cell is empty or missing.
     """
     import pandas as pd
 
@@ -102,13 +102,13 @@ def _computed(check: dict, numbers: list[float]) -> Finding:
             computed = 100 * (numbers[1] / numbers[0] - 1) if numbers[0] else math.nan
         case "equal":
             computed = numbers[0]
-    # Of two printed numbers the one with more digits, because a last zero is not read.
+    # The larger number of digits of two printed numbers, because a trailing zero is lost on reading.
     digits = max(map(_decimals, [wanted, computed] if check["form"] == "equal" else [wanted]))
     fits = abs(computed - wanted) <= 0.5 * 10.0**-digits * (1 + 1e-9)
     return Finding(computed, "printed", wanted, mark="+" if fits else "-")
 
 
 def _decimals(number: float) -> int:
-    """Digits behind the point of the shortest decimal that is this number."""
+    """Decimal places of the shortest decimal equal to this number."""
     text = np.format_float_positional(number, trim="-")
     return len(text.partition(".")[2])

@@ -1,7 +1,7 @@
-"""The share of runs in which something is so.
+"""The share of runs in which an event happens.
 
-Exact binomial test, interval of Clopper and Pearson; of six pooled conditions or more Student's t over their shares. For `all`, `none` and
-`some` one (counter)example decides. The effect is the share.
+Exact binomial test with the Clopper-Pearson interval; for six or more pooled conditions, Student's t over their shares. For `all`, `none`
+and `some`, one (counter)example decides. The effect is the share.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ class Pick(Model):
 
 
 class Event(Model):
-    """What a share is the share of."""
+    """The event whose share is taken."""
 
     below: Number = Field(None, description="a number")
     above: Number = Field(None, description="a number")
@@ -74,7 +74,7 @@ def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
 
 
 def claimed(check: dict, effects: np.ndarray, margin: float) -> np.ndarray:
-    """Is the share on the claimed side of the threshold?"""
+    """Whether the share is on the claimed side of the threshold."""
     match check["threshold"]:
         case "all":
             return effects == 1
@@ -89,7 +89,7 @@ EFFECT = Effect(lambda check, points, cells: points[..., 0], lambda check, ours,
 
 
 def find(check: dict, comparison: Comparison, name: str) -> Finding:
-    """In which share of the units does the event happen?"""
+    """Test the share of units in which the event happens."""
     from scipy import stats
 
     happened = np.concatenate([counted(stratum, False)[0] for stratum in comparison.strata.values()])
@@ -103,7 +103,7 @@ def find(check: dict, comparison: Comparison, name: str) -> Finding:
     exact = stats.binomtest(k, n).proportion_ci(method="exact")
     found = found._replace(low=float(exact.low), high=float(exact.high))
     if isinstance(check["threshold"], str):
-        # For `some` one example decides and many misses are needed against it; for `all` and `none` it is the other way round.
+        # For `some`, one example decides and many misses are needed to refute it; for `all` and `none` it is the other way round.
         decided = holds == (check["threshold"] == "some") or n >= LEAST_WITHOUT_EXAMPLE
         mark = ("+" if holds else "-") if decided else "?"
         return found._replace(mark=mark, reason="" if decided else f"fewer than {LEAST_WITHOUT_EXAMPLE} runs")
@@ -112,13 +112,13 @@ def find(check: dict, comparison: Comparison, name: str) -> Finding:
     threshold = check["threshold"]
     if len(comparison.strata) >= LEAST_RUNS:
         return _share_of_conditions(found, comparison, threshold, SIDES[check["direction"]])
-    # Twice the smaller tail, the test that belongs to the interval of Clopper and Pearson.
+    # Twice the smaller tail, the test that corresponds to the Clopper-Pearson interval.
     p = min(1.0, 2 * float(min(stats.binom.cdf(k, n, threshold), stats.binom.sf(k - 1, n, threshold))))
     return found._replace(p=p, toward=int(np.sign(SIDES[check["direction"]] * (k / n - threshold))))
 
 
 def _share_of_conditions(found: Finding, comparison: Comparison, threshold: float, side: int) -> Finding:
-    """Conditions that are drawn, such as layouts, are the units: runs of one are alike. Student's t over their shares."""
+    """Random conditions, such as layouts, are the units, because runs of one are alike. Student's t over their shares."""
     from scipy import stats
 
     shares = np.array([np.nanmean(stratum) for stratum in comparison.strata.values() if not np.isnan(stratum).all()])

@@ -1,4 +1,4 @@
-"""The metric rises, or falls, along a column of numbers.
+"""Whether the metric rises, or falls, with a numeric column.
 
 The effect is the change from the lowest to the highest x, the effect size the least-squares slope. Wilcoxon's signed ranks test the slopes
 of the units against 0; with `statistic: std`, the spread of each condition, a bootstrap does.
@@ -62,13 +62,13 @@ def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
 
 
 def _weights(x: np.ndarray) -> np.ndarray:
-    """Weights (k,) of values over x (k,) that give least-squares slope times range of x; not a number for a single x."""
+    """Weights (k,) of values over x (k,) that give least-squares slope times range of x; NaN for a single x."""
     from_mean = x - x.mean()
     return from_mean / (from_mean**2).sum() * np.ptp(x)
 
 
 def _change(check: dict, points: np.ndarray, cells: tuple) -> np.ndarray:
-    """From the lowest x to the highest; if relative, to the value at the lowest."""
+    """The change from the lowest x to the highest; if relative, as a share of the value at the lowest."""
     change = points @ _weights(np.array(cells, dtype=float))
     return change / points[..., 0] if check.get("scale") == "relative" else change
 
@@ -82,7 +82,7 @@ EFFECT = Effect(_change, _gradient, on_claimed_side, reference=0)
 
 
 def find(check: dict, comparison: Comparison, name: str) -> Finding:
-    """Does a metric change with x as claimed?"""
+    """Test whether a metric changes with x as claimed."""
     from scipy import stats
 
     x = np.array(comparison.cells, dtype=float)
@@ -91,7 +91,7 @@ def find(check: dict, comparison: Comparison, name: str) -> Finding:
     n, statistic = len(slopes), point_statistic(check)
     if n < LEAST_RUNS:
         return Finding(n=n, mark="?", reason=f"fewer than {LEAST_RUNS} units with at least 3 values of {check['x']}")
-    # A unit counts where it has a value, whether or not it has one at every x.
+    # A unit counts wherever it has a value, even if not at every x.
     each = comparison._replace(paired=False)
     ours = points(each, statistic)
     if statistic == "mean":
