@@ -131,7 +131,7 @@ EDITS = {
     ),
     "how a job is logged": ("src/bezierplan/running/log.py", "PR_SET_PDEATHSIG = 1", "PR_SET_PDEATHSIG = 1 + 0", {}),
     "a title": ("config/studies/song2016/artefacts.yaml", "title: ", "title: The same, ", {}),
-    "a comment": ("src/bezierplan/planners/parts/genetic.py", "# A draw next to 1", "# Hence a draw next to 1", {}),
+    "a comment": ("src/bezierplan/planners/parts/genetic.py", "# A draw close to 1", "# Hence a draw close to 1", {}),
     # Paths and convergence share code with the kind `lines`, which reads the units of metrics.
     "a metric": (
         "src/bezierplan/analysis/measures.py",
