@@ -14,7 +14,7 @@ os.environ.update(PYTHONPATH=SOURCE, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="
 # Snakemake puts the path of its interpreter into shell commands unquoted; here the folder may have any name.
 sys.executable = shlex.quote(sys.executable)
 
-from bezierplan.study import alternatives, checked, experiments, reading, targets
+from bezierplan.study import alternatives, checked, experiments, page, reading, targets
 
 try:
     STUDIES = reading.load(reading.read_config(config))

@@ -1,4 +1,4 @@
-# All studies together.
+# All studies together: the summary, and the page that shows everything.
 
 
 rule summary:
@@ -14,3 +14,16 @@ rule summary:
         **params(targets.summary_params, "job", "code"),
     script:
         "../scripts/summary.py"
+
+
+rule page:
+    input:
+        inputs(page.inputs),
+    output:
+        page=report("results/{scale}/index.html", category="summary", labels={"item": "page", "shows": "everything, on one page"}),
+    log:
+        "results/{scale}/page.log",
+    params:
+        **params(page.params, "job", "tried", "look", "code"),
+    script:
+        "../scripts/page.py"

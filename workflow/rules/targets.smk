@@ -9,16 +9,19 @@ except checked.Fault as fault:
 rule all:
     input:
         targets.files_of_scale(STUDIES, "full"),
+        page.file("full"),
 
 
 rule smoke:
     input:
         targets.files_of_smoke(STUDIES),
+        page.file("smoke"),
 
 
 rule extended:
     input:
         targets.files_of_scale(STUDIES, "extended"),
+        page.file("extended"),
 
 
 rule alternatives:

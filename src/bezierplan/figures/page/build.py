@@ -1,0 +1,155 @@
+"""The page as text: its content in templates, with style, scripts and the table library in the same file."""
+
+from collections import Counter
+from importlib import resources
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from bezierplan.figures.page import content, pictures
+from bezierplan.figures.page.gather import printed_key
+
+HERE = Path(__file__).parent
+
+# Verdict -> the class that colours it and its symbol; another verdict gets the last one.
+LOOKS = {
+    "reproduced": ("good", "●"),
+    "not told apart": ("open", "◐"),
+    "cannot fail": ("open", "○"),
+    "not reproduced": ("bad", "✕"),
+    "supported": ("good", "●"),
+    "mostly": ("good", "◕"),
+    "in part": ("part", "◑"),
+    "seldom": ("part", "◔"),
+    "contradicted": ("bad", "✕"),
+    "no effect": ("bad", "="),
+    "undecided": ("open", "?"),
+    "untestable": ("open", "–"),
+}
+_OTHER = ("open", "·")
+# Mark of a comparison -> the class that colours it, and what it says.
+MARKS = {"+": ("good", "holds"), "-": ("bad", "the opposite holds"), "0": ("part", "neither holds"), "?": ("open", "not known")}
+
+
+def files() -> list[str]:
+    """The templates, styles and scripts of the page, whose content decides how it looks."""
+    return sorted(str(file) for folder in ("templates", "static") for file in (HERE / folder).iterdir())
+
+
+def html(page: content.Page, folder: Path) -> str:
+    """The page as one html text that needs no other file. folder: where the pictures of its figures are."""
+    import jinja2
+    from markupsafe import Markup
+
+    loader = jinja2.FileSystemLoader([HERE / "templates", HERE / "static"])
+    environment = jinja2.Environment(
+        loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined, keep_trailing_newline=True
+    )
+    environment.filters |= {"look": look, "short": short, "json_text": _json_text, "printed_key": printed_key}
+    environment.globals |= {
+        "forests": pictures.forests,
+        "grid": grid,
+        "counts": counts,
+        "tip": tip,
+        "marks": MARKS,
+        "picture": lambda figure: Markup(pictures.data_uri(folder / figure.svg)),
+        "size": lambda figure: pictures.size(folder / figure.svg),
+        "static": lambda name: Markup((HERE / "static" / name).read_text(encoding="utf-8")),
+        "table_library": lambda: Markup(resources.files("itables").joinpath("html/dt_bundle.js").read_text(encoding="utf-8")),
+    }
+    data, schema = page.model_dump(mode="json"), content.Page.model_json_schema()
+    return environment.get_template("page.html.jinja").render(page=page, data=data, schema=schema)
+
+
+def _json_text(value: Any) -> Any:
+    """JSON for a script element: nothing in it can end the element."""
+    import json
+
+    from markupsafe import Markup
+
+    text = json.dumps(value, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    return Markup(text.replace("<", "\\u003c").replace("\u2028", "\\u2028").replace("\u2029", "\\u2029"))
+
+
+def look(verdict: str) -> tuple[str, str]:
+    """The class and the symbol of a verdict."""
+    return LOOKS.get(verdict, _OTHER)
+
+
+def short(value: content.Cell, digits: int = 4) -> str:
+    """A value as printed: a number to some significant digits, an unknown one as a dash."""
+    if value is None:
+        return "–"
+    return f"{value:.{digits}g}" if isinstance(value, float) else str(value)
+
+
+def counts(verdicts: list[str]) -> list[tuple[str, int]]:
+    """How many there are of each verdict, in the order of `LOOKS`."""
+    found = Counter(verdict for verdict in verdicts if verdict)
+    return [(name, found[name]) for name in [*LOOKS, *sorted(found.keys() - LOOKS.keys())] if found[name]]
+
+
+class Row(NamedTuple):
+    """A row of a table of numbers: its keys as printed, its cells in the order of the columns, and whether it is the paper's reading."""
+
+    keys: list[str]
+    cells: list[content.Number | None]
+    primary: bool
+
+
+class Grid(NamedTuple):
+    """Numbers as rows and columns. same: keys that all rows share, as printed. decimals: of each column."""
+
+    keys: list[str]
+    columns: list[str]
+    rows: list[Row]
+    same: list[str]
+    decimals: list[int]
+
+
+def grid(table: content.Table, labels: dict[str, str]) -> Grid:
+    """The numbers of a table: a row for each combination of keys, a column for each metric and statistic."""
+    keys = list(table.numbers[0].keys) if table.numbers else []
+    values = {key: {number.keys[key] for number in table.numbers} for key in keys}
+    told = [key for key in keys if len(values[key]) > 1]
+    columns = list(dict.fromkeys(number.column for number in table.numbers))
+    rows: dict[tuple, dict[str, content.Number]] = {}
+    for number in table.numbers:
+        rows.setdefault(tuple(number.keys.values()), {})[number.column] = number
+    listed = [
+        Row(
+            [_key(key, next(iter(cells.values())).keys[key], labels) for key in told],
+            [cells.get(column) for column in columns],
+            any(number.primary for number in cells.values()),
+        )
+        for cells in rows.values()
+    ]
+    decimals = [max((_decimals(n.published) for n in table.numbers if n.column == column), default=0) for column in columns]
+    same = [f"{key.replace('_', ' ')}: {printed_key(key, next(iter(values[key])), labels)}" for key in keys if key not in told]
+    return Grid([labels.get(key, key.replace("_", " ")) for key in told], columns, listed, same, decimals)
+
+
+def _key(key: str, value: content.Cell, labels: dict[str, str]) -> str:
+    """A key in a column that names it: a number stands alone."""
+    return short(value) if isinstance(value, int | float) else printed_key(key, value, labels)
+
+
+def _decimals(value: float | None) -> int:
+    return 0 if value is None else min(4, len(f"{value:.6g}".partition(".")[2]))
+
+
+def tip(number: content.Number) -> str:
+    """What a cell says on hover or focus."""
+    low, high = number.interval
+    parts = [f"{number.verdict or 'not judged'}: {number.row}, {number.column}"]
+    if number.published is not None:
+        size = "" if number.n_published is None else f" (n {number.n_published:g})"
+        parts.append(f"published {number.published:g}{size}")
+    interval = "" if low is None else f", 95 % interval {low:.5g} to {short(high, 5)}"
+    parts.append(f"ours {short(number.ours, 5)}{interval}, n {short(number.n)}")
+    if number.predicted != (None, None):
+        parts.append(f"an experiment of the paper's size: {' to '.join(short(end, 5) for end in number.predicted)}")
+    if number.share_feasible is not None:
+        parts.append(f"feasible {100 * number.share_feasible:.0f} %")
+    if number.bound is not None:
+        parts.append(f"exact bound {number.bound:.5g}" + ("" if number.gap is None else f", gap {100 * number.gap:.1f} %"))
+    return "; ".join(parts)

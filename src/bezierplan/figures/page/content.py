@@ -1,0 +1,232 @@
+"""What the page holds, as frozen models: the page is drawn from them, and their JSON stands in it with the schema that describes it.
+
+An address names a place on the page, and is what follows `#` in a link to it. It reads like a path: study, table, the keys that tell the
+row from others of the table's primary reading, metric, statistic; study and claim; study and figure; the id of a run.
+"""
+
+from typing import Annotated, Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+FORMAT = 1
+"""Number of the format; a change that breaks a reader of the JSON raises it."""
+
+Address = Annotated[str, Field(description="what follows # in a link to this place of the page")]
+Interval = tuple[float | None, float | None]
+Cell = str | int | float | bool | None
+
+
+class Record(BaseModel):
+    """A frozen mapping; a key that is not described is an error."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid")
+
+
+class Part(Record):
+    """A part of a sentence."""
+
+    text: str
+    address: Address | None = Field(None, description="the place that the words lead to")
+
+
+class Number(Record):
+    """A cell of a table: a published number beside the reproduced one."""
+
+    address: Address
+    keys: dict[str, Cell] = Field(description="column of the runs table -> value, as in the csv file")
+    row: str = Field(description="the keys as printed")
+    column: str = Field(description="metric and statistic as printed")
+    metric: str
+    statistic: str
+    unit: str
+    published: float | None = Field(description="the published number; null if the paper prints none")
+    n_published: float | None = Field(description="number of runs behind it, if stated")
+    ours: float | None
+    n: float | None = Field(description="number of our runs that count")
+    interval: Interval = Field(description="95 % bootstrap interval of ours")
+    predicted: Interval = Field(description="95 % prediction interval of an experiment of the published size")
+    verdict: str = Field(description="reproduced, not told apart, cannot fail or not reproduced; empty if not judged")
+    primary: bool = Field(description="whether the row is the paper's reading")
+    counted: bool = Field(description="whether it counts in the outcome")
+    share_feasible: float | None = Field(description="share of all runs whose path the certified checker accepts")
+    bound: float | None = Field(description="exact shortest length of the problem, in the unit of length")
+    gap: float | None = Field(description="median over the feasible runs of length / bound - 1")
+
+
+class Table(Record):
+    """A table: with `numbers` if it is compared with published ones, otherwise with `columns` and `rows` as in its csv file."""
+
+    address: Address
+    name: str
+    title: str
+    caption: str = Field(description="title, methods, settings in force and repeats")
+    csv: str = Field(description="its csv file, relative to the page")
+    numbers: list[Number] = []
+    columns: list[str] = []
+    rows: list[list[Cell]] = []
+
+
+class Figure(Record):
+    """A figure."""
+
+    address: Address
+    name: str
+    title: str
+    caption: str = Field(description="title, methods, settings in force and repeats")
+    svg: str = Field(description="its picture, relative to the page")
+    csv: str = Field(description="exactly the data that it shows, relative to the page")
+
+
+class Comparison(Record):
+    """A comparison of a claim in its primary variant."""
+
+    check: int = Field(description="number of the check within the claim, from 1")
+    deciding: bool = Field(description="whether the check decides the verdict, or is only reported")
+    test: str
+    metric: str
+    statistic: str
+    unit: str
+    name: str = Field(description="what is compared, and where")
+    mark: str = Field(description="+ holds, - the opposite holds, 0 neither, ? not known; in the family of all deciding comparisons")
+    effect: float | None
+    interval: Interval = Field(description="95 % interval of the effect")
+    margin: float | None = Field(description="the smallest effect that matters")
+    effect_published: float | None = Field(description="the effect in the printed numbers")
+    p: float | None
+    n: float | None = Field(description="number of replicates")
+    reason: str
+
+
+class Reading(Record):
+    """A claim judged with other values than the primary ones."""
+
+    variant: str
+    verdict: str
+    holds: str
+
+
+class Choice(Record):
+    """What becomes of a claim with an alternative of an assumption."""
+
+    assumption: str = Field(description="id of the assumption")
+    alternative: str
+    claim: str = Field(description="id of the claim")
+    verdict: str = Field(description="with the alternative in force")
+    changed: bool = Field(description="whether this differs from the verdict with the default")
+
+
+class Claim(Record):
+    """A sentence of the paper, or a finding of our own."""
+
+    address: Address
+    id: str
+    place: str = Field(description="where the paper says it")
+    statement: str
+    finding: bool = Field(description="our own finding rather than a sentence of the paper")
+    verdict: str
+    holds: str = Field(description="how many comparisons hold")
+    where: str = Field(description="where it holds, in words")
+    published: str = Field(description="how many of those with printed numbers hold in these")
+    reason: str
+    replication: float | None = Field(description="share of experiments of the paper's size, drawn from our runs, in which it holds")
+    size: str = Field(description="our effect compared with the printed one")
+    shown_in: list[Address] = Field(description="the tables and figures that show it")
+    comparisons: list[Comparison]
+    variant: str = Field(description="the primary values")
+    readings: list[Reading]
+    choices: list[Choice]
+    more: dict[str, Cell] = Field(description="further columns of claims.csv")
+
+
+class Assumption(Record):
+    """What the paper leaves open, and the choice in force."""
+
+    address: Address
+    id: str
+    detail: str
+    default: str
+    alternatives: list[str]
+    reason: str
+    source: str = Field(description="where the default comes from: published, inferred or assumed")
+    setting: str = Field(description="the planner's setting that it governs; empty if none")
+    claims: list[str] = Field(description="ids of the claims on which the alternatives are tried")
+    choices: list[Choice]
+
+
+class Audited(Record):
+    """A printed number, checked against others or against an exact bound."""
+
+    item: str
+    place: str
+    rule: str
+    printed: Cell
+    limit: Cell
+    consistent: bool | None
+
+
+class Shown(Record):
+    """Runs of a method in the viewer, by their ids in `runs`: on one problem, or on all of an experiment."""
+
+    experiment: str
+    problem: str = Field(description="empty for all problems of the experiment together")
+    method: str
+    count: int = Field(description="number of runs")
+    feasible: int = Field(description="number of feasible runs")
+    best: str | None = Field(description="the feasible run with the least length over the exact bound")
+    median: str | None
+    worst: str | None
+    failed: list[str] = Field(description="runs without a feasible path, the first few")
+
+
+class Study(Record):
+    """A paper, or a study of a reader's own."""
+
+    address: Address
+    title: str
+    outcome: dict[str, int] = Field(description="how many numbers and claims there are, by verdict")
+    claims: list[Claim]
+    tables: list[Table]
+    figures: list[Figure]
+    audit: list[Audited]
+    assumptions: list[Assumption]
+    shown: list[Shown]
+    labels: dict[str, str] = Field(description="name -> how it is printed")
+
+
+class Problem(Record):
+    """A workspace with start, target and the exact shortest path."""
+
+    workspace: dict[str, Any] = Field(description="its kind, unit and shapes")
+    start: tuple[float, float]
+    target: tuple[float, float]
+    bound: float | None = Field(description="length of the exact shortest path")
+    bound_path: list[float] = Field(description="x0, y0, x1, y1, ...")
+
+
+class Run(Record):
+    """A run. Points are rounded to what a picture shows; the parquet files have them to the last bit."""
+
+    problem: str = Field(description="key in `problems`")
+    feasible: bool
+    claimed: bool = Field(description="the planner's own opinion")
+    length: float | None
+    clearance: float | None
+    collision: tuple[float, float] | None = Field(description="where the path first meets an obstacle or leaves the border")
+    depth: float | None = Field(description="depth of the path in obstacles or beyond the border")
+    evaluations: int
+    stop: str
+    curve: str
+    path: list[float] = Field(description="x0, y0, x1, y1, ... along the path")
+    control: list[float] = Field(description="control points; empty if some are tangents")
+    history: list[tuple[int, float]] = Field(description="generation and best objective, where it changes")
+
+
+class Page(Record):
+    """All results of a scale."""
+
+    format: int = FORMAT
+    scale: str
+    answer: list[list[Part]] = Field(description="sentences, each in parts")
+    studies: dict[str, Study]
+    problems: dict[str, Problem]
+    runs: dict[str, Run]

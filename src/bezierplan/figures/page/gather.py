@@ -1,0 +1,274 @@
+"""The content of the page, from the csv files of a scale. Columns are read by name, and those that a file lacks stay empty."""
+
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from bezierplan.analysis import summary
+from bezierplan.figures import style
+from bezierplan.figures.page import content
+from bezierplan.figures.page.addresses import address, of_cells
+from bezierplan.study.model import one_or_list
+
+# Columns of claims.csv that the page shows in places of their own, or that repeat the comparison that decides.
+_CLAIM_COLUMNS = {
+    *("study", "id", "variant", "primary", "finding", "place", "statement", "verdict", "holds", "where_it_holds", "published", "reason"),
+    *("effect", "effect_size_name", "effect_size", "low95", "high95", "n", "counted", "p", "p_family", "replication_probability", "size"),
+    *("artefact", "timed"),
+}
+
+
+def read(file: str | Path) -> pd.DataFrame:
+    """A csv file in which only an empty cell is a missing value."""
+    return pd.read_csv(file, keep_default_na=False, na_values=[""], low_memory=False)
+
+
+def cell(value: Any) -> content.Cell:
+    """A value of a table as JSON knows it: no NaN, no infinite number, no numpy type."""
+    if value is None or pd.isna(value) or value in (float("inf"), float("-inf")):
+        return None
+    return value.item() if hasattr(value, "item") else value
+
+
+def _number(row: pd.Series, column: str) -> float | None:
+    value = cell(pd.to_numeric(row.get(column), errors="coerce"))
+    return None if value is None else float(value)
+
+
+def _interval(row: pd.Series, low: str, high: str) -> tuple[float | None, float | None]:
+    return _number(row, low), _number(row, high)
+
+
+def _text(row: pd.Series, column: str) -> str:
+    value = cell(row.get(column))
+    return "" if value is None else f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _flag(row: pd.Series, column: str) -> bool:
+    return str(row.get(column)) == "True"
+
+
+def studies(job: dict[str, dict], folder: Path, numbers: pd.DataFrame | None, claims: pd.DataFrame | None) -> dict[str, content.Study]:
+    """All studies without the runs that the viewer shows, from the csv files in the folder of a scale.
+
+    job: study -> `title`, `labels`, `tables` and `figures` (name -> `title`, `caption` and, of tables, `spec`), `assumptions`, `files` (its
+    claims, comparisons of claims, audit and alternatives, as far as there are any). numbers, claims: those of all studies
+    (`analysis.summary`), if the scale has them.
+    """
+    outcome = summary.outcome(numbers, claims).to_dict("index") if numbers is not None and claims is not None else {}
+    return {key: _study(key, own, folder, numbers, outcome.get(key, {})) for key, own in job.items()}
+
+
+def _study(key: str, job: dict, folder: Path, numbers: pd.DataFrame | None, outcome: dict[str, int]) -> content.Study:
+    files = {name: read(file) for name, file in job["files"].items()}
+    judged = files.get("claims", pd.DataFrame(columns=["study", "id", "primary", "verdict"]))
+    choices = _choices(files.get("sensitivity"), judged)
+    own = None if numbers is None else numbers[numbers["study"] == key]
+    return content.Study(
+        address=address(key),
+        title=job["title"],
+        outcome={name: int(count) for name, count in outcome.items()},
+        claims=_claims(key, judged, files.get("checks"), choices, job["labels"]),
+        tables=[_table(key, name, table, folder, own, job["labels"]) for name, table in job["tables"].items()],
+        figures=[_figure(key, name, figure) for name, figure in job["figures"].items()],
+        audit=[_audited(row) for _, row in files["audit"].iterrows()] if "audit" in files else [],
+        assumptions=[_assumption(key, each, choices) for each in job["assumptions"]],
+        shown=[],
+        labels=job["labels"],
+    )
+
+
+def _figure(study: str, name: str, job: dict) -> content.Figure:
+    place = f"{study}/figures/{name}"
+    return content.Figure(
+        address=address(study, name), name=name, title=job["title"], caption=job["caption"], svg=f"{place}.svg", csv=f"{place}.csv"
+    )
+
+
+def _table(study: str, name: str, job: dict, folder: Path, numbers: pd.DataFrame | None, labels: dict[str, str]) -> content.Table:
+    file = f"{study}/tables/{name}.csv"
+    compared = folder / study / "tables" / f"{name}.comparison.csv"
+    named = {"address": address(study, name), "name": name, "title": job["title"], "caption": job["caption"], "csv": file}
+    if job["spec"].get("published") and job["spec"]["kind"] == "pivot":
+        cells = _numbers(named["address"], read(compared), job["spec"], numbers, labels)
+        return content.Table(**named | {"csv": f"{study}/tables/{name}.comparison.csv"}, numbers=cells)
+    plain = read(folder / file)
+    rows = [[cell(value) for value in row] for row in plain.itertuples(index=False)]
+    return content.Table(**named, columns=[str(column) for column in plain], rows=rows)
+
+
+def _numbers(
+    table: str, compared: pd.DataFrame, spec: dict, numbers: pd.DataFrame | None, labels: dict[str, str]
+) -> list[content.Number]:
+    """The cells of a table: those with a published number, and what other methods have in the same column."""
+    keys = list(compared.columns[: compared.columns.get_loc("metric")])
+    printed = compared.loc[compared["value_published"].notna(), ["metric", "statistic"]].drop_duplicates()
+    shown = compared.merge(printed, on=["metric", "statistic"])
+    places = shown[[*keys, "metric", "statistic"]].to_dict("records")
+    addresses = of_cells(table, places, spec.get("primary", {}))
+    status = _status(table, keys, numbers)
+    cells = []
+    for place, name, (_, row) in zip(places, addresses, shown.iterrows(), strict=True):
+        primary, counted = status.get(address(*place.values()), (all(place[k] == v for k, v in spec.get("primary", {}).items()), False))
+        cells.append(
+            content.Number(
+                address=name,
+                keys={key: cell(place[key]) for key in keys},
+                row=", ".join(printed_key(key, place[key], labels) for key in keys),
+                column=_heading(row["metric"], row["statistic"], spec, labels),
+                metric=row["metric"],
+                statistic=row["statistic"],
+                unit=row["unit"],
+                published=_number(row, "value_published"),
+                n_published=_number(row, "n_published"),
+                ours=_number(row, "value_ours"),
+                n=_number(row, "n_ours"),
+                interval=_interval(row, "low95_ours", "high95_ours"),
+                predicted=_interval(row, "low95_predicted", "high95_predicted"),
+                verdict=_text(row, "verdict"),
+                primary=primary,
+                counted=counted,
+                share_feasible=_number(row, "share_feasible"),
+                bound=_number(row, "bound"),
+                gap=_number(row, "gap"),
+            )
+        )
+    return cells
+
+
+def _status(table: str, keys: list[str], numbers: pd.DataFrame | None) -> dict[str, tuple[bool, bool]]:
+    """Cell, named by all its keys -> whether it is the paper's reading, and whether it counts; empty without the numbers of all studies."""
+    if numbers is None:
+        return {}
+    own = numbers[numbers["table"] == table.partition("/")[2]]
+    columns = [*keys, "metric", "statistic"]
+    return {address(*row[columns]): (_flag(row, "primary"), _flag(row, "counted")) for _, row in own.iterrows()}
+
+
+def printed_key(column: str, value: content.Cell, labels: dict[str, str]) -> str:
+    """The value of a key column as printed; a number is named."""
+    return "" if value is None else str(value) if isinstance(value, bool) else style.printed(value, column, labels)
+
+
+def _heading(metric: str, statistic: str, spec: dict, labels: dict[str, str]) -> str:
+    """Metric and statistic as the table prints them."""
+    for value in spec.get("values", []):
+        statistics = one_or_list(value["statistic"])
+        if value["metric"] == metric and statistic in statistics:
+            return value["label"] + (f": {statistic}" if len(statistics) > 1 else "")
+    return f"{style.column_name(metric, labels)}: {statistic}"
+
+
+def _claims(study: str, judged: pd.DataFrame, checks: pd.DataFrame | None, choices: list[content.Choice], labels: dict[str, str]) -> list:
+    claims = []
+    for identity, rows in judged.groupby("id", sort=False):
+        row = rows[rows["primary"].astype(bool)].iloc[0]
+        variant = _text(row, "variant")
+        own = checks[(checks["id"] == identity) & (checks["variant"].fillna("") == variant)] if checks is not None else pd.DataFrame()
+        claims.append(
+            content.Claim(
+                address=address(study, identity),
+                id=identity,
+                place=_text(row, "place"),
+                statement=_text(row, "statement"),
+                finding=_flag(row, "finding"),
+                verdict=_text(row, "verdict"),
+                holds=_text(row, "holds"),
+                where=_text(row, "where_it_holds"),
+                published=_text(row, "published"),
+                reason=_text(row, "reason"),
+                replication=_number(row, "replication_probability"),
+                size=_text(row, "size"),
+                shown_in=[address(study, name) for name in _text(row, "artefact").replace(",", " ").split()],
+                comparisons=[_comparison(each, labels) for _, each in own.iterrows()],
+                variant=variant,
+                readings=[_reading(each) for _, each in rows[~rows["primary"].astype(bool)].iterrows()],
+                choices=[choice for choice in choices if choice.claim == identity],
+                more={name: cell(row[name]) for name in judged if name not in _CLAIM_COLUMNS},
+            )
+        )
+    return claims
+
+
+def _comparison(row: pd.Series, labels: dict[str, str]) -> content.Comparison:
+    words = [_labelled(_text(row, "comparison"), labels), _labelled(_text(row, "condition"), labels)]
+    return content.Comparison(
+        check=int(row["check"]),
+        deciding=_flag(row, "primary"),
+        test=_text(row, "test"),
+        metric=_text(row, "metric"),
+        statistic=_text(row, "statistic"),
+        unit=_text(row, "unit"),
+        name=", ".join(filter(None, words)),
+        mark=_text(row, "mark_family") or _text(row, "mark"),
+        effect=_number(row, "effect"),
+        interval=_interval(row, "low95", "high95"),
+        margin=_number(row, "margin"),
+        effect_published=_number(row, "effect_published"),
+        p=_number(row, "p"),
+        n=_number(row, "n"),
+        reason=_text(row, "reason"),
+    )
+
+
+def _labelled(words: str, labels: dict[str, str]) -> str:
+    """Words such as `mga lower than prm` or `problem=0_15, obstacles=5` with names as they are printed."""
+    parts = []
+    for part in words.split(", "):
+        key, equals, value = part.partition("=")
+        if equals:
+            parts.append(labels.get(value) or f"{style.column_name(key, labels)} {value}")
+        else:
+            parts.append(" ".join(labels.get(word, word) for word in part.split(" ")))
+    return ", ".join(parts)
+
+
+def _reading(row: pd.Series) -> content.Reading:
+    return content.Reading(variant=_text(row, "variant"), verdict=_text(row, "verdict"), holds=_text(row, "holds"))
+
+
+def _choices(tried: pd.DataFrame | None, judged: pd.DataFrame) -> list[content.Choice]:
+    """Alternatives tried on claims; those that were judged beside another verdict than today's are out of date and left out."""
+    if tried is None:
+        return []
+    today = judged[judged["primary"].astype(bool)].set_index("id")["verdict"]
+    return [
+        content.Choice(
+            assumption=row["assumption"],
+            alternative=_text(row, "alternative"),
+            claim=row["claim"],
+            verdict=row["verdict_alternative"],
+            changed=row["verdict_alternative"] != row["verdict"],
+        )
+        for _, row in tried.iterrows()
+        if today.get(row["claim"]) == row["verdict"]
+    ]
+
+
+def _assumption(study: str, job: dict, choices: list[content.Choice]) -> content.Assumption:
+    default = job["default"]
+    return content.Assumption(
+        address=address(study, job["id"]),
+        id=job["id"],
+        detail=job["detail"],
+        default=", ".join(f"{name}: {value}" for name, value in default.items()) if isinstance(default, dict) else str(default),
+        alternatives=[str(value) for value in job["alternatives"]],
+        reason=job["reason"],
+        source=job["source"],
+        setting=job.get("setting") or "",
+        claims=one_or_list(job.get("claims", [])),
+        choices=[choice for choice in choices if choice.assumption == job["id"]],
+    )
+
+
+def _audited(row: pd.Series) -> content.Audited:
+    checked = cell(row["consistent"])
+    return content.Audited(
+        item=_text(row, "item"),
+        place=_text(row, "place"),
+        rule=_text(row, "rule"),
+        printed=cell(row["printed"]),
+        limit=cell(row["limit"]),
+        consistent=None if checked is None else str(checked) == "True",
+    )

@@ -1,0 +1,97 @@
+"""Pictures in the page: figures made smaller, and the intervals of a claim's comparisons as strips."""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+from urllib.parse import quote
+
+from bezierplan.figures.page.content import Comparison
+
+# Coordinates are in points, so two decimals are finer than any screen or printer.
+_TAG, _LONG_NUMBER = re.compile(r"<[^>]+>"), re.compile(r"-?\d+\.\d{3,}")
+_HEAD = re.compile(r"<\?xml.*?\?>|<!DOCTYPE.*?>|<metadata>.*?</metadata>", re.DOTALL)
+# What may stand in a quoted attribute as part of a data URI; `"`, `&`, `%` and `#` may not.
+_SAFE = " /:;,=<>()'!*@$+?[]{}|^`~"
+
+
+def data_uri(file: Path) -> str:
+    """An svg file as the address of an image, with shorter numbers and without metadata: it needs no other file."""
+    text = _HEAD.sub("", file.read_text(encoding="utf-8"))
+    text = _TAG.sub(lambda tag: " ".join(_LONG_NUMBER.sub(_shorter, tag.group()).split()), text)
+    return "data:image/svg+xml," + quote(re.sub(r">\s+<", "><", text.strip()), safe=_SAFE)
+
+
+def size(file: Path) -> tuple[int, int]:
+    """Width and height of an svg file, in points."""
+    head = file.read_text(encoding="utf-8")[:2000]
+    width, height = (float(re.search(rf'\b{name}="([\d.]+)pt"', head).group(1)) for name in ("width", "height"))
+    return round(width), round(height)
+
+
+def _shorter(number: re.Match) -> str:
+    return f"{float(number.group()):.2f}".rstrip("0").rstrip(".")
+
+
+class Strip(NamedTuple):
+    """A comparison of a forest plot, all of whose strips share one scale from 0 to 100; None where there is nothing to draw.
+
+    low, high: ends of the interval. cut: whether an end lies beyond the strip. margin: the two ends of the effects that do not matter.
+    printed: the effect in the paper's own numbers.
+    """
+
+    comparison: Comparison
+    zero: float
+    effect: float | None
+    low: float | None
+    high: float | None
+    cut: bool
+    margin: tuple[float, float] | None
+    printed: float | None
+
+
+class Forest(NamedTuple):
+    """Comparisons of one check, on one scale."""
+
+    test: str
+    metric: str
+    statistic: str
+    unit: str
+    deciding: bool
+    strips: list[Strip]
+
+
+def forests(comparisons: Sequence[Comparison]) -> list[Forest]:
+    """Comparisons by check and metric, in order."""
+    groups: dict[tuple, list[Comparison]] = {}
+    for each in comparisons:
+        groups.setdefault((each.check, each.test, each.metric, each.statistic, each.unit, each.deciding), []).append(each)
+    return [Forest(*key[1:], _strips(own)) for key, own in groups.items()]
+
+
+def _strips(comparisons: Sequence[Comparison]) -> list[Strip]:
+    """Comparisons on one scale, which holds every effect and zero, and intervals as far as three times the largest effect."""
+    effects = [abs(each.effect) for each in comparisons if each.effect is not None]
+    most = 3 * max(effects, default=0.0) or 1.0
+    ends = [end for each in comparisons for end in each.interval if end is not None]
+    reach = [0.0, *(each.effect for each in comparisons if each.effect is not None), *(min(max(end, -most), most) for end in ends)]
+    low, high = min(reach), max(reach)
+    pad = 0.06 * (high - low) or 1.0
+    low, high = low - pad, high + pad
+
+    def place(value: float | None) -> float | None:
+        return None if value is None else round(100 * (min(max(value, low), high) - low) / (high - low), 2)
+
+    return [
+        Strip(
+            each,
+            place(0.0),
+            place(each.effect),
+            place(each.interval[0]),
+            place(each.interval[1]),
+            any(end is not None and not low <= end <= high for end in each.interval),
+            (place(-abs(each.margin)), place(abs(each.margin))) if each.margin else None,
+            place(each.effect_published),
+        )
+        for each in comparisons
+    ]

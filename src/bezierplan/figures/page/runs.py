@@ -1,0 +1,131 @@
+"""The runs that the viewer shows: of each method on each problem, and on all problems of an experiment, some of the feasible and the failed.
+
+Runs are ranked by their length over the exact bound of their problem, so that those on different problems compare.
+"""
+
+import json
+from collections.abc import Iterable
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from bezierplan.analysis import results
+from bezierplan.figures.page import content
+from bezierplan.geometry import curves
+from bezierplan.workspaces import files
+
+# An experiment with more problems than this is shown as a whole only. Failed runs shown of a method.
+MOST_PROBLEMS, MOST_FAILED = 8, 2
+# Points along a path are left out where the path stays within this share of the workspace's longer side. At most so many steps of history.
+_FLAT, _MOST_STEPS = 5e-4, 80
+
+
+class Chosen(NamedTuple):
+    """What the viewer shows of an experiment."""
+
+    shown: list[content.Shown]
+    runs: dict[str, content.Run]
+    problems: dict[str, content.Problem]
+
+
+def chosen(study: str, experiment: str, found: results.Results, methods: Iterable[str]) -> Chosen:
+    """The runs of an experiment that the viewer shows, of some of its methods."""
+    ranked = found.runs.assign(gap=found.runs["length"] / found.runs["bound"] - 1)
+    groups = [("", ranked)]
+    if len(found.problems) <= MOST_PROBLEMS:
+        groups = [*ranked.groupby("problem", sort=False), *(groups if len(found.problems) > 1 else [])]
+    shown = [
+        _shown(experiment, problem, method, of_method)
+        for problem, runs in groups
+        for method in methods
+        if not (of_method := runs[runs["method"] == method]).empty
+    ]
+    named = {name for each in shown for name in (each.best, each.median, each.worst, *each.failed) if name}
+    kept = ranked[ranked["id"].isin(named)]
+    problems = {name: _problem(found, name) for name in kept["problem"].unique()}
+    prefix = f"{study}/{experiment}/"
+    runs = {row["id"]: _run(row, found, prefix + row["problem"]) for _, row in kept.iterrows()}
+    return Chosen(shown, runs, {prefix + name: problem for name, problem in problems.items()})
+
+
+def _shown(experiment: str, problem: str, method: str, runs: pd.DataFrame) -> content.Shown:
+    ordered = runs[runs["feasible"]].sort_values(["gap", "id"], kind="stable")["id"].tolist()
+    failed = runs.loc[~runs["feasible"], "id"].tolist()[:MOST_FAILED]
+    best, median, worst = (ordered[0], ordered[(len(ordered) - 1) // 2], ordered[-1]) if ordered else (None, None, None)
+    number = {"count": len(runs), "feasible": len(ordered)}
+    return content.Shown(
+        experiment=experiment, problem=problem, method=method, **number, best=best, median=median, worst=worst, failed=failed
+    )
+
+
+def _problem(found: results.Results, name: str) -> content.Problem:
+    problem, bound = found.problems[name], found.bounds.loc[name]
+    size = _size(problem.workspace.bounds)
+    path = np.asarray(bound["bound_path"], dtype=float)
+    return content.Problem(
+        workspace=json.loads(files.to_json(problem.workspace)) | {"bounds": list(problem.workspace.bounds)},
+        start=problem.start,
+        target=problem.target,
+        bound=float(bound["bound"]) if np.isfinite(bound["bound"]) else None,
+        bound_path=_rounded(path.reshape(-1, 2), size),
+    )
+
+
+def _run(row: pd.Series, found: results.Results, problem: str) -> content.Run:
+    path = results.path_of(row)
+    size = _size(found.problems[row["problem"]].workspace.bounds)
+    collision = None
+    if path is not None and not row["feasible"] and np.isfinite(row["collision_at"]):
+        collision = tuple(float(value) for value in curves.point_at(path, row["collision_at"]))
+    return content.Run(
+        problem=problem,
+        feasible=bool(row["feasible"]),
+        claimed=bool(row["claimed_feasible"]),
+        length=_finite(row["length"]),
+        clearance=_finite(row["clearance"]),
+        collision=collision,
+        depth=_finite(row["collision_depth"]),
+        evaluations=int(row["evaluations"]),
+        stop=str(row["stop"]),
+        curve=row["path_curve"] or "",
+        path=[] if path is None else _rounded(_flattened(path, _FLAT * size), size),
+        control=[] if path is None or path.curve == "ferguson" else _rounded(path.points, size),
+        history=_history(row["history"]),
+    )
+
+
+def _size(bounds: tuple[float, float, float, float]) -> float:
+    return max(bounds[1] - bounds[0], bounds[3] - bounds[2])
+
+
+def _finite(value: float) -> float | None:
+    return float(f"{value:.7g}") if value is not None and np.isfinite(value) else None
+
+
+def _rounded(points: np.ndarray, size: float) -> list[float]:
+    """Points (n, 2) as x0, y0, ..., to about a ten-thousandth of the workspace."""
+    decimals = max(0, 4 - int(np.floor(np.log10(size))))
+    return np.round(points, decimals).ravel().tolist()
+
+
+def _flattened(path: curves.Path, tolerance: float) -> np.ndarray:
+    """Points (n, 2) along a path, as few as keep within a tolerance of it."""
+    import shapely
+
+    from bezierplan.figures.panels.paths import steps
+
+    points = steps(path)
+    return shapely.get_coordinates(shapely.simplify(shapely.LineString(points), tolerance)) if len(points) > 1 else points
+
+
+def _history(history: np.ndarray) -> list[tuple[int, float]]:
+    """Generation and objective where the best objective changes, and at the end; thinned out if there are many."""
+    values = np.asarray(history, dtype=float)
+    known = np.flatnonzero(np.isfinite(values))
+    if not len(known):
+        return []
+    turns = known[np.flatnonzero(np.diff(values[known], prepend=np.nan) != 0)]
+    if len(turns) > _MOST_STEPS:
+        turns = turns[np.unique(np.linspace(0, len(turns) - 1, _MOST_STEPS).astype(int))]
+    return [(int(at), float(f"{values[at]:.6g}")) for at in dict.fromkeys([*turns.tolist(), int(known[-1])])]

@@ -1,0 +1,207 @@
+// Links into closed parts, tooltips by keyboard, search, filters, and tables that sort. Without this script the page shows the same content.
+const data = JSON.parse(document.getElementById("page-data").textContent);
+const find = (id) => document.getElementById(id);
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Tables: the library's text is a module of its own, which a blob makes importable from a single file.
+
+let library;
+
+function loadLibrary() {
+  if (!library) {
+    const url = URL.createObjectURL(new Blob([find("page-tables").textContent], { type: "text/javascript" }));
+    library = import(url).finally(() => URL.revokeObjectURL(url));
+  }
+  return library;
+}
+
+async function makeSortable(table) {
+  if (table.dataset.sortable) return;
+  table.dataset.sortable = "yes";
+  const { jQuery } = await loadLibrary();
+  const many = table.tBodies[0].rows.length > 8;
+  jQuery(table).DataTable({
+    paging: false, info: false, order: [], autoWidth: false, searching: many,
+    layout: { topStart: many ? "search" : null, topEnd: null, bottomStart: null, bottomEnd: null },
+    language: { search: "Filter rows" },
+  });
+}
+
+function makeVisibleTablesSortable(root) {
+  for (const table of root.querySelectorAll("table.sortable")) if (table.offsetParent) makeSortable(table);
+}
+
+document.addEventListener("toggle", (event) => {
+  if (event.target.open) makeVisibleTablesSortable(event.target);
+}, true);
+makeVisibleTablesSortable(document);
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Addresses
+
+function address() {
+  try {
+    return decodeURIComponent(location.hash.slice(1));
+  } catch {
+    return location.hash.slice(1);
+  }
+}
+
+function openAddress() {
+  const place = find(address());
+  if (!place) return;
+  for (let part = place; part; part = part.parentElement) if (part.tagName === "DETAILS") part.open = true;
+  for (const claims of place.closest(".claims")?.querySelectorAll("[aria-pressed=true]") ?? []) claims.click();
+  const focus = place.querySelector("summary, a, [tabindex]") ?? place;
+  focus.focus({ preventScroll: true });
+  place.scrollIntoView({ block: place.tagName === "TD" ? "center" : "start", behavior: "instant" });
+}
+
+addEventListener("hashchange", openAddress);
+openAddress();
+
+addEventListener("beforeprint", () => {
+  for (const part of document.querySelectorAll("details:not([open])")) {
+    part.open = true;
+    part.dataset.closed = "yes";
+  }
+});
+addEventListener("afterprint", () => {
+  for (const part of document.querySelectorAll("details[data-closed]")) {
+    part.open = false;
+    delete part.dataset.closed;
+  }
+});
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Tooltips: titles appear on hover only, so focus shows them as well.
+
+const tip = find("page-tip");
+
+function showTip(cell) {
+  if (cell.title) {
+    cell.dataset.tip = cell.title;
+    cell.removeAttribute("title");
+  }
+  tip.replaceChildren(...cell.dataset.tip.split("; ").map((line) => Object.assign(document.createElement("div"), { textContent: line })));
+  tip.hidden = false;
+  cell.querySelector("a").setAttribute("aria-describedby", tip.id);
+  const place = cell.getBoundingClientRect();
+  const below = place.bottom + tip.offsetHeight + 8 < innerHeight;
+  tip.style.left = `${Math.max(8, Math.min(place.left, innerWidth - tip.offsetWidth - 8))}px`;
+  tip.style.top = `${below ? place.bottom + 4 : place.top - tip.offsetHeight - 4}px`;
+}
+
+for (const kind of ["mouseover", "focusin"]) {
+  document.addEventListener(kind, (event) => {
+    const cell = event.target.closest?.(".numbers td[title], .numbers td[data-tip]");
+    if (cell) showTip(cell);
+    else tip.hidden = true;
+  });
+}
+addEventListener("scroll", () => { tip.hidden = true; }, { passive: true });
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Filters of claims by verdict
+
+for (const filter of document.querySelectorAll(".filter")) {
+  filter.hidden = false;
+  filter.addEventListener("click", (event) => {
+    const button = event.target.closest("button");
+    if (!button) return;
+    const chosen = button.getAttribute("aria-pressed") !== "true";
+    for (const each of filter.children) each.setAttribute("aria-pressed", String(each === button && chosen));
+    for (const claim of filter.parentElement.querySelectorAll(".claim")) {
+      claim.hidden = chosen && claim.dataset.verdict !== button.dataset.verdict;
+    }
+  });
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Search: every word must occur in an entry.
+
+function* entries() {
+  const digits = (value) => (value === null ? "–" : String(Number(value.toPrecision(4))));
+  for (const [key, study] of Object.entries(data.studies)) {
+    const named = (name) => study.labels[name] ?? name;
+    yield { kind: "paper", address: study.address, text: study.title, more: key };
+    for (const claim of study.claims) {
+      yield { kind: `claim, ${claim.verdict}`, address: claim.address, text: `${claim.id} ${claim.statement}`, more: `${key} ${claim.comparisons.map((each) => each.name).join(" ")}` };
+    }
+    for (const table of study.tables) {
+      const title = `${table.name.replaceAll("_", " ")}: ${table.title}`;
+      yield { kind: "table", address: table.address, text: title, more: key };
+      for (const number of table.numbers) {
+        if (number.published === null) continue;
+        const values = `${digits(number.published)} → ${digits(number.ours)} ${number.verdict}`;
+        yield { kind: `number, ${table.name}`, address: number.address, text: `${number.row}: ${number.column}: ${values}`,
+          more: `${key} ${table.title} ${number.metric} ${number.statistic} ${Object.values(number.keys).join(" ")}`, later: !number.primary };
+      }
+    }
+    for (const figure of study.figures) yield { kind: "figure", address: figure.address, text: `${figure.name.replaceAll("_", " ")}: ${figure.title}`, more: key };
+    for (const open of study.assumptions) yield { kind: "open choice", address: open.address, text: `${open.id} ${open.detail}`, more: `${key} ${open.setting}` };
+    for (const shown of study.shown) {
+      const where = shown.problem ? `on ${named(shown.problem)}` : "on all problems";
+      for (const which of ["best", "median", "worst"]) {
+        if (shown[which]) {
+          yield { kind: "path", address: shown[which], text: `${which} feasible run of ${named(shown.method)} ${where}, ${shown.experiment}`,
+            more: `${key} ${shown.method} ${shown[which]}`, later: Boolean(shown.problem) };
+        }
+      }
+    }
+  }
+}
+
+let index;
+const query = find("page-query"), hits = find("page-hits"), found = find("page-found");
+
+function search() {
+  const words = query.value.toLowerCase().split(/\s+/).filter(Boolean);
+  index ??= [...entries()].map((each) => ({ ...each, all: `${each.kind} ${each.address} ${each.text} ${each.more}`.toLowerCase() }));
+  const matching = words.length ? index.filter((each) => words.every((word) => each.all.includes(word))) : [];
+  const rank = (each) => (each.later ? 2 : 0) + (words.every((word) => each.text.toLowerCase().includes(word)) ? 0 : 1);
+  const best = matching.map((each) => [rank(each), each]).sort((one, other) => one[0] - other[0]).slice(0, 30);
+  hits.replaceChildren(...best.map(([, each]) => {
+    const link = Object.assign(document.createElement("a"), { href: `#${encodeURI(each.address)}`, textContent: each.text });
+    link.append(Object.assign(document.createElement("small"), { textContent: `${each.kind} · ${each.address}` }));
+    const item = document.createElement("li");
+    item.append(link);
+    return item;
+  }));
+  hits.hidden = !best.length;
+  found.textContent = words.length ? `${matching.length} found` : "";
+}
+
+function closeSearch() {
+  hits.hidden = true;
+}
+
+function moveAmongHits(event) {
+  const links = [...hits.querySelectorAll("a")];
+  const at = links.indexOf(document.activeElement);
+  if (event.key === "Escape") {
+    closeSearch();
+    query.focus();
+  } else if (event.key === "ArrowDown") links[Math.min(at + 1, links.length - 1)]?.focus();
+  else if (event.key === "ArrowUp") (at > 0 ? links[at - 1] : query).focus();
+  else if (event.key === "Enter" && event.target === query) links[0]?.click();
+  else return;
+  event.preventDefault();
+}
+
+document.querySelector(".search").hidden = false;
+query.addEventListener("input", search);
+query.addEventListener("focus", () => { if (query.value) search(); });
+document.querySelector(".search").addEventListener("keydown", moveAmongHits);
+hits.addEventListener("click", (event) => {
+  const link = event.target.closest("a");
+  if (link && link.hash === location.hash) openAddress();
+  closeSearch();
+});
+document.addEventListener("click", (event) => { if (!event.target.closest(".search")) closeSearch(); });
+document.addEventListener("keydown", (event) => {
+  if (event.key === "/" && !event.target.closest("input, select, textarea")) {
+    event.preventDefault();
+    query.focus();
+  }
+});

@@ -1,0 +1,167 @@
+// The path viewer: choose a run, see it in its workspace.
+const data = JSON.parse(document.getElementById("page-data").textContent);
+const form = document.getElementById("viewer");
+const SVG = "http://www.w3.org/2000/svg";
+const ALL = "all problems";
+
+function draw(tag, attributes, ...children) {
+  const element = document.createElementNS(SVG, tag);
+  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, value);
+  element.append(...children);
+  return element;
+}
+
+// "M x y L x y ..." of a flat list x0, y0, x1, y1, ...; y points up in a workspace and down on a screen.
+function line(flat) {
+  let text = "";
+  for (let n = 0; n < flat.length; n += 2) text += `${n ? "L" : "M"}${flat[n]} ${-flat[n + 1]}`;
+  return text;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Workspace and path
+
+function obstacles(workspace) {
+  const shapes = [];
+  for (const [x, y, radius] of workspace.circles ?? []) shapes.push(draw("circle", { class: "obstacle", cx: x, cy: -y, r: radius }));
+  for (const rings of workspace.obstacles ?? []) {
+    shapes.push(draw("path", { class: "obstacle", "fill-rule": "evenodd", d: rings.map((ring) => `${line(ring.flat())}Z`).join("") }));
+  }
+  if (workspace.rows) shapes.unshift(draw("path", { class: "cells", d: cells(workspace) }));
+  return shapes;
+}
+
+// Occupied cells, one rectangle for each stretch of a row; the first row is the top one.
+function cells({ rows, cell, origin = [0, 0] }) {
+  const [x0, y0] = origin;
+  let text = "";
+  rows.forEach((row, number) => {
+    const top = y0 + (rows.length - number) * cell;
+    for (const found of row.matchAll(/#+/g)) {
+      text += `M${x0 + found.index * cell} ${-top}h${found[0].length * cell}v${cell}h${-found[0].length * cell}z`;
+    }
+  });
+  return text;
+}
+
+function drawMap(problem, run) {
+  const map = document.getElementById("viewer-map");
+  const [left, right, bottom, top] = problem.workspace.bounds;
+  const size = Math.max(right - left, top - bottom), pad = 0.03 * size, mark = 0.011 * size;
+  map.setAttribute("viewBox", [left - pad, -top - pad, right - left + 2 * pad, top - bottom + 2 * pad].join(" "));
+  const [x, y] = problem.start, [u, v] = problem.target;
+  const parts = [draw("rect", { class: "ground", x: left, y: -top, width: right - left, height: top - bottom }), ...obstacles(problem.workspace)];
+  if (run.control.length) parts.push(draw("path", { class: "control", d: line(run.control) }));
+  if (run.path.length) parts.push(draw("path", { class: "path", d: line(run.path) }));
+  if (problem.bound_path.length) parts.push(draw("path", { class: "bound", d: line(problem.bound_path) }));
+  for (let n = 0; n < run.control.length; n += 2) {
+    parts.push(draw("circle", { class: "point", cx: run.control[n], cy: -run.control[n + 1], r: 0.6 * mark }));
+  }
+  parts.push(draw("rect", { class: "end", x: x - mark, y: -y - mark, width: 2 * mark, height: 2 * mark }));
+  parts.push(draw("path", { class: "end", d: `M${u} ${-v - 1.3 * mark}l${1.3 * mark} ${2.2 * mark}h${-2.6 * mark}z` }));
+  if (run.collision) {
+    const [p, q] = run.collision, arm = 1.2 * mark;
+    parts.push(draw("path", { class: "hit", d: `M${p - arm} ${-q - arm}l${2 * arm} ${2 * arm}m0 ${-2 * arm}l${-2 * arm} ${2 * arm}` }));
+  }
+  map.replaceChildren(...parts);
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Convergence and facts
+
+function drawHistory(history) {
+  const chart = document.getElementById("viewer-history");
+  const [left, right, top, bottom] = [4, 396, 18, 132];
+  chart.setAttribute("viewBox", "0 0 400 150");
+  chart.replaceChildren();
+  if (!history.length) return;
+  const last = history.at(-1)[0] || 1, values = history.map(([, value]) => value);
+  const low = Math.min(...values), high = Math.max(...values), span = high - low || 1;
+  const x = (generation) => left + (right - left) * generation / last, y = (value) => bottom - (bottom - top) * (value - low) / span;
+  const steps = history.map(([generation, value], n) => (n ? `H${x(generation)}V${y(value)}` : `M${x(generation)} ${y(value)}`)).join("");
+  chart.append(draw("path", { d: steps }), draw("text", { x: left, y: 12 }, `${number(high)} at first`),
+    draw("text", { x: right, y: bottom - 6, "text-anchor": "end" }, `${number(values.at(-1))} at last`),
+    draw("text", { x: left, y: 147 }, "generation 0"), draw("text", { x: right, y: 147, "text-anchor": "end" }, String(last)));
+}
+
+function number(value) {
+  return value === null ? "–" : String(Number(value.toPrecision(5)));
+}
+
+function showFacts(id, run, problem) {
+  const unit = problem.workspace.unit;
+  const gap = run.length === null || !problem.bound ? "" : `, ${(100 * (run.length / problem.bound - 1)).toFixed(1)} % above the bound`;
+  const facts = [
+    ["Verdict", run.feasible ? "feasible by the certified check" : "not feasible: it collides"],
+    ["Planner's opinion", run.claimed ? "feasible" : "not feasible"],
+    ["Length", run.length === null ? "no path" : `${number(run.length)} ${unit}${gap}`],
+    ["Exact shortest", problem.bound === null ? "no free path" : `${number(problem.bound)} ${unit}`],
+    run.feasible ? ["Clearance", `${number(run.clearance)} ${unit}`] : ["Collision depth", `${number(run.depth)} ${unit}`],
+    ["Curve", run.curve.replaceAll("_", " ") || "none"],
+    ["Evaluations", `${run.evaluations}; stopped by ${run.stop.replaceAll("_", " ")}`],
+  ];
+  document.getElementById("viewer-facts").replaceChildren(...facts.flatMap(([name, text]) => [
+    Object.assign(document.createElement("dt"), { textContent: name }), Object.assign(document.createElement("dd"), { textContent: text }),
+  ]));
+  document.getElementById("viewer-command").textContent = `python -m bezierplan replay ${id}`;
+  document.getElementById("viewer-link").href = `#${encodeURI(id)}`;
+}
+
+// ---------------------------------------------------------------------------------------------------------------------
+// Choices, each of which narrows those after it
+
+const NAMES = ["study", "experiment", "problem", "method"];
+
+function label(study, name) {
+  return data.studies[study]?.labels[name] ?? name.replaceAll("_", " ");
+}
+
+function fill(select, options, wanted) {
+  select.replaceChildren(...options.map(([value, text]) => new Option(text, value)));
+  if (options.some(([value]) => value === wanted)) select.value = wanted;
+}
+
+const shownOf = (study) => data.studies[study].shown.map((each) => ({ ...each, study, problem: each.problem || ALL }));
+
+// Fill the choices from the given level on, keeping what is chosen where it still exists.
+function narrow(wanted) {
+  fill(form.study, Object.keys(data.studies).filter((key) => data.studies[key].shown.length).map((key) => [key, key]), wanted.study);
+  let left = shownOf(form.study.value);
+  for (const name of NAMES.slice(1)) {
+    const options = [...new Set(left.map((each) => each[name]))].map((value) => [value, value === ALL ? ALL : label(form.study.value, value)]);
+    fill(form[name], options, wanted[name]);
+    left = left.filter((each) => each[name] === form[name].value);
+  }
+  const [shown] = left;
+  const named = ["best", "median", "worst"].filter((which) => shown[which]).map((which) => [shown[which], which]);
+  fill(form.run, [...named, ...shown.failed.map((id, n) => [id, `failed ${n + 1}`])], wanted.run);
+  document.getElementById("viewer-note").textContent = `${shown.feasible} of ${shown.count} runs are feasible.`;
+  const run = data.runs[form.run.value], problem = data.problems[run.problem];
+  drawMap(problem, run);
+  drawHistory(run.history);
+  showFacts(form.run.value, run, problem);
+}
+
+const chosen = () => Object.fromEntries([...NAMES, "run"].map((name) => [name, form[name].value]));
+
+function openRun() {
+  const id = decodeURIComponent(location.hash.slice(1)), [study] = id.split("/");
+  if (id in data.runs) {
+    const home = shownOf(study).find((each) => [each.best, each.median, each.worst, ...each.failed].includes(id));
+    narrow({ ...home, run: id });
+    form.study.focus({ preventScroll: true });
+    document.getElementById("page-paths").scrollIntoView({ behavior: "instant" });
+  } else if (id.split("/").length === 5 && !document.getElementById(id)) {
+    document.getElementById("viewer-note").textContent = `This page does not hold run ${id}; python -m bezierplan replay ${id} draws it.`;
+    document.getElementById("page-paths").scrollIntoView({ behavior: "instant" });
+  }
+}
+
+if (form) {
+  form.hidden = false;
+  narrow({});
+  openRun();
+  addEventListener("hashchange", openRun);
+  form.addEventListener("change", () => narrow(chosen()));
+  form.addEventListener("submit", (event) => event.preventDefault());
+}

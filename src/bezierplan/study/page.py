@@ -1,0 +1,100 @@
+"""What the page of a scale shows: its input files, its params, and the file itself."""
+
+from pathlib import Path
+from typing import Any
+
+from bezierplan.figures.page import build
+from bezierplan.running.digest import content_digest, source_digest
+from bezierplan.study import jobs, targets
+from bezierplan.study.targets import Studies
+
+
+def file(scale: str) -> str:
+    """The page of a scale."""
+    return f"results/{scale}/index.html"
+
+
+def inputs(given: Studies, scale: str) -> dict[str, list[str]]:
+    """Input files of the page: everything that is made at the scale, and the runs behind it."""
+    made, runs = _made(given, scale), _runs(given, scale)
+    summary = f"results/{scale}/summary.md"
+    named = [f"results/{scale}/{name}.csv" for name in ("numbers", "claims")] if summary in made else []
+    merged = {name: list(dict.fromkeys(each for files in runs.values() for each in files[name])) for name in ("runs", "problems", "bounds")}
+    return {"made": made, "summary": named} | merged
+
+
+def params(given: Studies, scale: str) -> dict[str, Any]:
+    """Params of the page. Alternatives are shown if they have been tried: the page does not ask for them."""
+    tried = {key: name for key in given if Path(name := f"results/{scale}/{key}/sensitivity.csv").is_file()}
+    return {
+        "job": {"scale": scale, "studies": {key: _study(given, scale, key, tried.get(key)) for key in given}},
+        "tried": content_digest(*tried.values()),
+        "look": content_digest(*build.files()),
+        "code": source_digest(str(targets.SCRIPTS / "page.py")),
+    }
+
+
+def _artefacts(given: Studies, scale: str) -> list[tuple[str, str]]:
+    """Study and name of every table and figure of a scale."""
+    if scale == "smoke":
+        return jobs.smoke(given)[0]
+    return [(key, name) for key, study in given.items() for name in [*study.tables, *study.figures]]
+
+
+def _made(given: Studies, scale: str) -> list[str]:
+    if scale == "smoke":
+        return [each for study, name in _artefacts(given, scale) for each in targets.files_of(given, scale, study, name)]
+    return targets.files_of_scale(given, scale)
+
+
+def _runs(given: Studies, scale: str) -> dict[str, dict[str, list[str]]]:
+    """The runs, problems and bounds behind what is made at a scale, by study."""
+    found: dict[str, dict[str, list[str]]] = {key: {"runs": [], "problems": [], "bounds": []} for key in given}
+    for key, name in _artefacts(given, scale):
+        kind = "table" if name in given[key].tables else "figure"
+        _add(found[key], targets.artefact_inputs(given, scale, key, **{kind: name}))
+    for key, study in given.items():
+        if scale != "smoke" and study.claims:
+            _add(found[key], targets.claims_inputs(given, scale, key))
+    return found
+
+
+def _add(found: dict[str, list[str]], more: dict[str, list[str]]) -> None:
+    for name, files in found.items():
+        files += [each for each in more[name] if each not in files]
+
+
+def _study(given: Studies, scale: str, key: str, tried: str | None) -> dict[str, Any]:
+    """What the page needs to know of a study beside its results."""
+    study, folder = given[key], f"results/{scale}/{key}"
+    made = [name for own, name in _artefacts(given, scale) if own == key]
+    judged = scale != "smoke" and study.claims
+    files = {"claims": f"{folder}/claims.csv", "checks": f"{folder}/claim_checks.csv", "audit": f"{folder}/audit.csv"} if judged else {}
+    described = {name: {"title": spec.title, "caption": jobs.caption(study, name, scale)} for name, spec in _specs(study, made).items()}
+    return {
+        "title": study.title,
+        "labels": study.labels,
+        "tables": {name: described[name] | {"spec": study.tables[name].plain()} for name in made if name in study.tables},
+        "figures": {name: described[name] for name in made if name in study.figures},
+        "assumptions": [each.plain() for each in study.assumptions],
+        "files": files | ({"sensitivity": tried} if tried and judged else {}),
+        "experiments": _experiments(given, scale, key),
+    }
+
+
+def _specs(study: Any, names: list[str]) -> dict[str, Any]:
+    return {name: study.tables.get(name) or study.figures[name] for name in names}
+
+
+def _experiments(given: Studies, scale: str, key: str) -> dict[str, dict[str, Any]]:
+    """The experiments whose runs the page shows: methods other than baselines, repeats, and files."""
+    study, found = given[key], _runs(given, scale)[key]
+    experiments = {}
+    for problems, bounds in zip(found["problems"], found["bounds"], strict=True):
+        name = Path(problems).stem
+        runs = [each for each in found["runs"] if Path(each).parts[-3] == name]
+        methods = [method for method in study.methods_of(name) if method not in study.baselines]
+        files = {"runs": runs, "problems": problems, "bounds": bounds}
+        if runs:
+            experiments[name] = {"methods": methods, "repeats": study.experiments[name].repeats[scale]} | files
+    return experiments
