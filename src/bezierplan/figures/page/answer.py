@@ -1,9 +1,9 @@
-"""The answer in a few sentences, computed from the content of the page: which papers reproduce, how far, what fails, how certain that is."""
+"""The answer in a few sentences, computed from the content of the page: which papers reproduce, how far, what fails, how surely."""
 
 from collections import Counter
 from statistics import median
 
-from bezierplan.analysis.claims.verdicts import MOSTLY, VERDICTS
+from bezierplan.analysis.claims.verdicts import DECIDED, MOSTLY, VERDICTS
 from bezierplan.figures.page.content import Claim, Number, Part, Study
 
 Sentence = list[Part]
@@ -78,9 +78,9 @@ def _of_study(key: str, study: Study) -> Sentence:
     bad = sum(number.verdict == "not reproduced" for number in counted)
     supported = sum(claim.verdict == "supported" for claim in claims)
     failed = [claim for claim in claims if claim.verdict in ("contradicted", "no effect")]
-    said = [f" {good} of the {good + bad} numbers that tell methods apart"] if good + bad else []
+    said = [f" {good} reproduced, {bad} not, {len(counted) - good - bad} not decisive"] if counted else []
     said += [f" {supported} of {len(claims)} claims supported"] if claims else []
-    parts = [Part(text=key, address=study.address), Part(text=f" {_degree(good, bad)}:{' and'.join(said) or ' no claims'}")]
+    parts = [Part(text=key, address=study.address), Part(text=f" {_degree(good, bad, len(counted))}:{';'.join(said)}")]
     if failed:
         parts.append(Part(text="; against the paper: "))
         for n, claim in enumerate(failed):
@@ -89,10 +89,10 @@ def _of_study(key: str, study: Study) -> Sentence:
     return [*parts, Part(text=".")]
 
 
-def _degree(good: int, bad: int) -> str:
+def _degree(good: int, bad: int, count: int) -> str:
     """How far numbers reproduce, in words; the same shares as in verdicts on claims."""
-    if not good + bad:
-        return "cannot be judged by its numbers"
+    if good + bad < DECIDED * count or not count:
+        return "can hardly be judged by its numbers"
     share = good / (good + bad)
     if share in (0, 1):
         return "reproduces" if share else "does not reproduce"
@@ -122,7 +122,7 @@ def _audit(studies: dict[str, Study]) -> Sentence:
         return []
     bad = sum(not row.consistent for row in checked)
     where = [(key, f"{study.address}/audit") for key, study in studies.items() if any(row.consistent is False for row in study.audit)]
-    parts = [Part(text=f"Without any run, {bad} of {len(checked)} checks show printed numbers that contradict each other or an exact bound")]
+    parts = [Part(text=f"Without any run, {bad} of {len(checked)} checks find printed numbers that contradict each other or a bound")]
     for n, (key, place) in enumerate(where):
         parts += [Part(text=", " if n else ": "), Part(text=key, address=place)]
     return [*parts, Part(text=".")]

@@ -1,5 +1,6 @@
 """The page as text: its content in templates, with style, scripts and the table library in the same file."""
 
+import re
 from collections import Counter
 from importlib import resources
 from pathlib import Path
@@ -44,7 +45,7 @@ def html(page: content.Page, folder: Path) -> str:
     environment = jinja2.Environment(
         loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined, keep_trailing_newline=True
     )
-    environment.filters |= {"look": look, "short": short, "json_text": _json_text, "printed_key": printed_key}
+    environment.filters |= {"look": look, "short": short, "heading": heading, "json_text": _json_text, "printed_key": printed_key}
     environment.globals |= {
         "forests": pictures.forests,
         "grid": grid,
@@ -73,6 +74,12 @@ def _json_text(value: Any) -> Any:
 def look(verdict: str) -> tuple[str, str]:
     """The class and the symbol of a verdict."""
     return LOOKS.get(verdict, _OTHER)
+
+
+def heading(name: str) -> str:
+    """The name of a table or figure as printed: `table3` as Table 3, `figure_gallery` as Figure gallery."""
+    words = re.sub(r"(?<=[a-z])(?=[0-9])", " ", name.replace("_", " "))
+    return words[:1].upper() + words[1:]
 
 
 def short(value: content.Cell, digits: int = 4) -> str:
@@ -107,7 +114,7 @@ class Grid(NamedTuple):
 
 
 def grid(table: content.Table, labels: dict[str, str]) -> Grid:
-    """The numbers of a table: a row for each combination of keys, a column for each metric and statistic."""
+    """The numbers of a table: a row for each combination of keys, the paper's reading first, a column for each metric and statistic."""
     keys = list(table.numbers[0].keys) if table.numbers else []
     values = {key: {number.keys[key] for number in table.numbers} for key in keys}
     told = [key for key in keys if len(values[key]) > 1]
@@ -123,6 +130,7 @@ def grid(table: content.Table, labels: dict[str, str]) -> Grid:
         )
         for cells in rows.values()
     ]
+    listed.sort(key=lambda row: not row.primary)
     decimals = [max((_decimals(n.published) for n in table.numbers if n.column == column), default=0) for column in columns]
     same = [f"{key.replace('_', ' ')}: {printed_key(key, next(iter(values[key])), labels)}" for key in keys if key not in told]
     return Grid([labels.get(key, key.replace("_", " ")) for key in told], columns, listed, same, decimals)

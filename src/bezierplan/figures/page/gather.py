@@ -98,9 +98,7 @@ def _table(study: str, name: str, job: dict, folder: Path, numbers: pd.DataFrame
     return content.Table(**named, columns=[str(column) for column in plain], rows=rows)
 
 
-def _numbers(
-    table: str, compared: pd.DataFrame, spec: dict, numbers: pd.DataFrame | None, labels: dict[str, str]
-) -> list[content.Number]:
+def _numbers(table: str, compared: pd.DataFrame, spec: dict, numbers: pd.DataFrame | None, labels: dict[str, str]) -> list[content.Number]:
     """The cells of a table: those with a published number, and what other methods have in the same column."""
     keys = list(compared.columns[: compared.columns.get_loc("metric")])
     printed = compared.loc[compared["value_published"].notna(), ["metric", "statistic"]].drop_duplicates()
@@ -220,7 +218,7 @@ def _labelled(words: str, labels: dict[str, str]) -> str:
         if equals:
             parts.append(labels.get(value) or f"{style.column_name(key, labels)} {value}")
         else:
-            parts.append(" ".join(labels.get(word, word) for word in part.split(" ")))
+            parts.append(" ".join(style.column_name(word, labels) for word in part.split(" ")))
     return ", ".join(parts)
 
 

@@ -5,7 +5,6 @@ from typing import Any
 
 import pandas as pd
 
-from bezierplan.analysis import results
 from bezierplan.figures.page import answer, build, content, gather, runs
 
 
@@ -13,9 +12,7 @@ def page(job: dict[str, Any], folder: Path, numbers: str | None, claims: str | N
     """The content of the page.
 
     job: `scale`, and `studies`: study -> what `gather.studies` takes, and `experiments` (name -> `methods`, `repeats` and the files `runs`,
-    `problems` and `bounds`). folder: that of the scale. numbers, claims: files of all studies together, if the scale has them.
-    Raises ValueError if a feasible path is shorter than the exact bound.
-    """
+    `problems` and `bounds`). folder: that of the scale. numbers, claims: files of all studies together, if the scale has them."""
     tables: list[pd.DataFrame | None] = [gather.read(file) if file else None for file in (numbers, claims)]
     studies = gather.studies(job["studies"], folder, *tables)
     problems: dict[str, content.Problem] = {}
@@ -23,8 +20,7 @@ def page(job: dict[str, Any], folder: Path, numbers: str | None, claims: str | N
     for key, own in job["studies"].items():
         shown: list[content.Shown] = []
         for experiment, described in own["experiments"].items():
-            found = results.read(described["runs"], described["repeats"], described["problems"], described["bounds"])
-            chosen = runs.chosen(key, experiment, found, described["methods"])
+            chosen = runs.chosen(key, experiment, described)
             shown += chosen.shown
             problems |= chosen.problems
             kept |= chosen.runs
@@ -33,5 +29,5 @@ def page(job: dict[str, Any], folder: Path, numbers: str | None, claims: str | N
 
 
 def write(job: dict[str, Any], folder: Path, numbers: str | None, claims: str | None, file: str) -> None:
-    """Write the page. Raises ValueError as `page` does."""
+    """Write the page."""
     Path(file).write_text(build.html(page(job, folder, numbers, claims), folder), encoding="utf-8")

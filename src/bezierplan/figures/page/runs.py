@@ -1,24 +1,30 @@
-"""The runs that the viewer shows: of each method on each problem, and on all problems of an experiment, some of the feasible and the failed.
+"""The runs that the viewer shows: of each method on each problem, and on all of an experiment, some of the feasible and the failed.
 
 Runs are ranked by their length over the exact bound of their problem, so that those on different problems compare.
 """
 
 import json
-from collections.abc import Iterable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
+import pyarrow.parquet as parquet
 
 from bezierplan.analysis import results
 from bezierplan.figures.page import content
 from bezierplan.geometry import curves
+from bezierplan.running import problems as problem_files
 from bezierplan.workspaces import files
+from bezierplan.workspaces.problem import Path, Problem
 
 # An experiment with more problems than this is shown as a whole only. Failed runs shown of a method.
 MOST_PROBLEMS, MOST_FAILED = 8, 2
 # Points along a path are left out where the path stays within this share of the workspace's longer side. At most so many steps of history.
 _FLAT, _MOST_STEPS = 5e-4, 80
+
+
+_RANKED = ["id", "problem", "method", "repeat", "feasible", "length"]
+_DRAWN = ["claimed_feasible", "collision_at", "collision_depth", "clearance", "evaluations", "stop", "history", "path_curve", "path_points"]
 
 
 class Chosen(NamedTuple):
@@ -29,24 +35,39 @@ class Chosen(NamedTuple):
     problems: dict[str, content.Problem]
 
 
-def chosen(study: str, experiment: str, found: results.Results, methods: Iterable[str]) -> Chosen:
-    """The runs of an experiment that the viewer shows, of some of its methods."""
-    ranked = found.runs.assign(gap=found.runs["length"] / found.runs["bound"] - 1)
+def chosen(study: str, experiment: str, described: dict[str, Any]) -> Chosen:
+    """The runs of an experiment that the viewer shows.
+
+    described: `methods`, those that are shown; `repeats`; and the files `runs`, `problems` and `bounds`. Of the runs that are not shown
+    only the lengths are kept.
+    """
+    bounds = parquet.read_table(described["bounds"]).to_pandas().set_index("problem")
+    tables = {file: parquet.read_table(file, columns=[*_RANKED, *_DRAWN]) for file in described["runs"]}
+    ranked = pd.concat([table.select(_RANKED).to_pandas().assign(file=file) for file, table in tables.items()])
+    ranked = ranked[(ranked["repeat"] < described["repeats"]) & ranked["method"].isin(described["methods"])]
+    ranked["gap"] = ranked["length"] / ranked["problem"].map(bounds["bound"]) - 1
     groups = [("", ranked)]
-    if len(found.problems) <= MOST_PROBLEMS:
-        groups = [*ranked.groupby("problem", sort=False), *(groups if len(found.problems) > 1 else [])]
+    if len(bounds) <= MOST_PROBLEMS:
+        groups = [*ranked.groupby("problem", sort=False), *(groups if len(bounds) > 1 else [])]
     shown = [
         _shown(experiment, problem, method, of_method)
         for problem, runs in groups
-        for method in methods
+        for method in described["methods"]
         if not (of_method := runs[runs["method"] == method]).empty
     ]
     named = {name for each in shown for name in (each.best, each.median, each.worst, *each.failed) if name}
-    kept = ranked[ranked["id"].isin(named)]
-    problems = {name: _problem(found, name) for name in kept["problem"].unique()}
+    kept = [_drawn(tables[file], rows.index) for file, rows in ranked[ranked["id"].isin(named)].groupby("file", sort=False)]
+    rows = pd.concat(kept) if kept else ranked
+    made = problem_files.read(described["problems"])
     prefix = f"{study}/{experiment}/"
-    runs = {row["id"]: _run(row, found, prefix + row["problem"]) for _, row in kept.iterrows()}
-    return Chosen(shown, runs, {prefix + name: problem for name, problem in problems.items()})
+    runs = {row["id"]: _run(row, made[row["problem"]].workspace.bounds, prefix + row["problem"]) for _, row in rows.iterrows()}
+    problems = {prefix + name: _problem(made[name], bounds.loc[name]) for name in rows["problem"].unique()}
+    return Chosen(shown, runs, problems)
+
+
+def _drawn(table: Any, rows: pd.Index) -> pd.DataFrame:
+    """Some rows of a table of runs, whole."""
+    return table.take(rows.to_list()).to_pandas()
 
 
 def _shown(experiment: str, problem: str, method: str, runs: pd.DataFrame) -> content.Shown:
@@ -59,8 +80,7 @@ def _shown(experiment: str, problem: str, method: str, runs: pd.DataFrame) -> co
     )
 
 
-def _problem(found: results.Results, name: str) -> content.Problem:
-    problem, bound = found.problems[name], found.bounds.loc[name]
+def _problem(problem: Problem, bound: pd.Series) -> content.Problem:
     size = _size(problem.workspace.bounds)
     path = np.asarray(bound["bound_path"], dtype=float)
     return content.Problem(
@@ -72,9 +92,8 @@ def _problem(found: results.Results, name: str) -> content.Problem:
     )
 
 
-def _run(row: pd.Series, found: results.Results, problem: str) -> content.Run:
-    path = results.path_of(row)
-    size = _size(found.problems[row["problem"]].workspace.bounds)
+def _run(row: pd.Series, bounds: tuple[float, float, float, float], problem: str) -> content.Run:
+    path, size = results.path_of(row), _size(bounds)
     collision = None
     if path is not None and not row["feasible"] and np.isfinite(row["collision_at"]):
         collision = tuple(float(value) for value in curves.point_at(path, row["collision_at"]))
@@ -109,7 +128,7 @@ def _rounded(points: np.ndarray, size: float) -> list[float]:
     return np.round(points, decimals).ravel().tolist()
 
 
-def _flattened(path: curves.Path, tolerance: float) -> np.ndarray:
+def _flattened(path: Path, tolerance: float) -> np.ndarray:
     """Points (n, 2) along a path, as few as keep within a tolerance of it."""
     import shapely
 

@@ -99,7 +99,13 @@ for (const kind of ["mouseover", "focusin"]) {
     else tip.hidden = true;
   });
 }
-addEventListener("scroll", () => { tip.hidden = true; }, { passive: true });
+document.addEventListener("focusout", () => { tip.hidden = true; });
+document.addEventListener("keydown", (event) => { if (event.key === "Escape") tip.hidden = true; });
+addEventListener("scroll", () => {
+  const cell = document.activeElement.closest(".numbers td[data-tip]");
+  if (cell) showTip(cell);
+  else tip.hidden = true;
+}, { passive: true });
 
 // ---------------------------------------------------------------------------------------------------------------------
 // Filters of claims by verdict
