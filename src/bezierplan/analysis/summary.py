@@ -115,8 +115,8 @@ def report(numbers: pd.DataFrame, claims: pd.DataFrame, titles: dict[str, str], 
         "prints of other methods in the same place (where it prints none, a number 10 % lower or higher). `not told apart`: within the "
         "range, which refuses fewer of them. `cannot fail`: within the range, which on the printed number's side of ours has no end, or "
         "ends where nothing possible lies beyond. `not reproduced`: outside. The other columns count claims by verdict; our own findings "
-        "are not among them. `stable`: claims with the same verdict under every reading of what the paper leaves open, out of those on which "
-        "other readings were tried. Readings that do not decide are left out here; `numbers.csv` and `claims.csv` have them.",
+        "are not among them. `stable`: claims with the same verdict under every reading of what the paper leaves open, out of those on "
+        "which other readings were tried. Readings that do not decide are left out here; `numbers.csv` and `claims.csv` have them.",
         markdown(outcome(numbers, claims)),
     ]
     for study, title in titles.items():
