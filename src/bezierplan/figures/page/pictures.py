@@ -70,11 +70,11 @@ def forests(comparisons: Sequence[Comparison]) -> list[Forest]:
 
 
 def _strips(comparisons: Sequence[Comparison]) -> list[Strip]:
-    """Comparisons on one scale, which holds every effect and zero, and intervals as far as three times the largest effect."""
-    effects = [abs(each.effect) for each in comparisons if each.effect is not None]
-    most = 3 * max(effects, default=0.0) or 1.0
+    """Comparisons on one scale, which holds every effect, the printed ones and zero, and intervals as far as three times the largest effect."""
+    effects = [effect for each in comparisons for effect in (each.effect, each.effect_published) if effect is not None]
+    most = 3 * max(map(abs, effects), default=0.0) or 1.0
     ends = [end for each in comparisons for end in each.interval if end is not None]
-    reach = [0.0, *(each.effect for each in comparisons if each.effect is not None), *(min(max(end, -most), most) for end in ends)]
+    reach = [0.0, *effects, *(min(max(end, -most), most) for end in ends)]
     low, high = min(reach), max(reach)
     pad = 0.06 * (high - low) or 1.0
     low, high = low - pad, high + pad

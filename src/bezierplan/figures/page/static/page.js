@@ -15,9 +15,14 @@ function loadLibrary() {
   return library;
 }
 
-async function makeSortable(table) {
-  if (table.dataset.sortable) return;
-  table.dataset.sortable = "yes";
+const sortable = new WeakMap();
+
+function makeSortable(table) {
+  if (!sortable.has(table)) sortable.set(table, enhance(table));
+  return sortable.get(table);
+}
+
+async function enhance(table) {
   const { jQuery } = await loadLibrary();
   const many = table.tBodies[0].rows.length > 8;
   jQuery(table).DataTable({
@@ -28,7 +33,7 @@ async function makeSortable(table) {
 }
 
 function makeVisibleTablesSortable(root) {
-  for (const table of root.querySelectorAll("table.sortable")) if (table.offsetParent) makeSortable(table);
+  return Promise.all([...root.querySelectorAll("table.sortable")].filter((table) => table.offsetParent).map(makeSortable));
 }
 
 document.addEventListener("toggle", (event) => {
@@ -47,10 +52,12 @@ function address() {
   }
 }
 
-function openAddress() {
+async function openAddress() {
   const place = find(address());
   if (!place) return;
   for (let part = place; part; part = part.parentElement) if (part.tagName === "DETAILS") part.open = true;
+  // The library moves a table, which takes the focus away.
+  await makeVisibleTablesSortable(place.closest("details") ?? place);
   for (const claims of place.closest(".claims")?.querySelectorAll("[aria-pressed=true]") ?? []) claims.click();
   const focus = place.querySelector("summary, a, [tabindex]") ?? place;
   focus.focus({ preventScroll: true });

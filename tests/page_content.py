@@ -1,0 +1,67 @@
+"""A small page with every kind of content, hostile names among them."""
+
+from bezierplan.figures.page import answer, content
+
+HOSTILE = '</script><script>window.broken = 1</script><img src=x onerror="window.broken = 1">'
+
+
+def number(name: str, verdict: str, **more) -> content.Number:
+    method, metric = name.split("/")
+    given = {"address": f"one/table1/{name}/mean", "keys": {"method": method}, "row": method, "column": metric, "metric": metric}
+    given |= {"statistic": "mean", "unit": "unit", "published": 10.51, "n_published": 10, "ours": 10.715, "n": 10}
+    given |= {"interval": (10.2, 11.1), "predicted": (10.1, 11.3), "verdict": verdict, "primary": True, "counted": True}
+    return content.Number(**given | {"share_feasible": 0.9, "bound": 7.7, "gap": 0.396} | more)
+
+
+def comparison(effect: float | None, low: float | None, high: float | None, mark: str = "+") -> content.Comparison:
+    given = {"check": 1, "deciding": True, "test": "lower", "metric": "length", "statistic": "mean", "unit": "unit", "name": "a lower than b"}
+    given |= {"mark": mark, "effect": effect, "interval": (low, high), "margin": 0.5, "effect_published": -2.0, "p": 0.01, "n": 10}
+    return content.Comparison(**given, reason="")
+
+
+def claim(identity: str, verdict: str, **more) -> content.Claim:
+    given = {"address": f"one/{identity}", "id": identity, "place": "IV, Table I", "statement": f"Method a is the best ({identity}).", "finding": False}
+    given |= {"verdict": verdict, "holds": "1 of 2", "where": "for a", "published": "2 of 2", "reason": HOSTILE, "replication": 0.9, "size": "alike"}
+    given |= {"shown_in": ["one/table1"], "comparisons": [comparison(-1.0, -2.0, -0.2), comparison(0.4, None, None, "?")], "variant": "metric=length"}
+    given |= {"readings": [content.Reading(variant="metric=objective", verdict="contradicted", holds="0 of 2")]}
+    given |= {"choices": [content.Choice(assumption="O1", alternative="8", claim=identity, verdict="undecided", changed=True)], "more": {"new_column": "text"}}
+    return content.Claim(**given | more)
+
+
+def study(claims: list[content.Claim], numbers: list[content.Number]) -> content.Study:
+    words = {"title": HOSTILE, "caption": HOSTILE}
+    table = content.Table(address="one/table1", name="table1", csv="one/tables/table1.comparison.csv", numbers=numbers, **words)
+    listing = content.Table(
+        address="one/listed", name="listed", csv="one/tables/listed.csv", columns=["x", HOSTILE], rows=[[n, HOSTILE] for n in range(12)], **words
+    )
+    shown = {"experiment": "first", "method": "a", "count": 3, "feasible": 2, "median": "one/first/p/a/0", "failed": ["one/first/p/a/2"]}
+    open_choice = {"detail": HOSTILE, "default": "5", "alternatives": ["8"], "reason": "it fits", "source": "inferred", "setting": "genes"}
+    return content.Study(
+        address="one",
+        title=HOSTILE,
+        outcome={"numbers": 2, "reproduced": 1, "supported": 1},
+        claims=claims,
+        tables=[table, listing],
+        figures=[],
+        audit=[content.Audited(item="table1", place=HOSTILE, rule="sum", printed=4, limit=3.5, consistent=False)],
+        assumptions=[content.Assumption(address="one/O1", id="O1", claims=["C1"], choices=claims[0].choices, **open_choice)],
+        shown=[content.Shown(problem="p", best="one/first/p/a/0", worst="one/first/p/a/1", **shown)],
+        labels={"a": HOSTILE, "p": "the room"},
+    )
+
+
+def run(feasible: bool) -> content.Run:
+    given = {"problem": "one/first/p", "feasible": feasible, "claimed": True, "length": 9.5, "clearance": 0.1, "depth": 0.0 if feasible else 0.4}
+    given |= {"collision": None if feasible else (2.0, 1.5), "evaluations": 100, "stop": "generations", "curve": "bezier"}
+    return content.Run(**given, path=[0.5, 0.5, 2.0, 1.5, 3.5, 2.5], control=[0.5, 0.5, 3.5, 2.5], history=[(0, 20.0), (3, 9.5)])
+
+
+def page() -> content.Page:
+    """A study `one` with three claims, four numbers, two tables, an open choice, a check, and three runs."""
+    numbers = [number("a/length", "reproduced"), number("b/length", "not reproduced"), number("a/objective", "not told apart")]
+    numbers.append(number("c/length", "", published=None, primary=False, counted=False))
+    own = {"one": study([claim("C1", "supported"), claim("C2", "contradicted"), claim("C3", "undecided", finding=True)], numbers)}
+    workspace = {"kind": "grid", "unit": "unit", "cell": 1, "rows": ["....", ".##.", "...."], "bounds": [0, 4, 0, 3]}
+    problem = content.Problem(workspace=workspace, start=(0.5, 0.5), target=(3.5, 2.5), bound=4.13, bound_path=[0.5, 0.5, 1, 2, 3.5, 2.5])
+    runs = {f"one/first/p/a/{n}": run(feasible=n < 2) for n in range(3)}
+    return content.Page(scale="smoke", answer=answer.answer(own), studies=own, problems={"one/first/p": problem}, runs=runs)

@@ -1,0 +1,188 @@
+"""The page in a real browser, opened from disk: a small page with every kind of content, and that of scale smoke if it has been made."""
+
+import os
+import shutil
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+from page_content import page as small_page
+
+from bezierplan.figures.page import build
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+SMOKE = Path(__file__).parents[1] / "results" / "smoke" / "index.html"
+
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no chromium on this machine; on Debian: apt install chromium")
+
+
+@pytest.fixture(scope="module")
+def browser():
+    from playwright.sync_api import sync_playwright
+
+    # The sandbox of the browser does not start for root, as in a container.
+    arguments = ["--no-sandbox"] if os.geteuid() == 0 else []
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=arguments)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory):
+    file = tmp_path_factory.mktemp("page") / "index.html"
+    file.write_text(build.html(small_page(), file.parent), encoding="utf-8")
+    return file
+
+
+@pytest.fixture(params=["small", "smoke"])
+def file(request, small):
+    if request.param == "smoke" and not SMOKE.is_file():
+        pytest.skip(f"no {SMOKE.relative_to(SMOKE.parents[2])}; snakemake smoke makes it")
+    return small if request.param == "small" else SMOKE
+
+
+@pytest.fixture
+def visit(browser):
+    """Open a file at an address, and fail at the end on any complaint of the browser and any request for another file."""
+    complaints, contexts = [], []
+
+    def visit(file, address="", **options):
+        context = browser.new_context(**{"viewport": {"width": 1280, "height": 900}} | options)
+        context.set_default_timeout(60_000)
+        contexts.append(context)
+        tab = context.new_page()
+        tab.on("console", lambda message: complaints.append(message.text) if message.type in ("error", "warning") else None)
+        tab.on("pageerror", lambda error: complaints.append(str(error)))
+        own = f"{file.as_uri()}"
+        tab.on("request", lambda request: None if request.url.startswith((own, "data:", "blob:")) else complaints.append(request.url))
+        tab.goto(own + (f"#{address}" if address else ""))
+        return tab
+
+    yield visit
+    for context in contexts:
+        context.close()
+    assert complaints == []
+
+
+@pytest.mark.parametrize("options", [{}, {"color_scheme": "dark"}, {"viewport": {"width": 400, "height": 800}}], ids=["light", "dark", "narrow"])
+def test_page_opens_without_complaint_and_passes_axe(visit, file, options):
+    from axe_playwright_python.sync_playwright import Axe
+
+    tab = visit(file, **options)
+    tab.evaluate("document.querySelectorAll('details').forEach((each, n) => { if (n < 12) each.open = true; })")
+    tab.wait_for_timeout(200)
+    found = Axe().run(tab, options={"runOnly": ["wcag2a", "wcag2aa", "wcag21aa", "best-practice"]})
+    assert [(each["id"], [node["html"][:200] for node in each["nodes"][:3]]) for each in found.response["violations"]] == []
+
+
+def test_narrow_page_does_not_scroll_sideways(visit, file):
+    tab = visit(file, viewport={"width": 400, "height": 800})
+    assert tab.evaluate("document.documentElement.scrollWidth") <= 400
+
+
+def test_without_scripts_tables_verdicts_and_figures_are_there(visit, file):
+    tab = visit(file, java_script_enabled=False)
+    assert tab.locator("h1").is_visible()
+    tab.locator("details.table > summary").first.click()
+    assert tab.locator("details.table table").first.is_visible()
+    assert all(tab.locator("figure img").nth(n).get_attribute("src").startswith("data:") for n in range(tab.locator("figure img").count()))
+    assert tab.locator(".search").is_hidden()
+
+
+def test_hostile_words_do_not_run(visit, small):
+    tab = visit(small)
+    tab.locator("#page-query").fill("script")
+    assert tab.evaluate("window.broken") is None
+    assert "</script>" in tab.locator("section.paper h2").first.inner_text()
+
+
+def test_table_sorts_and_filters(visit, small):
+    tab = visit(small, "one/listed")
+    rows = tab.locator("[id='one/listed'] tbody tr")
+    tab.locator("[id='one/listed'] .dt-search input").wait_for()
+    heading = tab.locator("[id='one/listed'] th").first
+    first = lambda: rows.first.locator("td").first.inner_text()  # noqa: E731
+    heading.click()
+    assert first() == "0"
+    heading.click()
+    assert first() == "11"
+    tab.locator("[id='one/listed'] .dt-search input").fill("7")
+    assert rows.count() == 1
+
+
+def test_numbers_sort_by_value_and_stay_linked(visit, small):
+    tab = visit(small, "one/table1/b/length/mean")
+    cell = tab.locator("[id='one/table1/b/length/mean']")
+    assert cell.is_visible()
+    assert "not reproduced" in cell.inner_text()
+    assert tab.locator("#page-tip").is_visible()
+    assert "95 % interval 10.2 to 11.1" in tab.locator("#page-tip").inner_text()
+
+
+def test_address_opens_a_claim_even_if_a_filter_hides_it(visit, small):
+    tab = visit(small)
+    tab.locator("button[data-verdict=supported]").click()
+    assert tab.locator("[id='one/C2']").is_hidden()
+    tab.evaluate("location.hash = 'one/C2'")
+    tab.locator("[id='one/C2'] .forest").first.wait_for()
+    assert tab.locator("[id='one/C1']").is_visible()
+
+
+def test_filter_shows_claims_of_one_verdict(visit, small):
+    tab = visit(small)
+    tab.locator("button[data-verdict=contradicted]").click()
+    assert tab.locator(".claims").first.locator(".claim:visible").count() == 1
+    tab.locator("button[data-verdict=contradicted]").click()
+    assert tab.locator(".claims").first.locator(".claim:visible").count() == 2
+
+
+def test_search_works_by_keyboard(visit, small):
+    tab = visit(small)
+    tab.keyboard.press("/")
+    tab.keyboard.type("C2 best")
+    assert tab.locator("#page-hits a").count() == 1
+    tab.keyboard.press("ArrowDown")
+    tab.keyboard.press("Enter")
+    tab.locator("[id='one/C2'] .facts").wait_for()
+    assert tab.locator("#page-hits").is_hidden()
+    assert tab.url.endswith("#one/C2")
+
+
+def test_search_finds_a_number_by_the_words_of_its_table(visit, small):
+    tab = visit(small)
+    tab.locator("#page-query").fill("objective mean")
+    assert tab.locator("#page-hits a").first.get_attribute("href") == "#one/table1/a/objective/mean"
+
+
+def test_viewer_draws_the_chosen_run(visit, small):
+    tab = visit(small)
+    run = tab.locator("#viewer select[name=run]")
+    assert tab.locator("#viewer-map .path").get_attribute("d") == "M0.5 -0.5L2 -1.5L3.5 -2.5"
+    assert tab.locator("#viewer-map .hit").count() == 0
+    assert tab.locator("#viewer-map .cells").get_attribute("d") == "M1 -2h2v1h-2z"
+    run.focus()
+    tab.keyboard.press("End")
+    tab.locator("#viewer-map .hit").wait_for(state="attached")
+    assert tab.locator("#viewer-command").inner_text() == "python -m bezierplan replay one/first/p/a/2"
+    assert "not feasible" in tab.locator("#viewer-facts").inner_text()
+
+
+def test_address_of_a_run_opens_it_in_the_viewer(visit, small):
+    tab = visit(small, "one/first/p/a/1")
+    assert tab.locator("#viewer select[name=run] option:checked").inner_text() == "worst"
+    tab.evaluate("location.hash = 'one/first/p/a/77'")
+    assert tab.locator("#viewer-note", has_text="does not hold run one/first/p/a/77").count() == 1
+
+
+def test_page_of_the_smallest_scale_shows_its_studies(visit):
+    if not SMOKE.is_file():
+        pytest.skip("no results/smoke/index.html; snakemake smoke makes it")
+    tab = visit(SMOKE)
+    assert tab.locator("section.paper").count() >= 5
+    assert SMOKE.stat().st_size < 15e6
+    tab.locator("#page-query").fill("path best")
+    tab.keyboard.press("Enter")
+    tab.locator("#viewer-map .path").wait_for()
