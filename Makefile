@@ -33,10 +33,11 @@ test: lint ## lint, the smoke subset, and all tests (ARGS go to pytest)
 	$(SNAKEMAKE) smoke
 	$(RUN) -m pytest -n auto $(ARGS)
 
-lint: .venv/ready ## style of Python and Snakemake files, and who may import whom
+lint: .venv/ready ## style of Python, Snakemake and JavaScript files, and who may import whom
 	$(RUN) -m ruff check
 	$(RUN) -m ruff format --check
 	$(RUN) -m snakefmt --check Snakefile workflow
+	.venv/bin/oxlint --quiet --deny-warnings src
 	$(SNAKEMAKE) --lint
 	$(RUN) .venv/bin/lint-imports --no-logo --cache-dir .cache/import-linter
 

@@ -14,17 +14,46 @@ def number(name: str, verdict: str, **more) -> content.Number:
 
 
 def comparison(effect: float | None, low: float | None, high: float | None, mark: str = "+") -> content.Comparison:
-    given = {"check": 1, "deciding": True, "test": "lower", "metric": "length", "statistic": "mean", "unit": "unit", "name": "a lower than b"}
+    given = {
+        "check": 1,
+        "deciding": True,
+        "test": "lower",
+        "metric": "length",
+        "statistic": "mean",
+        "unit": "unit",
+        "name": "a lower than b",
+    }
     given |= {"mark": mark, "effect": effect, "interval": (low, high), "margin": 0.5, "effect_published": -2.0, "p": 0.01, "n": 10}
     return content.Comparison(**given, reason="")
 
 
 def claim(identity: str, verdict: str, **more) -> content.Claim:
-    given = {"address": f"one/{identity}", "id": identity, "place": "IV, Table I", "statement": f"Method a is the best ({identity}).", "finding": False}
-    given |= {"verdict": verdict, "holds": "1 of 2", "where": "for a", "published": "2 of 2", "reason": HOSTILE, "replication": 0.9, "size": "alike"}
-    given |= {"shown_in": ["one/table1"], "comparisons": [comparison(-1.0, -2.0, -0.2), comparison(0.4, None, None, "?")], "variant": "metric=length"}
+    given = {
+        "address": f"one/{identity}",
+        "id": identity,
+        "place": "IV, Table I",
+        "statement": f"Method a is the best ({identity}).",
+        "finding": False,
+    }
+    given |= {
+        "verdict": verdict,
+        "holds": "1 of 2",
+        "where": "for a",
+        "published": "2 of 2",
+        "reason": HOSTILE,
+        "replication": 0.9,
+        "size": "alike",
+    }
+    given |= {
+        "shown_in": ["one/table1"],
+        "comparisons": [comparison(-1.0, -2.0, -0.2), comparison(0.4, None, None, "?")],
+        "variant": "metric=length",
+    }
     given |= {"readings": [content.Reading(variant="metric=objective", verdict="contradicted", holds="0 of 2")]}
-    given |= {"choices": [content.Choice(assumption="O1", alternative="8", claim=identity, verdict="undecided", changed=True)], "more": {"new_column": "text"}}
+    given |= {
+        "choices": [content.Choice(assumption="O1", alternative="8", claim=identity, verdict="undecided", changed=True)],
+        "more": {"new_column": "text"},
+    }
     return content.Claim(**given | more)
 
 
@@ -32,7 +61,12 @@ def study(claims: list[content.Claim], numbers: list[content.Number]) -> content
     words = {"title": HOSTILE, "caption": HOSTILE}
     table = content.Table(address="one/table1", name="table1", csv="one/tables/table1.comparison.csv", numbers=numbers, **words)
     listing = content.Table(
-        address="one/listed", name="listed", csv="one/tables/listed.csv", columns=["x", HOSTILE], rows=[[n, HOSTILE] for n in range(12)], **words
+        address="one/listed",
+        name="listed",
+        csv="one/tables/listed.csv",
+        columns=["x", HOSTILE],
+        rows=[[n, HOSTILE] for n in range(12)],
+        **words,
     )
     shown = {"experiment": "first", "method": "a", "count": 3, "feasible": 2, "median": "one/first/p/a/0", "failed": ["one/first/p/a/2"]}
     open_choice = {"detail": HOSTILE, "default": "5", "alternatives": ["8"], "reason": "it fits", "source": "inferred", "setting": "genes"}
@@ -51,7 +85,14 @@ def study(claims: list[content.Claim], numbers: list[content.Number]) -> content
 
 
 def run(feasible: bool) -> content.Run:
-    given = {"problem": "one/first/p", "feasible": feasible, "claimed": True, "length": 9.5, "clearance": 0.1, "depth": 0.0 if feasible else 0.4}
+    given = {
+        "problem": "one/first/p",
+        "feasible": feasible,
+        "claimed": True,
+        "length": 9.5,
+        "clearance": 0.1,
+        "depth": 0.0 if feasible else 0.4,
+    }
     given |= {"collision": None if feasible else (2.0, 1.5), "evaluations": 100, "stop": "generations", "curve": "bezier"}
     return content.Run(**given, path=[0.5, 0.5, 2.0, 1.5, 3.5, 2.5], control=[0.5, 0.5, 3.5, 2.5], history=[(0, 20.0), (3, 9.5)])
 

@@ -141,7 +141,9 @@ def test_answer_counts_numbers_and_claims_and_links_to_those_that_fail():
     words = said(sentences)
     assert words[0].startswith("Of 3 published numbers that can be judged, 1 (33 %) are reproduced, 1 (33 %) agree")
     assert words[1] == "Of 2 sentences that the papers state, 1 is supported and 1 is contradicted."
-    assert words[2].startswith("one reproduces in part: 1 reproduced, 1 not, 1 not decisive; 1 of 2 claims supported; against the paper: C2")
+    assert words[2].startswith(
+        "one reproduces in part: 1 reproduced, 1 not, 1 not decisive; 1 of 2 claims supported; against the paper: C2"
+    )
     assert content.Part(text="C2", address="one/C2") in sentences[2]
     assert "0 of 2 claims that can be read in several ways" in " ".join(words)
     assert "1 of 1 checks" in " ".join(words)
@@ -231,12 +233,26 @@ def test_row_holds_all_columns_of_its_keys_and_other_readings_come_last():
 
 def test_tip_gives_interval_n_share_and_bound():
     words = build.tip(number("a/length", "reproduced"))
-    for each in ("published 10.51 (n 10)", "95 % interval 10.2 to 11.1, n 10", "size: 10.1 to 11.3", "feasible 90 %", "exact bound 7.7, gap 39.6 %"):
+    for each in (
+        "published 10.51 (n 10)",
+        "95 % interval 10.2 to 11.1, n 10",
+        "size: 10.1 to 11.3",
+        "feasible 90 %",
+        "exact bound 7.7, gap 39.6 %",
+    ):
         assert each in words
 
 
 def test_column_that_the_page_does_not_know_is_kept_with_the_claim():
-    row = {"study": "one", "id": "C1", "primary": True, "finding": False, "verdict": "supported", "variant": np.nan, "artefact": "table1, figure2"}
+    row = {
+        "study": "one",
+        "id": "C1",
+        "primary": True,
+        "finding": False,
+        "verdict": "supported",
+        "variant": np.nan,
+        "artefact": "table1, figure2",
+    }
     (found,) = gather._claims("one", pd.DataFrame([row | {"verdict_at_paper_size": "undecided"}]), None, [], {})
     assert found.more == {"verdict_at_paper_size": "undecided"}
     assert found.shown_in == ["one/table1", "one/figure2"]
@@ -244,7 +260,13 @@ def test_column_that_the_page_does_not_know_is_kept_with_the_claim():
 
 def test_alternative_judged_beside_another_verdict_is_out_of_date():
     tried = pd.DataFrame(
-        {"assumption": "O1", "alternative": [8, 8], "claim": ["C1", "C2"], "verdict": ["supported", "supported"], "verdict_alternative": "undecided"}
+        {
+            "assumption": "O1",
+            "alternative": [8, 8],
+            "claim": ["C1", "C2"],
+            "verdict": ["supported", "supported"],
+            "verdict_alternative": "undecided",
+        }
     )
     judged = pd.DataFrame({"id": ["C1", "C2"], "primary": True, "verdict": ["supported", "contradicted"]})
     assert [choice.claim for choice in gather._choices(tried, judged)] == ["C1"]
@@ -292,7 +314,10 @@ def test_method_without_a_feasible_run_has_failed_ones_only(tmp_path):
     assert (shown.best, shown.median, shown.worst, len(shown.failed)) == (None, None, None, 2)
 
 
-@given(st.lists(st.tuples(st.floats(0, 100), st.floats(0, 100)), min_size=4, max_size=8), st.sampled_from(["bezier", "polyline", "piecewise_quadratic"]))
+@given(
+    st.lists(st.tuples(st.floats(0, 100), st.floats(0, 100)), min_size=4, max_size=8),
+    st.sampled_from(["bezier", "polyline", "piecewise_quadratic"]),
+)
 def test_drawn_path_stays_within_its_tolerance(points, kind):
     import shapely
 

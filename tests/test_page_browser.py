@@ -67,7 +67,9 @@ def visit(browser):
     assert complaints == []
 
 
-@pytest.mark.parametrize("options", [{}, {"color_scheme": "dark"}, {"viewport": {"width": 400, "height": 800}}], ids=["light", "dark", "narrow"])
+@pytest.mark.parametrize(
+    "options", [{}, {"color_scheme": "dark"}, {"viewport": {"width": 400, "height": 800}}], ids=["light", "dark", "narrow"]
+)
 def test_page_opens_without_complaint_and_passes_axe(visit, file, options):
     from axe_playwright_python.sync_playwright import Axe
 

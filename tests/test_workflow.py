@@ -76,6 +76,8 @@ ARTEFACTS_OF_RUNS = TABLES | {"figure figure3": 1, "figure figure4": 1, "figure 
 OF_PUBLISHED = {"table table1": 1, "claims": 1, "audit": 1, "summary": 1}
 # A label is printed by what shows the thing that it names.
 OF_LABELS = {name: 1 for name in ARTEFACTS_OF_RUNS if name != "claims"}
+# The page shows everything, with titles and assumptions.
+PAGE = {"page": 1}
 
 
 @pytest.fixture(scope="module")
@@ -130,7 +132,7 @@ EDITS = {
         {name: 1 for name in TABLES if name != "claims"},
     ),
     "how a job is logged": ("src/bezierplan/running/log.py", "PR_SET_PDEATHSIG = 1", "PR_SET_PDEATHSIG = 1 + 0", {}),
-    "a title": ("config/studies/song2016/artefacts.yaml", "title: ", "title: The same, ", {}),
+    "a title": ("config/studies/song2016/artefacts.yaml", "title: ", "title: The same, ", PAGE),
     "a comment": ("src/bezierplan/planners/parts/genetic.py", "# A draw close to 1", "# Hence a draw close to 1", {}),
     # Paths and convergence share code with the kind `lines`, which reads the units of metrics.
     "a metric": (
@@ -159,7 +161,7 @@ EDITS = {
     "fewer repeats": (EXPERIMENTS, "full: 4,", "full: 3,", ARTEFACTS_OF_RUNS),
     "a label": ("config/studies/song2016/artefacts.yaml", "0_15: 0 to 15", "0_15: from 0 to 15", OF_LABELS | {"claims": 1}),
     "a claim": ("config/studies/song2016/claims.yaml", "margin: 0.1,", "margin: 0.2,", {"claims": 1, "summary": 1}),
-    "an alternative": ("config/studies/song2016/assumptions.yaml", "[20, 50, 101, 401]", "[20, 50, 401]", {}),
+    "an alternative": ("config/studies/song2016/assumptions.yaml", "[20, 50, 101, 401]", "[20, 50, 401]", PAGE),
 }
 
 
@@ -167,7 +169,7 @@ EDITS = {
 def test_edit_reruns_exactly_what_it_changes(name, tree):
     file, old, new, expected = EDITS[name]
     edit(tree / file, old, new)
-    assert planned(tree) == expected
+    assert planned(tree) == (expected and expected | PAGE)
 
 
 @pytest.mark.parametrize("file", ["workspaces/figure2.txt", "published/table1.csv", "published/table1.csv: copied"])
@@ -179,7 +181,7 @@ def test_content_of_a_source_counts_not_its_date(file, tree):
         old, new, expected = next(row[1:] for row in EDITS.values() if row[0].endswith(name))
         edit(source, old, new)
         os.utime(source, ns=(dates.st_atime_ns, dates.st_mtime_ns))
-        assert planned(tree) == expected
+        assert planned(tree) == expected | PAGE
     else:
         os.utime(source)
         assert planned(tree) == {}
@@ -212,7 +214,7 @@ def test_new_planner_reruns_nothing(tree):
 
 def test_deleted_figure_alone_is_made_again(tree):
     (tree / "results/full/song2016/figures/figure4.svg").unlink()
-    assert planned(tree) == {"figure figure4": 1}
+    assert planned(tree) == {"figure figure4": 1} | PAGE
 
 
 def test_single_figure_needs_only_its_own_methods(tree):
@@ -221,12 +223,13 @@ def test_single_figure_needs_only_its_own_methods(tree):
     assert {name: number for name, number in planned(tree, "song2016_figure4").items() if "song2016" not in name} == expected
 
 
-def test_figure_made_again_has_equal_bytes(tree):
-    folder = tree / "results/full/song2016/figures"
-    before = {file.name: file.read_bytes() for file in folder.iterdir()}
+def test_figures_and_page_made_again_have_equal_bytes(tree):
+    folder, page = tree / "results/full/song2016/figures", tree / "results/full/index.html"
+    before = {file.name: file.read_bytes() for file in (page, *folder.iterdir())}
     shutil.rmtree(folder)
+    page.unlink()
     snakemake(tree)
-    assert {file.name: file.read_bytes() for file in folder.iterdir()} == before
+    assert {file.name: file.read_bytes() for file in (page, *folder.iterdir())} == before
 
 
 def test_one_core_and_another_order_give_the_same_content(finished, tree):

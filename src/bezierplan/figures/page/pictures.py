@@ -70,7 +70,7 @@ def forests(comparisons: Sequence[Comparison]) -> list[Forest]:
 
 
 def _strips(comparisons: Sequence[Comparison]) -> list[Strip]:
-    """Comparisons on one scale, which holds every effect, the printed ones and zero, and intervals as far as three times the largest effect."""
+    """Comparisons on one scale, which holds every effect, also the printed ones, and intervals up to three times the largest."""
     effects = [effect for each in comparisons for effect in (each.effect, each.effect_published) if effect is not None]
     most = 3 * max(map(abs, effects), default=0.0) or 1.0
     ends = [end for each in comparisons for end in each.interval if end is not None]
