@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 sys.path.insert(0, str(Path(__file__).parent))
 from page_content import HOSTILE, comparison, number, page
 
-from bezierplan.figures.page import addresses, answer, build, content, gather, pictures, runs
+from bezierplan.figures.page import HERE, addresses, answer, build, content, gather, pictures, runs
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
 from bezierplan.workspaces.grid import from_lines
@@ -78,7 +78,7 @@ def test_page_asks_for_no_other_file(read):
     sources = [attributes[name] for _, attributes in read.elements for name in ("src", "srcset", "poster") if name in attributes]
     sources += [attributes["href"] for tag, attributes in read.elements if tag == "link"]
     assert all(source.startswith("data:") for source in sources)
-    assert "@import" not in build.HERE.joinpath("static/page.css").read_text()
+    assert "@import" not in HERE.joinpath("static/page.css").read_text()
 
 
 def test_addresses_are_unique_and_every_link_within_the_page_has_its_place(read):
@@ -94,9 +94,9 @@ def test_same_content_gives_the_same_bytes(text):
 
 
 def test_scripts_never_insert_markup():
-    for file in build.HERE.glob("static/*.js"):
+    for file in HERE.glob("static/*.js"):
         assert not re.search(r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|eval\(", file.read_text())
-    assert sum(len(file.read_text().splitlines()) for file in build.HERE.glob("static/*.js")) < 400
+    assert sum(len(file.read_text().splitlines()) for file in HERE.glob("static/*.js")) < 400
 
 
 # ---------------------------------------------------------------------------------------------------------------------

@@ -3,7 +3,7 @@
 from pathlib import Path
 from typing import Any
 
-from bezierplan.figures.page import build
+from bezierplan.figures import page
 from bezierplan.running.digest import content_digest, source_digest
 from bezierplan.study import jobs, targets
 from bezierplan.study.targets import Studies
@@ -16,10 +16,10 @@ def file(scale: str) -> str:
 
 def inputs(given: Studies, scale: str) -> dict[str, list[str]]:
     """Input files of the page: everything that is made at the scale, and the runs behind it."""
-    made, runs = _made(given, scale), _runs(given, scale)
+    made, runs = _made(given, scale), [_runs(given, scale, key) for key in given]
     summary = f"results/{scale}/summary.md"
     named = [f"results/{scale}/{name}.csv" for name in ("numbers", "claims")] if summary in made else []
-    merged = {name: list(dict.fromkeys(each for files in runs.values() for each in files[name])) for name in ("runs", "problems", "bounds")}
+    merged = {name: list(dict.fromkeys(each for files in runs for each in files[name])) for name in ("runs", "problems", "bounds")}
     return {"made": made, "summary": named} | merged
 
 
@@ -29,7 +29,7 @@ def params(given: Studies, scale: str) -> dict[str, Any]:
     return {
         "job": {"scale": scale, "studies": {key: _study(given, scale, key, tried.get(key)) for key in given}},
         "tried": content_digest(*tried.values()),
-        "look": content_digest(*build.files()),
+        "look": content_digest(*page.files()),
         "code": source_digest(str(targets.SCRIPTS / "page.py")),
     }
 
@@ -47,15 +47,15 @@ def _made(given: Studies, scale: str) -> list[str]:
     return targets.files_of_scale(given, scale)
 
 
-def _runs(given: Studies, scale: str) -> dict[str, dict[str, list[str]]]:
-    """The runs, problems and bounds behind what is made at a scale, by study."""
-    found: dict[str, dict[str, list[str]]] = {key: {"runs": [], "problems": [], "bounds": []} for key in given}
-    for key, name in _artefacts(given, scale):
-        kind = "table" if name in given[key].tables else "figure"
-        _add(found[key], targets.artefact_inputs(given, scale, key, **{kind: name}))
-    for key, study in given.items():
-        if scale != "smoke" and study.claims:
-            _add(found[key], targets.claims_inputs(given, scale, key))
+def _runs(given: Studies, scale: str, key: str) -> dict[str, list[str]]:
+    """The runs, problems and bounds behind what is made of a study at a scale."""
+    found: dict[str, list[str]] = {"runs": [], "problems": [], "bounds": []}
+    for own, name in _artefacts(given, scale):
+        if own == key:
+            kind = "table" if name in given[key].tables else "figure"
+            _add(found, targets.artefact_inputs(given, scale, key, **{kind: name}))
+    if scale != "smoke" and given[key].claims:
+        _add(found, targets.claims_inputs(given, scale, key))
     return found
 
 
@@ -88,7 +88,7 @@ def _specs(study: Any, names: list[str]) -> dict[str, Any]:
 
 def _experiments(given: Studies, scale: str, key: str) -> dict[str, dict[str, Any]]:
     """The experiments whose runs the page shows: methods other than baselines, repeats, and files."""
-    study, found = given[key], _runs(given, scale)[key]
+    study, found = given[key], _runs(given, scale, key)
     experiments = {}
     for problems, bounds in zip(found["problems"], found["bounds"], strict=True):
         name = Path(problems).stem

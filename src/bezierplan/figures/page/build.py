@@ -6,10 +6,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from bezierplan.figures.page import content, pictures
+from bezierplan.figures.page import HERE, content, pictures
 from bezierplan.figures.page.gather import printed_key
-
-HERE = Path(__file__).parent
 
 # Verdict -> the class that colours it and its symbol; another verdict gets the last one.
 LOOKS = {
@@ -29,11 +27,6 @@ LOOKS = {
 _OTHER = ("open", "·")
 # Mark of a comparison -> the class that colours it, and what it says.
 MARKS = {"+": ("good", "holds"), "-": ("bad", "the opposite holds"), "0": ("part", "neither holds"), "?": ("open", "not known")}
-
-
-def files() -> list[str]:
-    """The templates, styles and scripts of the page, whose content decides how it looks."""
-    return sorted(str(file) for folder in ("templates", "static") for file in (HERE / folder).iterdir())
 
 
 def html(page: content.Page, folder: Path) -> str:
