@@ -145,7 +145,7 @@ def test_answer_counts_numbers_and_claims_and_links_to_those_that_fail():
         "one reproduces in part: 1 reproduced, 1 not, 1 not decisive; 1 of 2 claims supported; against the paper: C2"
     )
     assert content.Part(text="C2", address="one/C2") in sentences[2]
-    assert "0 of 2 claims that can be read in several ways" in " ".join(words)
+    assert "1 of 2 claims that can be read in several ways" in " ".join(words)
     assert "1 of 1 checks" in " ".join(words)
     assert "39.6 %" in words[-1]
 

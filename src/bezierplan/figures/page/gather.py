@@ -32,8 +32,9 @@ def cell(value: Any) -> content.Cell:
 
 
 def _number(row: pd.Series, column: str) -> float | None:
+    """A number to eight digits; the csv files have the others."""
     value = cell(pd.to_numeric(row.get(column), errors="coerce"))
-    return None if value is None else float(value)
+    return None if value is None else float(f"{value:.8g}")
 
 
 def _interval(row: pd.Series, low: str, high: str) -> tuple[float | None, float | None]:

@@ -11,14 +11,23 @@ from bezierplan.figures.page.content import Comparison
 # Coordinates are in points, so two decimals are finer than any screen or printer.
 _TAG, _LONG_NUMBER = re.compile(r"<[^>]+>"), re.compile(r"-?\d+\.\d{3,}")
 _HEAD = re.compile(r"<\?xml.*?\?>|<!DOCTYPE.*?>|<metadata>.*?</metadata>", re.DOTALL)
+_STYLE = re.compile(r'\bstyle="([^"]*)"')
 # What may stand in a quoted attribute as part of a data URI; `"`, `&`, `%` and `#` may not.
 _SAFE = " /:;,=<>()'!*@$+?[]{}|^`~"
 
 
 def data_uri(file: Path) -> str:
-    """An svg file as the address of an image, with shorter numbers and without metadata: it needs no other file."""
-    text = _HEAD.sub("", file.read_text(encoding="utf-8"))
-    text = _TAG.sub(lambda tag: " ".join(_LONG_NUMBER.sub(_shorter, tag.group()).split()), text)
+    """An svg file as the address of an image that needs no other file: with shorter numbers, each style written once, no metadata."""
+    styles: dict[str, str] = {}
+
+    def shorter(tag: re.Match) -> str:
+        text = _STYLE.sub(lambda found: f'class="{styles.setdefault(found.group(1), f"s{len(styles)}")}"', tag.group())
+        text = " ".join(_LONG_NUMBER.sub(_rounded, text).split())
+        return text if "'" in text else text.replace('"', "'")
+
+    text = _TAG.sub(shorter, _HEAD.sub("", file.read_text(encoding="utf-8")))
+    rules = "".join(f".{name}{{{rule}}}" for rule, name in styles.items())
+    text = text.replace("</style>", f"{rules}</style>", 1)
     return "data:image/svg+xml," + quote(re.sub(r">\s+<", "><", text.strip()), safe=_SAFE)
 
 
@@ -29,7 +38,7 @@ def size(file: Path) -> tuple[int, int]:
     return round(width), round(height)
 
 
-def _shorter(number: re.Match) -> str:
+def _rounded(number: re.Match) -> str:
     return f"{float(number.group()):.2f}".rstrip("0").rstrip(".")
 
 

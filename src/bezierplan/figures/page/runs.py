@@ -83,8 +83,9 @@ def _shown(experiment: str, problem: str, method: str, runs: pd.DataFrame) -> co
 def _problem(problem: Problem, bound: pd.Series) -> content.Problem:
     size = _size(problem.workspace.bounds)
     path = np.asarray(bound["bound_path"], dtype=float)
+    shapes = json.loads(files.to_json(problem.workspace), parse_float=lambda text: float(f"{float(text):.7g}"))
     return content.Problem(
-        workspace=json.loads(files.to_json(problem.workspace)) | {"bounds": list(problem.workspace.bounds)},
+        workspace=shapes | {"bounds": list(problem.workspace.bounds)},
         start=problem.start,
         target=problem.target,
         bound=float(bound["bound"]) if np.isfinite(bound["bound"]) else None,
