@@ -134,7 +134,7 @@ WORDS = {
     "repeats that are a list": (E, "repeats: {", "repeats: [1] #{", "experiments: routes: repeats: [1]: expected a mapping with smoke"),
     "more chunks than jobs": (
         E,
-        "extended: 500}\n    chunk: {smoke: 2, full: 50, extended: 250}",
+        "extended: 250}\n    chunk: {smoke: 2, full: 50, extended: 250}",
         "extended: 1000000}\n    chunk: {smoke: 2, full: 50, extended: 1}",
         "experiments: routes: chunk: extended: 1: 1000000 repeats are more than 10000 chunks",
     ),
