@@ -6,23 +6,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from studies import studies
 
 from bezierplan.geometry import checker, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.planners import known_planners
 from bezierplan.running import contract, execution
-from bezierplan.study import reading
 from bezierplan.study.checked import Fault
 from bezierplan.study.jobs import job
 
 ROOT = Path(__file__).parents[1]
-STUDIES = ("song2016", "elhoseny2017", "tharwat2018", "ma2020", "meledje")
 
 
 def settings_in_force() -> dict[str, dict]:
     """Planner -> its settings in the first experiment of a study that runs it."""
     found = {}
-    for study in reading.load([ROOT / "config" / "studies" / name for name in STUDIES]).values():
+    for study in studies().values():
         for experiment in study.experiments:
             for method in study.methods_of(experiment):
                 described = job(study, experiment, method, "smoke", 0)

@@ -6,13 +6,14 @@ from pathlib import Path as File
 import numpy as np
 import pandas as pd
 import pytest
+from studies import study
 
 from bezierplan.analysis.papers import elhoseny2017
 from bezierplan.figures.panels import drawing
 from bezierplan.geometry import cell_length, curves
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
-from bezierplan.study import jobs, reading
+from bezierplan.study import jobs
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Path
@@ -86,7 +87,7 @@ def test_mutation_changes_one_digit():
 
 
 def test_figures_may_show_baselines_by_name():
-    own = reading.load(reading.read_config({"studies": ["elhoseny2017"]}))["elhoseny2017"]
+    own = study("elhoseny2017")
     assert jobs.methods_of(own, "figure7", "fields100") == ["straight_line"]
     assert jobs.methods_of(own, "figure10", "fields100") == ["prm", "abc_ep", "ga", "mga"]
     assert jobs.caption(own, "figure7", "full").startswith(own.figures["figure7"].title)

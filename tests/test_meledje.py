@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 import pytest
 import shapely
+from studies import study
 
 from bezierplan.analysis.papers import meledje
 from bezierplan.figures.panels import drawing
@@ -21,7 +22,7 @@ from bezierplan.workspaces import files, grid
 from bezierplan.workspaces.ground import centres, cheapest, edge_energy, ground_of, obstacles_met
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "meledje"
-STUDY = reading.load([FOLDER])["meledje"]
+STUDY = study("meledje")
 PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
 
 
