@@ -38,8 +38,8 @@ def check(study: Study) -> None:
     for name, figure in study.figures.items():
         if name in study.tables:
             raise Fault(f"{place}: figures: {name}: a table has this name already")
-        for number, panel in enumerate(figure.panels):
-            _check_names(design, functions, panel, f"{place}: figures: {name}: panels: {number}")
+        for panel in figure.panels:
+            _check_names(design, functions, panel, f"{place}: figures: {name}: panels: {panel.place}")
     place = relative(study.folder / "claims.yaml")
     _check_ids(study.claims, f"{place}: claims")
     for claim in study.claims:

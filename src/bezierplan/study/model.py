@@ -94,10 +94,15 @@ def parsed(model: type[M], content: Any, place: str) -> M:
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        # After a key that is itself wrong, pydantic puts `[key]`.
-        faults = [([str(key) for key in fault["loc"] if key != "[key]"], _fault(fault, None)) for fault in error.errors(include_url=False)]
-        path, text = min(faults, key=lambda fault: (": unknown key" not in fault[1], len(fault[0])))
-        raise Fault(": ".join([place, *path, text])) from None
+        raise Fault(": ".join([place, *first_fault(error)])) from None
+
+
+def first_fault(error: ValidationError) -> list[str]:
+    """The fault that is reported of several: the keys that lead to it, and the end of the message."""
+    # After a key that is itself wrong, pydantic puts `[key]`.
+    faults = [([str(key) for key in fault["loc"] if key != "[key]"], _fault(fault, None)) for fault in error.errors(include_url=False)]
+    path, text = min(faults, key=lambda fault: (": unknown key" not in fault[1], len(fault[0])))
+    return [*path, text]
 
 
 def wrong(text: str) -> PydanticCustomError:

@@ -7,11 +7,16 @@ need them.
 import importlib
 from functools import cache
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 
 from bezierplan.study.model import Column, Experiment, Flag, Function, Line, Metric, Model, Where, Whole, Workspace, wrong
+
+EACH = (
+    "a list of at least two mappings, for panels that differ in a few keys: each makes a panel, which has its keys and those beside "
+    "`each`; `where` may stand in both"
+)
 
 
 class Panel(Model):
@@ -23,8 +28,16 @@ class Panel(Model):
     published_drawn: ClassVar[bool] = False
     rerun: ClassVar[bool] = False
 
-    kind: Line = Field(description="the name of a file in `src/bezierplan/figures`")
+    kind: Line = Field(description="the name of a file in `src/bezierplan/figures/panels`")
     title: Line = Field(None, description="one line above the panel")
+    each: list[dict[str, Any]] = Field(None, min_length=2, description=EACH)
+
+    _place: str = PrivateAttr("")
+
+    @property
+    def place(self) -> str:
+        """Where it stands in the list of panels in the file: the keys that lead to it."""
+        return self._place
 
 
 class RunsPanel(Panel):
