@@ -2,6 +2,7 @@
 
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 from bezierplan.study import reading
 from bezierplan.study.definition import Study
@@ -19,3 +20,14 @@ def study(key: str) -> Study:
 def studies() -> dict[str, Study]:
     """All of them, by name."""
     return {key: study(key) for key in KEYS}
+
+
+def arguments(key: str, function: str) -> dict[str, Any]:
+    """The arguments that a study gives a function of its module, in the first place that names it."""
+    own = study(key)
+    panels = [panel for figure in own.figures.values() for panel in figure.panels]
+    checks = [check for claim in own.claims for check in claim.checks]
+    for each in (*own.tables.values(), *panels, *checks):
+        if function in (getattr(each, key, None) for key in ("function", "data", "name")):
+            return each.arguments
+    raise KeyError(function)

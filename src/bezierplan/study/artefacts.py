@@ -7,6 +7,8 @@ from pydantic import Field, PlainValidator, TypeAdapter, ValidationError
 from bezierplan.figures.panels import EACH, Panel, kinds
 from bezierplan.study.experiments import File
 from bezierplan.study.model import (
+    ARGUMENTS,
+    Arguments,
     Experiment,
     Function,
     Line,
@@ -86,6 +88,7 @@ class FunctionTable(Table):
     function: Function = Field(
         description="the name of a function of `src/bezierplan/analysis/papers/<study>.py`, called with all published tables by file name"
     )
+    arguments: Arguments = Field({}, description=ARGUMENTS)
 
 
 class Comparison(Table):

@@ -286,6 +286,9 @@ Experiment = Annotated[Name, Names("experiment")]
 Workspace = Annotated[Name, Names("workspace")]
 Function = Annotated[Name, Names("function")]
 Where = Annotated[dict[Column, Values], Names("where")]
+Arguments = dict[Name, Any]
+"""Keyword-only arguments of a function of a study's module, which `checks` compares with their annotations."""
+ARGUMENTS = "the function's keyword-only arguments, by name: values that the paper gives, or that were chosen"
 
 
 def named(model: Model, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], str, Any]]:

@@ -11,7 +11,21 @@ from typing import Any, ClassVar
 
 from pydantic import Field, PrivateAttr, model_validator
 
-from bezierplan.study.model import Column, Experiment, Flag, Function, Line, Metric, Model, Where, Whole, Workspace, wrong
+from bezierplan.study.model import (
+    ARGUMENTS,
+    Arguments,
+    Column,
+    Experiment,
+    Flag,
+    Function,
+    Line,
+    Metric,
+    Model,
+    Where,
+    Whole,
+    Workspace,
+    wrong,
+)
 
 EACH = (
     "a list of at least two mappings, for panels that differ in a few keys: each makes a panel, which has its keys and those beside "
@@ -56,6 +70,7 @@ class TablePanel(Panel):
     )
     published: Flag = Field(False, description="whether the function is called with the published tables, true or false")
     workspace: Workspace = Field(None, description="the name of a workspace")
+    arguments: Arguments = Field({}, description=ARGUMENTS)
     where: Where = Field({}, description="column of the table → value or list of values: the rows that are shown")
 
 
