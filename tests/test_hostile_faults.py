@@ -351,6 +351,24 @@ WORDS = {
         "side: 1000000000: expected the side",
     ),
     # Artefacts
+    "an unknown argument of a function": (
+        C,
+        "arguments: {bits: 8, genes: 6}",
+        "arguments: {bits: 8, gene: 6}",
+        "checks: 0: arguments: gene: unknown; did you mean genes?",
+    ),
+    "an argument too few": (
+        C,
+        "arguments: {bits: 8, genes: 6}",
+        "arguments: {bits: 8}",
+        "arguments: genes: missing; genes_in_range needs it",
+    ),
+    "an argument in words": (
+        C,
+        "arguments: {bits: 8, genes: 6}",
+        "arguments: {bits: eight, genes: 6}",
+        "arguments: bits: 'eight': expected",
+    ),
     "an unknown metric of boxes": (
         A,
         "{kind: workspace, workspace: figure2, numbers: free}",
@@ -790,7 +808,7 @@ PLANNERS = {
         "def plan(problem, rng, *, tries: int, more: int):\n    pass\n",
         "settings: more: missing; walk.py needs it",
     ),
-    "unknown workspaces": ("workspaces = ('gird',)\n" + PLANNER, "walk.py: workspaces: ('gird',): expected kinds among grid"),
+    "unknown workspaces": ("workspaces = ('gird',)\n" + PLANNER, "walk.py: workspaces: gird: unknown; did you mean grid?"),
     "workspaces that are a word": ("workspaces = 'grid'\n" + PLANNER, "walk.py: workspaces: 'grid': expected kinds among grid"),
     "other workspaces": (
         "workspaces = ('circles',)\n" + PLANNER,
