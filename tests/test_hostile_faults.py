@@ -130,7 +130,7 @@ WORDS = {
     "repeats below 0": (E, "full: 100,", "full: -1,", "experiments: routes: repeats: full: -1: expected"),
     "repeats that are true": (E, "full: 100,", "full: true,", "experiments: routes: repeats: full: True: expected"),
     "repeats in words": (E, "full: 100,", "full: many,", "experiments: routes: repeats: full: 'many': expected"),
-    "repeats of nothing": (E, "full: 100,", "full: ,", "experiments: routes: repeats: full: nothing stands here; expected"),
+    "repeats of nothing": (E, "full: 100,", "full: ,", "experiments: routes: repeats: full: has no value; expected"),
     "repeats that are a list": (E, "repeats: {", "repeats: [1] #{", "experiments: routes: repeats: [1]: expected a mapping with smoke"),
     "more chunks than jobs": (
         E,
@@ -475,19 +475,19 @@ WORDS = {
         A,
         "{kind: workspace, workspace: figure2, numbers: free}",
         "{kind: workspace, numbers: free, each: [{workspace: figure2}, {workspace: figure2, numbers: all}]}",
-        "panels: 0: each: 1: numbers: stands beside each as well; expected it in one of the two places",
+        "panels: 0: each: 1: numbers: is given beside each as well; expected it in one of the two places",
     ),
     "a column both in each and beside it": (
         A,
         "{kind: workspace, workspace: figure2, numbers: free}",
         "{kind: boxes, experiment: routes, metric: length, where: {method: smooth}, each: [{title: one}, {where: {method: nonsmooth}}]}",
-        "panels: 0: each: 1: where: method: stands beside each as well",
+        "panels: 0: each: 1: where: method: is given beside each as well",
     ),
     "each within each": (
         A,
         "{kind: workspace, workspace: figure2, numbers: free}",
         "{kind: workspace, numbers: free, each: [{workspace: figure2}, {each: [{workspace: figure2}, {workspace: figure2}]}]}",
-        "panels: 0: each: 1: each: stands beside each as well",
+        "panels: 0: each: 1: each: is given beside each as well",
     ),
     "each misspelt": (
         A,
@@ -642,7 +642,7 @@ WORDS = {
         "0_15,nonsmooth,generation_1pct,unstated,,generation,7\n0_15,nonsmooth,objective",
         "the same keys, metric and statistic as line 2",
     ),
-    "a column twice": (T, "problem,method,", "problem,problem,", "table1.csv: line 1: column problem stands there twice"),
+    "a column twice": (T, "problem,method,", "problem,problem,", "table1.csv: line 1: column problem is listed twice"),
     "a row that is too long": (T, "unstated,,generation,26", "unstated,,generation,26,27", "table1.csv: line 2: expected 7 values"),
     # Claims
     "a claim twice": (C, "id: C2", "id: C1", "claims.yaml: claims: C1: another one has this id already"),
@@ -727,7 +727,7 @@ WORDS = {
         S,
         "    default: 6\n",
         "    default:\n",
-        "assumptions.yaml: assumptions: 1: default: nothing stands here; expected the value in force",
+        "assumptions.yaml: assumptions: 1: default: has no value; expected the value in force",
     ),
     "an assumption twice": (S, "id: O2\n", "id: O1\n", "assumptions.yaml: assumptions: O1: another one has this id already"),
     "an assumption of another name": (
@@ -752,7 +752,7 @@ WORDS = {
         S,
         "alternatives: [piecewise_cubic, bezier]",
         "alternatives: [bezier, bezier]",
-        "alternatives: ['bezier', 'bezier']: 'bezier' stands there twice",
+        "alternatives: ['bezier', 'bezier']: 'bezier' is listed twice",
     ),
     "an alternative of nothing": (
         S,

@@ -37,7 +37,7 @@ FAULTS = {
         "start_cel: 0,",
         "problems: 0_15: start_cel: unknown key; did you mean start_cell?",
     ),
-    "key given twice": (EXPERIMENTS, "  generations: 100 ", "  population: 100 ", "population: this key stands here twice"),
+    "key given twice": (EXPERIMENTS, "  generations: 100 ", "  population: 100 ", "population: this key is given twice"),
     "wrong type of a setting": (EXPERIMENTS, "population: 200", "population: many", "population: 'many'; expected a whole number"),
     "wrong type of a cell": (EXPERIMENTS, "cell: 10,", "cell: ten,", "cell: 'ten': expected the side of a cell"),
     "wrong type of repeats": (EXPERIMENTS, "full: 100,", "full: 1.5,", "full: 1.5: expected a whole number"),

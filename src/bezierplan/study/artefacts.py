@@ -135,7 +135,7 @@ def _joined(own: dict[str, Any], shared: dict[str, Any], place: str) -> dict[str
     joined = own | shared
     for key in own.keys() & shared.keys():
         if not (isinstance(own[key], dict) and isinstance(shared[key], dict)):
-            raise wrong(f"{place}: {key}: stands beside each as well; expected it in one of the two places")
+            raise wrong(f"{place}: {key}: is given beside each as well; expected it in one of the two places")
         joined[key] = _joined(own[key], shared[key], f"{place}: {key}")
     return joined
 

@@ -46,7 +46,7 @@ class Model(BaseModel):
             if field.is_required() and key not in given:
                 raise wrong(f"{key}: missing key; {field.description}")
             if key in given and given[key] is None:
-                raise wrong(f"{key}: nothing stands here; expected {field.description}")
+                raise wrong(f"{key}: has no value; expected {field.description}")
         return given
 
     @field_validator("*", mode="wrap")
@@ -224,7 +224,7 @@ def listed(item: Any, *, least: int = 1, single: bool = False) -> Any:
             raise PydanticCustomError("expected", "{text}", {"text": f"a list of at least {least}"})
         texts = [repr(each) for each in items]
         if repeated := [text for number, text in enumerate(texts) if text in texts[:number]]:
-            raise wrong(f"{shown(given)}: {repeated[0]} stands there twice")
+            raise wrong(f"{shown(given)}: {repeated[0]} is listed twice")
         return items if isinstance(given, list) else items[0]
 
     return Annotated[list[item], PlainValidator(check)]

@@ -28,8 +28,8 @@ from bezierplan.study.model import (
 )
 
 EACH = (
-    "a list of at least two mappings, for panels that differ in a few keys: each makes a panel, which has its keys and those beside "
-    "`each`; `where` may stand in both"
+    "a list of at least two mappings, for panels that differ in a few keys: each becomes a panel, with its own keys and those beside "
+    "`each`; `where` may be given in both"
 )
 
 
