@@ -69,7 +69,7 @@ def broken(rows, rule):
     return set(rows.loc[rows["rule"].str.contains(rule) & ~rows["consistent"], "place"])
 
 
-def test_where_road_maps_are_not_the_longest(rows):
+def test_where_roadmaps_are_not_the_longest(rows):
     assert broken(rows, "PRM the longest") == {"route=case2, obstacles=5, method=prm", "route=case2, obstacles=25, method=prm"}
 
 

@@ -32,7 +32,7 @@ from bezierplan.figures import style
 from bezierplan.workspaces.problem import Problem, Workspace
 
 # Keys that any panel may have in addition to the options of its kind.
-PANEL_KEYS = ("kind", "title", "experiment", "where", "workspace", "data", "published", "arguments")
+PANEL_KEYS = ("kind", "title", "experiment", "where", "workspace", "data", "published", "arguments", "each")
 
 
 class Scene(NamedTuple):
