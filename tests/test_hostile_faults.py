@@ -703,7 +703,7 @@ WORDS = {
         "metric: [objectiv, length]}",
         "variants: metric: objectiv: unknown; did you mean objective?",
     ),
-    "a report of no": (C, "secondary: true}", "secondary: false}", "secondary: False: expected true: shown, does not decide"),
+    "a report of no": (C, "secondary: true}", "secondary: false}", "secondary: False: expected true: shown, but not counted"),
     # Assumptions
     "a default that is not in force": (
         S,

@@ -6,7 +6,6 @@ from types import ModuleType
 from typing import Any
 
 from bezierplan.planners import planner_module, planner_settings, setting_fault
-from bezierplan.running.execution import RUN_COLUMNS
 from bezierplan.study.checked import Fault, closest
 
 KINDS = ("grid", "circles", "polygons")
@@ -42,9 +41,6 @@ def interface_fault(module: ModuleType) -> str | None:
             return f"setting {each.name}: has a default value; a study gives a value to every setting"
         if each.kind is each.KEYWORD_ONLY and each.annotation is each.empty:
             return f"setting {each.name}: has no annotation; {_EXPECTED}"
-        # The column `generations` holds the number actually performed, so a setting of that name adds nothing.
-        if each.kind is each.KEYWORD_ONLY and each.name in RUN_COLUMNS and each.name != "generations":
-            return f"its setting {each.name} is a column of the runs table; give it another name"
     try:
         annotations = planner_settings(module)
     except Exception as error:

@@ -6,20 +6,27 @@ from typing import Any
 
 from bezierplan.planners import known_planners, planner_settings, setting_fault
 from bezierplan.running import interface
+from bezierplan.running.execution import RUN_COLUMNS
 from bezierplan.study.checked import Fault, closest
 from bezierplan.study.definition import Study
 from bezierplan.study.files import inside
 
 
 def loaded(study: Study, method: str, place: str) -> ModuleType:
-    """The module of a method's planner. Raises Fault, beginning with a place, unless it has the interface of a planner."""
+    """The module of a method's planner. Raises Fault, beginning with a place, unless it has the interface of a planner and no
+    setting named like a column of the runs table."""
     name = study.methods[method].planner
     place = f"{place}: planner: {name}"
     if name.endswith(".py"):
         inside(study.folder, name, place)
     elif name not in known_planners():
         raise Fault(f"{place}: unknown{closest(name, known_planners())}; one of your own is a file, {name}.py")
-    return interface.loaded(study.planner(method), place)
+    module = interface.loaded(study.planner(method), place)
+    for setting in planner_settings(module):
+        # The column `generations` holds the number actually performed, so a setting of that name adds nothing.
+        if setting in RUN_COLUMNS and setting != "generations":
+            raise Fault(f"{place}: its setting {setting} is a column of the runs table; give it another name")
+    return module
 
 
 def check_settings(module: ModuleType, settings: dict[str, Any], place: str) -> None:
