@@ -89,7 +89,7 @@ def test_the_best_run_of_each_of_the_commonest_values_is_drawn(found):
 
 def test_a_run_that_ends_elsewhere_is_a_fault(found):
     job = JOB | {"settings": JOB["settings"] | {"c1": 1.4}}
-    with pytest.raises(ValueError, match=r"study/routes/field,inertia=0.7/swarm/\d: made again it ends in another path"):
+    with pytest.raises(ValueError, match=r"study/routes/field,inertia=0.7/swarm/\d: its rerun ends in another path"):
         tracks.data(found._replace(jobs={"swarm": job}), by="homotopy", runs=1)
 
 

@@ -62,7 +62,7 @@ class Method(Model):
 
     planner: File = Field(description="the name of a file in `src/bezierplan/planners`, or of a file `.py` in the study's folder")
     settings: Settings = Field({}, description="settings of this method alone, by name; the strongest")
-    variant_of: Name = Field(None, description="the method whose published numbers this one stands beside")
+    variant_of: Name = Field(None, description="the method whose published numbers this one is compared with")
 
 
 class Workspace(Model):
