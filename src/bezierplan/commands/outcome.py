@@ -9,7 +9,7 @@ import pandas as pd
 from bezierplan.analysis import summary
 
 RESULTS, KEPT, README = Path("results/full"), Path("docs/outcome"), Path("README.md")
-FILES = ("summary.md", "numbers.csv", "claims.csv")
+FILES = ("summary.md", "numbers.csv", "claims.csv", "worth.csv")
 PICTURE = "song2016/figures/figure3.png"
 BLOCK = "outcome"
 
