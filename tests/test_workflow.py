@@ -145,7 +145,12 @@ EDITS = {
         "from __future__ import annotations\n\nNEW = 1",
         {"figure figure4": 1},
     ),
-    "a setting of one method": (EXPERIMENTS, "samples: 701}", "samples: 701, population: 202}", runs(2, ["nonsmooth"]) | TABLES | {"worth": 1}),
+    "a setting of one method": (
+        EXPERIMENTS,
+        "samples: 701}",
+        "samples: 701, population: 202}",
+        runs(2, ["nonsmooth"]) | TABLES | {"worth": 1},
+    ),
     "a setting of all methods": (EXPERIMENTS, "penalty: 10.0", "penalty: 11.0", runs(2, GENETIC) | ARTEFACTS_OF_RUNS),
     "a published number": ("config/studies/song2016/published/table1.csv", "225.4982", "225.5982", OF_PUBLISHED),
     "a map": (

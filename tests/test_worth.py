@@ -95,8 +95,8 @@ def described(**changes):
         ({"length": 0.9995}, "Of the 1 feasible as often as the baseline, none is shorter or curves less."),
         (
             {"curvature": 0.5},
-            "Of the 1 feasible as often as the baseline, 1 is shorter or curves less; the least curved, tried, has 0.5 times the curvature, "
-            "1.25 times the length and 8 times the CPU time.",
+            "Of the 1 feasible as often as the baseline, 1 is shorter or curves less; the least curved, tried, has 0.5 times the "
+            "curvature, 1.25 times the length and 8 times the CPU time.",
         ),
         ({"compared": 0, "length": np.nan, "curvature": np.nan, "feasible": 0.0}, "No method is feasible as often as the baseline."),
     ],
