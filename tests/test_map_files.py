@@ -72,7 +72,7 @@ def test_a_map_that_was_saved_on_another_machine(tmp_path):
     assert grid.bounds == pytest.approx((-10.0, -9.2, -10.0, -9.4))
     assert files.sources({"kind": "ros_map", "unit": "m", "file": "map.yaml"}, tmp_path)[1] == tmp_path / "map.pgm"
     (tmp_path / "map.pgm").unlink()
-    with pytest.raises(ValueError, match="image: /home/somebody/map.pgm: no such file"):
+    with pytest.raises(ValueError, match=r"image: /home/somebody/map\.pgm: no such file"):
         files.load({"kind": "ros_map", "unit": "m", "file": "map.yaml"}, tmp_path)
 
 

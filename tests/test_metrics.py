@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from bezierplan.analysis import measures, metrics
 from bezierplan.workspaces.grid import from_lines
-from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.problem import Path, Problem
 
 # One occupied cell, x and y from 10 to 20.
 GRID = from_lines(["....", "....", ".#..", "...."], 10.0, "unit")
