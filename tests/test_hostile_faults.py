@@ -230,6 +230,19 @@ WORDS = {
         "methods: [shortest_path,",
         "methods: shortest_path: a baseline; it joins by itself",
     ),
+    "worth beside a method": (E, "worth: {baseline: rounded", "worth: {baseline: smooth", "worth: baseline: smooth: unknown"),
+    "worth in an unknown experiment": (
+        E,
+        "rounded, experiments: [routes]",
+        "rounded, experiments: [route]",
+        "worth: experiments: route: unknown; did you mean routes?",
+    ),
+    "worth beside a baseline that stays out": (
+        E,
+        "worth: {baseline: rounded, experiments: [routes]}\n\nexperiments:\n  routes:\n",
+        "worth: {baseline: random_search, experiments: [routes]}\n\nexperiments:\n  routes:\n    vary: {population: [10]}\n",
+        "worth: experiments: routes: the baseline random_search does not join it; leave it out",
+    ),
     "no methods": (
         E,
         "methods: [nonsmooth, smooth, smooth_cubic, smooth_single]",

@@ -99,6 +99,8 @@ def _check_experiments(study: Study, place: str) -> None:
         _check_problem(study, built, name, f"{place}: problems: {name}")
     for name in study.experiments:
         _check_experiment(study, built, name, f"{place}: experiments: {name}")
+    if study.worth:
+        _check_worth(study, f"{place}: worth")
 
 
 def _check_shared_settings(study: Study, used: set[str], place: str) -> None:
@@ -178,6 +180,16 @@ def _check_experiment(study: Study, built: Callable[[str], Problem], name: str, 
             _known(str(value).lower(), study.presets[setting], f"{place}: vary: {setting}")
     for method in experiment.methods:
         _check_method_in(study, built, name, method, place)
+
+
+def _check_worth(study: Study, place: str) -> None:
+    """The methods of each experiment have the baseline beside them."""
+    baseline = study.worth.baseline
+    _known(baseline, study.baselines, f"{place}: baseline")
+    for experiment in study.worth.experiments:
+        _known(experiment, study.experiments, f"{place}: experiments")
+        if baseline not in study.methods_of(experiment):
+            raise Fault(f"{place}: experiments: {experiment}: the baseline {baseline} does not join it; leave it out")
 
 
 def _check_method_in(study: Study, built: Callable[[str], Problem], name: str, method: str, place: str) -> None:

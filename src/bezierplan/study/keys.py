@@ -22,6 +22,7 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
         ("A workspace has `kind`, and by kind", experiments.WORKSPACES),
         ("A problem", experiments.Problem),
         ("An experiment", experiments.Experiment),
+        ("`worth`", experiments.Worth),
     ],
     "artefacts": [
         ("The file", artefacts.ArtefactsFile),
