@@ -11,7 +11,7 @@ from typing import Any
 from bezierplan.planners import planner_module, planner_settings
 from bezierplan.study.artefacts import Figure, Pivot, Table
 from bezierplan.study.claims import Assumption, Claim
-from bezierplan.study.experiments import Experiment, Method, Problem, Workspace
+from bezierplan.study.experiments import Experiment, Method, Problem, Workspace, Worth
 from bezierplan.workspaces import files
 
 
@@ -34,6 +34,7 @@ class Study:
     workspaces: dict[str, Workspace]
     problems: dict[str, Problem]
     experiments: dict[str, Experiment]
+    worth: Worth | None
     labels: dict[str, str]
     tables: dict[str, Table]
     figures: dict[str, Figure]

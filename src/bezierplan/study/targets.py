@@ -333,6 +333,7 @@ def summary_inputs(given: Studies, scale: str) -> dict[str, list[str]]:
     return {
         "comparisons": [f"{_folder(scale, study)}/tables/{table}.comparison.csv" for study, table in _published_tables(given)],
         "claims": [f"{_folder(scale, key)}/claims.csv" for key, study in given.items() if study.claims],
+        "worth": f"results/{scale}/worth.csv",
     }
 
 
@@ -346,6 +347,35 @@ def summary_params(given: Studies, scale: str) -> dict:
         "titles": {key: study.title for key, study in given.items()},
     }
     return {"job": job, "code": _code("summary")}
+
+
+def worth_inputs(given: Studies, scale: str) -> dict[str, list[str]]:
+    """Input files of the table `worth`."""
+    found: dict[str, list[str]] = {"runs": [], "problems": [], "bounds": []}
+    for key, study in given.items():
+        experiments = study.worth.experiments if study.worth else []
+        found["runs"] += [file for name in experiments for file in _chunks(study, scale, name, _measured(study, name))]
+        found["problems"] += _problems(scale, key, experiments)
+        found["bounds"] += _bounds(scale, key, experiments)
+    return found
+
+
+def _measured(study: Study, experiment: str) -> list[str]:
+    """Methods of an experiment, and the baseline that they are measured against."""
+    return [*study.experiments[experiment].methods, study.worth.baseline]
+
+
+def worth_params(given: Studies, scale: str) -> dict:
+    """Params of the table `worth`: `job`, study -> baseline, and experiment -> repeats."""
+    job = {
+        key: {
+            "baseline": study.worth.baseline,
+            "repeats": {name: study.experiments[name].repeats[scale] for name in study.worth.experiments},
+        }
+        for key, study in given.items()
+        if study.worth
+    }
+    return {"job": job, "code": _code("worth")}
 
 
 # ---------------------------------------------------------------------------------------------------------------------
