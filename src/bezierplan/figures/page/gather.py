@@ -69,7 +69,7 @@ def _study(key: str, job: dict, folder: Path, numbers: pd.DataFrame | None, outc
     return content.Study(
         address=address(key),
         title=job["title"],
-        outcome={name: int(count) for name, count in outcome.items()},
+        outcome={name: count for name, count in outcome.items() if isinstance(count, int)},
         claims=_claims(key, judged, files.get("checks"), choices, job["labels"]),
         tables=[_table(key, name, table, folder, own, job["labels"]) for name, table in job["tables"].items()],
         figures=[_figure(key, name, figure) for name, figure in job["figures"].items()],
