@@ -315,13 +315,14 @@ def test_method_without_a_feasible_run_has_failed_ones_only(tmp_path):
 
 
 @given(
-    st.lists(st.tuples(st.floats(0, 100), st.floats(0, 100)), min_size=4, max_size=8),
+    # Thousandths, because shapely's simplification fails on numbers near the smallest.
+    st.lists(st.tuples(st.integers(0, 10**5), st.integers(0, 10**5)), min_size=4, max_size=8),
     st.sampled_from(["bezier", "polyline", "piecewise_quadratic"]),
 )
 def test_drawn_path_stays_within_its_tolerance(points, kind):
     import shapely
 
-    path = Curve(kind, np.array(points))
+    path = Curve(kind, np.array(points) / 1000)
     drawn = runs._flattened(path, 0.05)
     exact = curves.sample_matrix(kind, len(points), 301) @ path.points
     # The straight steps from which points are left out are themselves within 0.01 of the curve.
