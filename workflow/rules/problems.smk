@@ -10,6 +10,8 @@ rule problems:
         f"{RESULTS}/logs/problems/{{experiment}}.log",
     params:
         **params(targets.problems_params, "job", "folder", "maps", "code"),
+    wildcard_constraints:
+        study=studies_of(STILL),
     script:
         "../scripts/problems.py"
 
@@ -22,6 +24,8 @@ rule bounds:
     log:
         f"{RESULTS}/logs/bounds/{{experiment}}.log",
     params:
-        **targets.bounds_params(),
+        **targets.bounds_params("bounds"),
+    wildcard_constraints:
+        study=studies_of(STILL),
     script:
         "../scripts/bounds.py"

@@ -77,7 +77,7 @@ def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:
     study, experiment, _, method, _ = name.split("/")
     found = {}
     for file in sorted(folder.glob(f"*/{study}/runs/{experiment}/{method}/*.parquet")):
-        if not file.name.endswith(".times.parquet"):
+        if file.stem.isdecimal():  # not the times and traces next to it
             for row in read_rows(file, name):
                 found[file] = row
     return found

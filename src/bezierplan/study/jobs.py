@@ -40,7 +40,7 @@ def job(study: Study, experiment: str, method: str, scale: str, chunk: int) -> d
         "seeds": content.seeds,
         "time_limit": content.time_limit,
         "repeats": [chunk * size, (chunk + 1) * size],
-    }
+    } | ({"policy": study.policies[study.methods[method].policy].model_dump()} if study.moves(experiment) else {})
 
 
 def _problems_met(study: Study, experiment: str, method: str, scale: str) -> dict[str, dict]:
