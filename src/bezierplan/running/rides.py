@@ -58,8 +58,8 @@ def run(job: dict, condition: Condition, repeat: int, problem: Problem, world: W
 
 
 def row(job: dict, condition: Condition, repeat: int, ride: Ride, world: World) -> tuple[dict[str, Any], dict[str, Any]]:
-    """One row of the runs table, and one of the table of traces: id; x and y at step 0, 1, ... and at the end of the drive, and clearance in
-    each step, all in single precision; and the plans, by the time, curve and control points of each.
+    """One row of the runs table, and one of the table of traces: id; x and y at step 0, 1, ... and at the end of the drive, and clearance
+    in each step, all in single precision; and the plans, by the time, curve and control points of each.
     """
     verdict = motion_check.check(ride.motion, world)
     points, times = ride.motion
@@ -177,8 +177,8 @@ def _guarded(job: dict, condition: Condition, repeat: int, problem: Problem, wor
 
 def bounds_of(problems: dict[str, Problem], worlds: dict[str, World]) -> pa.Table:
     """One row per problem: straight_line; bound, the length of the shortest way through places that are free at some time, with
-    least_length and bound_path (`problems.bounds_of`); octile_bound, nan; clairvoyant_arrival, in steps, and clairvoyant_length, in units, of
-    the earliest schedule found by a search that knows the future.
+    least_length and bound_path (`problems.bounds_of`); octile_bound, nan; clairvoyant_arrival, in steps, and clairvoyant_length, in units,
+    of the earliest schedule found by a search that knows the future.
     """
     from bezierplan.geometry import shortest_paths
 

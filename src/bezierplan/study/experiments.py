@@ -67,6 +67,12 @@ class Method(Model):
     variant_of: Name = Field(None, description="the method whose published numbers this one stands beside")
 
 
+Margins = Annotated[
+    list[float],
+    value(lambda given: isinstance(given, list) and len(given) > 0 and all(is_number(each) and each >= 0 for each in given), ""),
+]
+
+
 class Policy(Model):
     """What a robot does when its world changes."""
 
@@ -76,7 +82,7 @@ class Policy(Model):
     every: Count = Field(1, description="of every_step: after how many steps, a whole number of at least 1; left out: 1")
     warm: Flag = Field(
         False,
-        description="whether a plan starts from the planner's last population, for planners with a function `resume`; left out: false",
+        description="whether a plan starts from the last one, for planners with a function `resume`; left out: false",
     )
     waits: Flag = Field(True, description="whether the robot stops in front of what is in its way, true or false; left out: true")
     sees: Literal["before", "after"] = Field(
@@ -86,10 +92,7 @@ class Policy(Model):
         "positions", description="whether it knows positions alone or also velocities, and looks ahead; left out: positions"
     )
     check_margin: NotNegative = Field(0.0, description="how far circles must stay away from the rest of its way, in units; left out: 0")
-    plan_margins: Annotated[
-        list[float],
-        value(lambda given: isinstance(given, list) and len(given) > 0 and all(is_number(each) and each >= 0 for each in given), ""),
-    ] = Field(
+    plan_margins: Margins = Field(
         [0.0],
         description="by how much circles grow for a plan: a list of numbers, tried in this order until there is a plan; left out: [0]",
     )
@@ -97,7 +100,7 @@ class Policy(Model):
     spacing: Positive = Field(0.5, description="mean length of the chords that it drives along a curve, in units; left out: 0.5")
     start: Literal["position", "centre"] = Field(
         "position",
-        description="whether a plan begins where the robot is, or at the centre of its cell, to which it drives; left out: position",
+        description="whether a plan begins at the robot's position, or at the centre of its cell, to which it drives first",
     )
     step_seconds: Positive = Field(
         0.05, description="how long a step lasts, in seconds: metric `replans_late` counts the plans that take longer; left out: 0.05"

@@ -1,4 +1,4 @@
-"""A drive in a world that moves, at one moment: what is there and where it goes, the way so far, the current plan, and the plans dropped."""
+"""A drive in a world that moves, at one moment: what is there and where it goes, the way so far, the current plan, dropped plans."""
 
 from __future__ import annotations
 

@@ -71,7 +71,7 @@ _BACK = 0.01
 
 
 def way_to_centre(motion: Motion, grid: Grid) -> np.ndarray:
-    """Points (n, 2) from where a motion ends to the centre of that cell; if the cell is occupied, back along the motion until one is free."""
+    """Points (n, 2) from where a motion ends to the centre of that cell; if the cell is occupied, back along the motion to a free one."""
     place = motion.points[-1]
     centre = _centre(grid, place)
     if centre is not None:

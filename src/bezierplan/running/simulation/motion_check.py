@@ -4,6 +4,7 @@ Between two vertices of its way the robot moves uniformly, and so does a circle 
 time. On cells, the part driven between two changes is judged by the certified check. Touching is allowed.
 """
 
+import itertools
 import math
 from typing import NamedTuple
 
@@ -111,7 +112,7 @@ def _among_cells(motion: Motion, world: ChangingCells) -> Verdict:
     clearance, collision_at, depth, tolerance = np.full(max(last - first, 1), np.inf), math.nan, 0.0, 0.0
     inner = world.moments[(world.moments > motion.times[0]) & (world.moments < motion.times[-1])]
     cuts = np.unique(np.concatenate([[motion.times[0], motion.times[-1]], np.arange(first + 1, last), inner]))
-    for begin, end in zip(cuts[:-1], cuts[1:]):
+    for begin, end in itertools.pairwise(cuts):
         points, times = between(motion, begin, end)
         found = checker.check(np.stack([points[:-1], points[1:]], axis=1), regions[world.index(begin)])
         step = math.floor(begin) - first
