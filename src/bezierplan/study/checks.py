@@ -276,6 +276,10 @@ def check_assumption(study: Study, assumption: Assumption, place: str) -> None:
     """An assumption's claims belong to the study, its default is in force, and every alternative is a valid value of its setting."""
     for identity in assumption.claims:
         _known(identity, [claim.id for claim in study.claims], f"{place}: claims")
+        claim = next(each for each in study.claims if each.id == identity)
+        drives = [name for each in claim.checks for name in each.experiments if study.moves(name)]
+        if drives:
+            raise Fault(f"{place}: claims: {identity}: is about drives ({drives[0]}), which alternatives do not repeat")
     if not assumption.setting:
         return
     if isinstance(assumption.default, dict):

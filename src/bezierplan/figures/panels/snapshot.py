@@ -15,6 +15,7 @@ from bezierplan.running.simulation.motion_check import Verdict, between
 from bezierplan.running.simulation.robot import Ride
 from bezierplan.running.simulation.ways import polyline
 from bezierplan.study.model import is_number, value
+from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import MovingCircles, World
 
 if TYPE_CHECKING:
@@ -50,8 +51,6 @@ def data(results: Results, *, pick: dict, at: float) -> pd.DataFrame:
     collision (places of first collisions up to the moment). pick: which run. at: the moment. Raises ValueError for runs of several problems
     or methods, and if no run is found.
     """
-    import pandas as pd
-
     from bezierplan.analysis.results import pick as picked
 
     for column in ("problem", "method"):
@@ -62,18 +61,12 @@ def data(results: Results, *, pick: dict, at: float) -> pd.DataFrame:
         raise ValueError("no run to show; see the panel's `where` and `pick`")
     world, problem = results.worlds[run["problem"]], results.problems[run["problem"]]
     ride, verdict = rides.rerun(results.jobs[run["method"]], run["condition"], int(run["repeat"]), problem, world)
-    frame = pd.concat([_scenery(world, ride, verdict, at), _ends(problem)], ignore_index=True)
+    frame = moment(world, problem, ride, verdict, at)
     return frame.assign(problem=run["problem"], method=run["method"], run=run["id"], time=at * ride.motion.times[-1])
 
 
-def _ends(problem: Any) -> pd.DataFrame:
-    import pandas as pd
-
-    return pd.DataFrame([("start", *problem.start), ("target", *problem.target)], columns=["part", "x", "y"])
-
-
-def _scenery(world: World, ride: Ride, verdict: Verdict, at: float) -> pd.DataFrame:
-    """Rows of a moment without the ends."""
+def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: float) -> pd.DataFrame:
+    """Rows of a moment, a share of the time of a drive."""
     import pandas as pd
 
     time = at * ride.motion.times[-1]
@@ -98,6 +91,7 @@ def _scenery(world: World, ride: Ride, verdict: Verdict, at: float) -> pd.DataFr
     if verdict.collision_at <= time:
         hit = between(ride.motion, 0.0, max(verdict.collision_at, 1e-9)).points[-1:]
         parts.append(pd.DataFrame(hit, columns=["x", "y"]).assign(part="collision"))
+    parts.append(pd.DataFrame([("start", *problem.start), ("target", *problem.target)], columns=["part", "x", "y"]))
     return pd.concat(parts, ignore_index=True)
 
 
