@@ -2,6 +2,7 @@
 
 import pytest
 
+from bezierplan.analysis.claims.variants import in_variant, variants
 from bezierplan.study import alternatives, jobs, reading, targets
 
 STUDIES = reading.load(reading.read_config({}))
@@ -12,9 +13,18 @@ ALTERNATIVES = [(key, name) for key, study in STUDIES.items() for name in altern
 def test_every_alternative_has_a_run_that_it_changes(key, name):
     study = STUDIES[key]
     chunks = targets.alternative_params(STUDIES, "full", key, name)["chunks"]
-    assert any(
-        job != jobs.job(study, job["experiment"], job["method"], "full", 0) for file, job in chunks.items() if file.endswith("/0.parquet")
-    )
+    assert any(job["settings"] != jobs.job(study, job["experiment"], job["method"], "full", 0)["settings"] for job in chunks.values())
+
+
+def test_an_alternative_judges_the_primary_variant_and_runs_only_what_it_judges():
+    study = STUDIES["elhoseny2017"]
+    name = next(name for name in alternatives.tried(study) if any(claim.id == "C1" for claim in alternatives.headline_claims(study, name)))
+    claim = next(claim for claim in alternatives.headline_claims(study, name) if claim.id == "C1")
+    [check] = in_variant([each.plain() for each in claim.checks], *2 * variants(claim.plain()))
+    assert check["where"]["workspace"] == "published_like"
+    job = targets.alternative_params(STUDIES, "full", "elhoseny2017", name)["chunks"]["fields100/mga/0.parquet"]
+    assert {place["workspace"] for place in job["problems"].values()} == {"published_like"}
+    assert len(job["problems"]) == len(study.problems_of("fields100", "full")) / 2
 
 
 def test_checks_of_several_experiments_need_the_methods_of_each():

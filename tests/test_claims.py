@@ -305,6 +305,19 @@ def test_extremes_need_the_size_of_the_papers_experiment():
     assert judged(WITHIN | {"statistic": "min", "margin": 9}, ALIKE)["verdict"] == "supported"
 
 
+@pytest.mark.parametrize("paired", [True, False])
+def test_units_that_would_decide_detect_an_effect_as_large_as_the_margin(paired):
+    def row(n):
+        return judge({"checks": [LOWER]}, table({"a": sample("a", n=n), "b": sample("b", n=n)}), paired={"tried": paired})
+
+    claim, check = (frame.iloc[0] for frame in row(20))
+    assert claim["verdict"] == "undecided"
+    _, decided = (frame.iloc[0] for frame in row(claim["units_to_decide"]))
+    assert decided["least_detectable"] == pytest.approx(check["margin"], rel=0.25)
+    supported = judge({"checks": [LOWER]}, table({"a": sample("a", -2), "b": sample("b")}))[0].iloc[0]
+    assert (supported["verdict"], supported["units_to_decide"] is pd.NA) == ("supported", True)
+
+
 # From marks to a verdict.
 
 VERDICTS = [

@@ -148,7 +148,7 @@ FAULTS = {
     "no cell of the field": ("target: [100, 100]", "target: [101, 100]", "target: [101, 100]: outside the field; expected x and y from 0"),
     "a start without coordinates": ("start: [0, 0]\n    target: [100, 100]", "start_cell: 0\n    target_cell: 5", "start_cell: 0: "),
     "no layouts": (
-        "layouts: &fields {smoke: 2, full: 10, extended: 100}",
+        "layouts: &fields {smoke: 2, full: 10, extended: 40}",
         "layouts: &fields 5",
         "layouts: 5: expected a mapping with smoke, full, extended",
     ),

@@ -60,7 +60,7 @@ def test_every_title_of_a_number_or_picture_on_the_maps_says_that_they_are_recon
             assert "reconstructed" in artefact["title"]
 
 
-@pytest.mark.parametrize("name", ["env1_initial", "env1_modified", "env2_initial", "env2_modified"])
+@pytest.mark.parametrize("name", ["env1_initial", "env1_modified", "env2_initial", "env2_modified", "env2_modified_counts"])
 def test_optimum_is_the_shortest_path_over_centres_of_the_exact_geometry(name):
     where = problem(name)
     energy, path = cheapest(ground_of(where.workspace, 1.0), 0, 255)

@@ -287,3 +287,27 @@ def test_holm_against_a_worked_example():
     assert statistics.holm(np.array([0.01, 0.04, 0.03, 0.005])) == pytest.approx([0.03, 0.06, 0.06, 0.02])
     assert statistics.holm(np.array([0.9, 0.8])) == pytest.approx([1, 1])
     assert len(statistics.holm(np.array([]))) == 0
+
+
+def test_experiments_within_one_group_vary_as_the_groups_do():
+    """Runs in one layout are alike: the mean of ten of them is that of a layout, not that of all layouts together."""
+    groups = [np.full(10, float(layout)) for layout in range(8)]
+    drawn = statistics.predicted_within("mean", groups, 10, generator("within"))
+    assert set(drawn) == set(map(float, range(8)))
+    together = np.concatenate(groups)
+    quantile, reproduced = predictive_quantile("mean", together, 7.0, 10, None, generator("within"), groups=groups)
+    assert reproduced
+    assert quantile == pytest.approx(1 - 1 / 16, abs=0.03)
+    assert predictive_quantile("mean", together, 7.0, 10, None, generator("within"))[1] is False
+
+
+def test_predictions_within_groups_are_right_as_often_as_stated():
+    """A layout's own mean is normal, its runs are normal around it: 95 % of new experiments lie within the prediction interval."""
+    rng = generator("groups")
+    inside = []
+    for _ in range(500):
+        groups = [rng.normal(centre, 1.0, 10) for centre in rng.normal(0.0, 2.0, 50)]
+        new = rng.normal(rng.normal(0.0, 2.0), 1.0, 10).mean()
+        low, high = statistics.prediction_interval("mean", np.concatenate(groups), 10, rng, groups=groups)
+        inside.append(low <= new <= high)
+    assert 0.92 <= np.mean(inside) <= 0.98

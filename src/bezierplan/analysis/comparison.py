@@ -133,19 +133,22 @@ def _described(row: pd.Series, keys: list[str], name: str, rivals: np.ndarray) -
     numbers = row["numbers"]
     statistic = row["statistic"]
     row_name = "/".join([name, *(f"{key}={row[key]}" for key in keys), row["metric"], statistic])
-    low, high = statistics.interval(statistic, numbers, generator(f"{row_name}/interval"))
+    groups = row["groups"] or None
+    # Runs of one group are alike: the groups are the units whose mean is uncertain.
+    units = np.array([statistics.statistic(statistic, group) for group in groups]) if groups else numbers
+    low, high = statistics.interval("mean" if groups else statistic, units, generator(f"{row_name}/interval"))
     # The paper's number of runs, whatever share of ours failed.
     size = None if pd.isna(row["n_published"]) else int(row["n_published"])
     published, single = row["value_published"], (row["least"], row["most"])
     quantile, reproduced = statistics.predictive_quantile(
-        statistic, numbers, published, size, row["decimals"], generator(f"{row_name}/prediction"), single
+        statistic, numbers, published, size, row["decimals"], generator(f"{row_name}/prediction"), single, groups
     )
     if row["unit"] == "s":
         # Seconds of another machine are shown, not judged.
         reproduced = None
     predicted = (math.nan, math.nan)
     if not pd.isna(published):
-        predicted = statistics.prediction_interval(statistic, numbers, size, generator(f"{row_name}/prediction"), single)
+        predicted = statistics.prediction_interval(statistic, numbers, size, generator(f"{row_name}/prediction"), single, groups)
     return {
         "n_ours": len(numbers),
         "value_ours": statistics.statistic(statistic, numbers),

@@ -166,6 +166,18 @@ def predicted(name: str, values: np.ndarray, size: int, rng: np.random.Generator
     return drawn
 
 
+def predicted_within(name: str, groups: list[np.ndarray], size: int, rng: np.random.Generator) -> np.ndarray:
+    """A named statistic of experiments whose `size` values all belong to one group, as predicted from our groups of values: (DRAWS,).
+
+    First a group is drawn, then an experiment from it, for example runs in one layout of the obstacles.
+    """
+    chosen, drawn = rng.integers(len(groups), size=DRAWS), np.empty(DRAWS)
+    for number, values in enumerate(groups):
+        experiments = np.flatnonzero(chosen == number)
+        drawn[experiments] = STATISTICS[name](values[rng.integers(len(values), size=(len(experiments), size))])
+    return drawn
+
+
 def predictive_quantile(
     name: str,
     values: np.ndarray,
@@ -174,19 +186,21 @@ def predictive_quantile(
     decimals: int | None,
     rng: np.random.Generator,
     possible: tuple[float, float] = (-math.inf, math.inf),
+    groups: list[np.ndarray] | None = None,
 ) -> tuple[float, bool | None]:
     """The position of a published number among the numbers that experiments of the paper's size would print, judging by our values (n,).
 
     size: number of values behind the published statistic; if None (not stated), the number is placed among our single values.
     decimals: those of the printed number, to which ours are rounded before comparison; None to compare without rounding.
-    possible: the least and the largest possible single value; no experiment's extreme lies beyond them.
+    possible: the least and the largest possible single value; no experiment's extreme lies beyond them. groups: our values by group, if
+    all values of the paper's experiment belong to one.
 
     Returns the number's quantile, ties counted half, and whether it is within the central 95 %, ties counted in its favour (None
     below `LEAST_RUNS` values). NaN and None without values or without a published number.
     """
     if not len(values) or math.isnan(published):
         return math.nan, None
-    least, most, tail = _experiments(name, values, size, rng, possible)
+    least, most, tail = _experiments(name, values, size, rng, possible, groups)
     if decimals is not None:
         least, most, published = np.round(least, decimals), np.round(most, decimals), round(published, decimals)
     below, above = np.mean(most < published), np.mean(least > published)
@@ -200,6 +214,7 @@ def prediction_interval(
     size: int | None,
     rng: np.random.Generator,
     possible: tuple[float, float] = (-math.inf, math.inf),
+    groups: list[np.ndarray] | None = None,
 ) -> tuple[float, float]:
     """Ends of the central 95 % in which `predictive_quantile` expects a published number, from the same random draws; NaN without values.
 
@@ -208,17 +223,26 @@ def prediction_interval(
     """
     if not len(values):
         return math.nan, math.nan
-    least, most, tail = _experiments(name, values, size, rng, possible)
+    least, most, tail = _experiments(name, values, size, rng, possible, groups)
     low, high = np.quantile(least, tail, method="lower"), np.quantile(most, 1 - tail, method="higher")
     return float(low), float(high)
 
 
 def _experiments(
-    name: str, values: np.ndarray, size: int | None, rng: np.random.Generator, possible: tuple[float, float]
+    name: str,
+    values: np.ndarray,
+    size: int | None,
+    rng: np.random.Generator,
+    possible: tuple[float, float],
+    groups: list[np.ndarray] | None,
 ) -> tuple[np.ndarray, np.ndarray, float]:
     """The least and the most that experiments of a size may print, given our values (n,), and the tail to leave out at each end."""
     if size is None:
         return values, values, TAIL
+    if groups is not None:
+        # A new group lies below the k-th of n others with probability k / (n + 1); that one stands at (k - 1/2) / n among the draws.
+        drawn = predicted_within(name, groups, size, rng)
+        return drawn, drawn, max(TAIL * (len(groups) + 1) - 0.5, 0.0) / len(groups)
     if name in ("min", "max"):
         least, most = _extremes(name, values, size)
         return np.maximum(least, possible[0]), np.minimum(most, possible[1]), TAIL

@@ -68,7 +68,35 @@ def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
     verdicts = pd.crosstab(deciding["study"], deciding["verdict"]).reindex(columns=VERDICTS, fill_value=0)
     counts = pd.crosstab(judged["study"], judged["verdict"]).reindex(columns=NUMBERS, fill_value=0)
     counts.insert(0, "numbers", counts.sum(axis=1))
-    return counts.join(verdicts, how="outer").fillna(0).astype(int)
+    table = counts.join(verdicts, how="outer").fillna(0).astype(int)
+    return table.join(_stable(deciding)) if "readings" in deciding else table
+
+
+def with_readings(claims: pd.DataFrame, papers_size: pd.DataFrame, tried: pd.DataFrame) -> pd.DataFrame:
+    """Claims with two more columns after the verdict: `verdict_at_papers_size`, and `readings`, how many readings agree with the latter,
+    such as `9 of 12`: the one in force and each alternative that was tried; empty for a claim on which none was.
+
+    papers_size: as from `claims.judge`, on experiments of the paper's size. tried: as from `sensitivity.sensitivity`, of all studies.
+    """
+    claim = ["study", "id", "variant"]
+    place = claims.columns.get_loc("verdict") + 1
+    claims = claims.merge(papers_size[[*claim, "verdict"]].rename(columns={"verdict": "verdict_at_papers_size"}), how="left", on=claim)
+    unchanged = (~tried["changed"]).groupby([tried["study"], tried["claim"]]).agg(["sum", "size"]) + 1
+    words = {key: f"{agree} of {total}" for key, agree, total in unchanged.itertuples()}
+    readings = [
+        words.get((study, identity), "") if primary else "" for study, identity, primary in claims[["study", "id", "primary"]].to_numpy()
+    ]
+    ordered = [name for name in claims if name != "verdict_at_papers_size"]
+    ordered[place:place] = ["verdict_at_papers_size", "readings"]
+    return claims.assign(readings=readings)[ordered]
+
+
+def _stable(claims: pd.DataFrame) -> pd.Series:
+    """How many of a study's claims have the same verdict under all readings, out of those on which alternatives were tried, as text."""
+    tried = claims[claims["readings"].fillna("") != ""]
+    agree = tried["readings"].str.split(" of ")
+    stable = (agree.str[0] == agree.str[1]).groupby(tried["study"]).agg(["sum", "size"])
+    return pd.Series({study: f"{same} of {total}" for study, same, total in stable.itertuples()}, name="stable", dtype=object)
 
 
 def markdown(table: pd.DataFrame) -> str:
@@ -87,7 +115,8 @@ def report(numbers: pd.DataFrame, claims: pd.DataFrame, titles: dict[str, str], 
         "prints of other methods in the same place (where it prints none, a number 10 % lower or higher). `not told apart`: within the "
         "range, which refuses fewer of them. `cannot fail`: within the range, which on the printed number's side of ours has no end, or "
         "ends where nothing possible lies beyond. `not reproduced`: outside. The other columns count claims by verdict; our own findings "
-        "are not among them. Readings that do not decide are left out here; `numbers.csv` and `claims.csv` have them.",
+        "are not among them. `stable`: claims with the same verdict under every reading of what the paper leaves open, out of those on "
+        "which other readings were tried. Readings that do not decide are left out here; `numbers.csv` and `claims.csv` have them.",
         markdown(outcome(numbers, claims)),
     ]
     for study, title in titles.items():
@@ -102,7 +131,8 @@ def report(numbers: pd.DataFrame, claims: pd.DataFrame, titles: dict[str, str], 
 
 def _listed(claims: pd.DataFrame) -> str:
     """Claims with their verdicts, as markdown."""
-    shown = claims[["statement", "verdict", "holds", "where_it_holds", "published", "effect", "n"]].fillna("")
+    columns = ["statement", "verdict", "verdict_at_papers_size", "readings", "holds", "where_it_holds", "units_to_decide", "published"]
+    shown = claims[[*(name for name in columns if name in claims), "effect", "n"]].astype(object).fillna("")
     shown["effect"] = [f"{value:.3g}" if isinstance(value, float) else value for value in shown["effect"]]
     return markdown(shown)
 

@@ -7,6 +7,7 @@ A table's description (`spec`) has the keys
     values           a list of {metric, statistic, where, label, decimals}; statistic is a name or a list of names, the last three are
                      optional
     where            which runs: column -> value or list of values; a list also gives the order. Optional
+    within           the column that all runs of one experiment of the paper share, such as layout. Optional
 """
 
 from collections.abc import Sequence
@@ -44,7 +45,8 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
     """The numbers behind a table: one row for each group of runs with equal keys, entry of `values`, and statistic.
 
     Columns: the keys; value (the entry's number), metric, statistic, decimals; numbers, sorted (n,): the metric of the runs that count,
-    which satisfy the entry's `where` and have one; least, most: the range of the metric for one run; and over all runs of the
+    which satisfy the entry's `where` and have one; groups: the same as one array for each value of the column `within`, None without
+    that key; least, most: the range of the metric for one run; and over all runs of the
     group: runs (how many), share_claimed, share_feasible, bound (median) and gap (median of the feasible ones) of the metric's kind of
     length.
     """
@@ -66,12 +68,14 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
                 "least": group[metric.least].min() if isinstance(metric.least, str) else metric.least,
                 "most": metric.most,
             }
-            numbers = np.sort(counted[value].loc[counted[value].index.intersection(group.index)].to_numpy())
+            own = counted[value].loc[counted[value].index.intersection(group.index)]
+            # Tuples, because pandas would expand lists of arrays.
+            groups = tuple(np.sort(each.to_numpy()) for _, each in own.groupby(group[spec["within"]])) if "within" in spec else None
             for statistic in _statistics(entry):
                 cell = {"value": value, "metric": entry["metric"], "statistic": statistic, "decimals": entry.get("decimals")}
-                rows.append(same | of_group | cell | {"numbers": numbers})
+                rows.append(same | of_group | cell | {"numbers": np.sort(own.to_numpy()), "groups": groups})
     of_runs = ["runs", "share_claimed", "share_feasible", "bound", "gap", "least", "most"]
-    columns = [*keys, *of_runs, "value", "metric", "statistic", "decimals", "numbers"]
+    columns = [*keys, *of_runs, "value", "metric", "statistic", "decimals", "numbers", "groups"]
     # Of type object, so that integers stay integers next to entries without decimals.
     return pd.DataFrame(rows, columns=columns).assign(decimals=pd.Series([row["decimals"] for row in rows], dtype=object))
 

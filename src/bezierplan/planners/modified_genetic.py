@@ -304,7 +304,7 @@ def _add_offspring(rng, pool, filled, wheel, eta, child, field, rules):
                 count = gene_lists.cross(pool, head, tail, cut, child) if crossed else gene_lists.cross(pool, head, head, 0, child)
                 if mutated:
                     count = _mutate(rng, child, count, field, rules)
-                cost, free = validate(child[:count], field, rules)
+                cost, free = _validated(child[:count], pool, head, tail, field, rules)
                 tried += 1
                 invalid += cost == np.inf
                 for _ in range(rules.replacements):
@@ -323,6 +323,15 @@ def _add_offspring(rng, pool, filled, wheel, eta, child, field, rules):
                 gene_lists.put(child, count, cost, free, pool, filled)
                 filled += 1
     return filled, tried, invalid
+
+
+@njit(cache=True)
+def _validated(ones, pool, head, tail, field, rules):
+    """`validate`, without the work for a child that equals one of its parents."""
+    for parent in (head, tail):
+        if pool.cost[parent] < 1.0 / _UNFIT and gene_lists.same(ones, pool.ones[parent, : pool.count[parent]]):
+            return pool.cost[parent], pool.free[parent]
+    return validate(ones, field, rules)
 
 
 @njit(cache=True)

@@ -57,7 +57,11 @@ def with_alternative(study: Study, name: str) -> Study:
 def headline_claims(study: Study, name: str) -> list[Claim]:
     """The claims on which an alternative is tried, in their primary variant only."""
     wanted = assumption_of(study, alternatives(study)[name][0]).claims
-    return [claim.but(variants={}) for claim in study.claims if claim.id in wanted]
+    return [
+        claim.but(variants={column: values[:1] for column, values in claim.variants.items()})
+        for claim in study.claims
+        if claim.id in wanted
+    ]
 
 
 def alternatives_described(study: Study) -> dict[str, dict]:

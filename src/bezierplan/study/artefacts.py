@@ -7,6 +7,7 @@ from pydantic import Field
 from bezierplan.figures.panels import Panel, kinds
 from bezierplan.study.experiments import File
 from bezierplan.study.model import (
+    Column,
     Experiment,
     Function,
     Line,
@@ -66,6 +67,11 @@ class Pivot(Table):
     reads: dict[Name, Metric] = Field(
         {},
         description="metric in the published file → the metric that the number is compared with, where the paper leaves open which it is",
+    )
+    within: Column = Field(
+        None,
+        description="the column of which all runs behind a published number share one value, such as layout: predictions are then for "
+        "experiments within one of ours; left out: none",
     )
     primary: Where = Field({}, description="column → the value whose rows count as the paper's reading in the summary; left out: all rows")
 

@@ -132,7 +132,25 @@ def in_first_variant(claim: Claim, check: Check) -> dict[str, Any]:
         firsts = one_or_list(values[0])
         if column not in ("metric", "experiment") and not any(_names(each, column, firsts) for each in claim.checks):
             extra[column] = values[0]
-    return check.where | extra
+    return getattr(check, "where", {}) | extra
+
+
+def judged_only(job: dict, claims: list[Claim]) -> dict:
+    """A chunk of runs without the problems and varied values that no check of these claims selects in its primary variant."""
+    wheres = [in_first_variant(claim, check) for claim in claims for check in claim.checks if job["experiment"] in check.experiments]
+
+    def wanted(column: str, value: Any) -> bool:
+        return any(value in one_or_list(where.get(column, [value])) for where in wheres)
+
+    def met(place: dict) -> bool:
+        columns = place.keys() & set(PLACE)
+        return any(all(place[column] in one_or_list(where.get(column, [place[column]])) for column in columns) for where in wheres)
+
+    problems = {name: place for name, place in job["problems"].items() if met(place) and ("layout" in place or wanted("problem", name))}
+    return job | {
+        "problems": problems,
+        "vary": {column: [value for value in values if wanted(column, value)] for column, values in job["vary"].items()},
+    }
 
 
 def _names(check: Check, column: str, values: list[Any]) -> bool:

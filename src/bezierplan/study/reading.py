@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from bezierplan.running.digest import PACKAGE
-from bezierplan.study import checked
+from bezierplan.study import checked, stamps
 from bezierplan.study.artefacts import ArtefactsFile, ConfigFile
 from bezierplan.study.checked import Fault, closest
 from bezierplan.study.checks import check
@@ -40,13 +40,16 @@ def read_config(given: Mapping[str, Any]) -> list[Path]:
 
 
 def load(folders: list[Path]) -> dict[str, Study]:
-    """The studies in folders, by name, read and checked. Raises Fault."""
+    """The studies in folders, by name, read and checked; one whose content was checked before is only read. Raises Fault."""
     studies = {}
     for folder in folders:
         study = read_study(folder)
         if study.key in studies:
             raise Fault(f"{relative(folder)}: a study of the name {study.key} is there already; rename the folder")
-        check(study)
+        stamp = stamps.stamp_of(folder)
+        if stamp is None or not stamp.exists():
+            check(study)
+            stamps.remember(stamp)
         studies[study.key] = study
     return studies
 

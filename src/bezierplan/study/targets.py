@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from bezierplan.running.digest import PACKAGE, content_digest, source_digest
-from bezierplan.study import alternatives, definition, jobs
+from bezierplan.study import alternatives, definition, design, jobs
 from bezierplan.study.artefacts import Pivot
 from bezierplan.study.checked import Fault
 from bezierplan.study.claims import Claim
@@ -250,7 +250,7 @@ def alternative_params(given: Studies, scale: str, study: str, alternative: str)
     own, tried = given[study], alternatives.with_alternative(given[study], alternative)
     claims, changed = alternatives.headline_claims(own, alternative), alternatives.methods_changed(own, alternative)
     chunks = {
-        f"{experiment}/{method}/{chunk}.parquet": jobs.job(tried, experiment, method, scale, chunk)
+        f"{experiment}/{method}/{chunk}.parquet": design.judged_only(jobs.job(tried, experiment, method, scale, chunk), claims)
         for experiment in alternatives.experiments_of_claims(claims)
         for method in alternatives.methods_of_claims(own, claims, experiment)
         if method in changed

@@ -40,6 +40,7 @@ Columns of claims.csv, one row per claim and variant:
 | where_it_holds | which of them are + in the family, in words; if none, where the opposite holds; empty if all or none do |
 | published | how many of those that are printed hold in the printed numbers, by value alone |
 | effect ... p_family | of the decisive comparison: the worst -, otherwise that with the largest p; columns as below |
+| units_to_decide | of an undecided claim: about how many units every comparison marked ? needs to detect an effect as large as the margin |
 | replication_probability | share of experiments of the paper's size, drawn from our runs, in which the claim holds by values alone |
 | size | our effect compared with the printed one: alike (the printed one lies in our interval), smaller, larger, opposite |
 | artefact | the tables and figures that show it |
@@ -85,7 +86,7 @@ from bezierplan.study.model import one_or_list
 CLAIM_COLUMNS = [
     *("study", "id", "variant", "primary", "finding", "place", "statement", "verdict", "holds", "where_it_holds", "published"),
     *("effect", "effect_size_name", "effect_size", "low95", "high95", "n", "counted", "p", "p_family"),
-    *("replication_probability", "size", "artefact", "timed", "reason"),
+    *("units_to_decide", "replication_probability", "size", "artefact", "timed", "reason"),
 ]
 CHECK_COLUMNS = [
     *("study", "id", "variant", "check", "primary", "test", "metric", "statistic", "unit", "condition", "comparison"),
@@ -137,7 +138,9 @@ def judge(
             row, details = _judge_variant(claim, first, assignment, study, material)
             claim_rows.append(row | {"primary": assignment is first})
             check_rows += details
-    return pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype({"n": "Int64"}), pd.DataFrame(check_rows, columns=CHECK_COLUMNS)
+    return pd.DataFrame(claim_rows, columns=CLAIM_COLUMNS).astype({"n": "Int64", "units_to_decide": "Int64"}), pd.DataFrame(
+        check_rows, columns=CHECK_COLUMNS
+    )
 
 
 # From comparisons to a verdict.
@@ -187,6 +190,7 @@ def _judge_variant(claim: dict, first: dict, assignment: dict, study: str, mater
         "high95": finding.high,
         "counted": shown.comparison.counted if shown.comparison else "",
         "p_family": shown.p_family,
+        "units_to_decide": _units_to_decide(deciding) if verdict == "undecided" else pd.NA,
         "replication_probability": _replication_probability(deciding, holds, f"{name}/replication"),
         "size": _size(shown),
         "reason": "; ".join(filter(None, [_reason(shown), _disagreement(judged), claim.get("note", "")])),
@@ -312,6 +316,15 @@ def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> 
         held.append(effects.claimed(each.check, drawn, each.finding.margin))
     together = np.all(held, axis=0) if holds == "all" else np.any(held, axis=0)
     return float(together.mean())
+
+
+def _units_to_decide(deciding: list[_Judged]) -> int | Any:
+    """Units with which every undecided comparison would detect an effect as large as its margin, for the error shrinks with the square root
+    of their number; missing if no comparison has both a margin and a least detectable effect.
+    """
+    findings = [each.finding for each in deciding if each.mark_family == "?"]
+    needed = [f.n * (f.least_detectable / f.margin) ** 2 for f in findings if f.margin > 0 and math.isfinite(f.least_detectable)]
+    return max(math.ceil(max(needed)), 1) if needed else pd.NA
 
 
 def _size(each: _Judged) -> str:

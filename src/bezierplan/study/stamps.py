@@ -1,0 +1,56 @@
+"""Which studies were checked before: one empty file for each content, so that a start checks only what has changed.
+
+Most of a start would otherwise be spent on building every problem of every study. The name of a stamp is a digest of all files in the
+study's folder and of this package, so nothing can be stale.
+"""
+
+import hashlib
+import os
+import sys
+from functools import cache
+from pathlib import Path
+
+from bezierplan.running.digest import PACKAGE
+
+STAMPS = PACKAGE.parents[1] / ".cache" / "studies"
+
+# A folder with more than this, in bytes, is checked at every start: reading it would take longer.
+MOST_READ = 100_000_000
+
+
+def stamp_of(folder: Path) -> Path | None:
+    """Where the stamp of a study's folder lies; None if its content cannot be known: links, other special files, or too much of it."""
+    digest = hashlib.sha256(_package().encode())
+    digest.update(folder.resolve().name.encode())
+    read = 0
+    try:
+        for place, folders, names in os.walk(folder):
+            folders[:] = sorted(name for name in folders if name != "__pycache__")
+            for path in [Path(place, name) for name in (*folders, *sorted(names))]:
+                if path.is_symlink() or not (path.is_file() or path.is_dir()):
+                    return None
+                if path.is_file():
+                    read += path.stat().st_size
+                    if read > MOST_READ:
+                        return None
+                    digest.update(f"\0{path.relative_to(folder)}\0".encode() + hashlib.sha256(path.read_bytes()).digest())
+    except OSError:
+        return None
+    return STAMPS / digest.hexdigest()[:32]
+
+
+def remember(stamp: Path | None) -> None:
+    """Keep a stamp, unless the folder of stamps cannot be written."""
+    if stamp:
+        try:
+            stamp.parent.mkdir(parents=True, exist_ok=True)
+            stamp.touch()
+        except OSError:
+            pass
+
+
+@cache
+def _package() -> str:
+    """The version of Python, and a digest of all files of this package."""
+    files = sorted(PACKAGE.rglob("*.py"))
+    return sys.version + "".join(f"{file.relative_to(PACKAGE)} {hashlib.sha256(file.read_bytes()).hexdigest()}" for file in files)

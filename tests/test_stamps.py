@@ -1,0 +1,85 @@
+"""A study is checked once for each content: what was checked before is only read."""
+
+import contextlib
+import os
+import shutil
+from pathlib import Path
+
+import pytest
+
+from bezierplan.study import reading, stamps
+from bezierplan.study.checked import Fault
+
+SONG2016 = Path(__file__).parents[1] / "config" / "studies" / "song2016"
+
+
+@pytest.fixture
+def study(tmp_path, monkeypatch):
+    monkeypatch.setattr(stamps, "STAMPS", tmp_path / "stamps")
+    return Path(shutil.copytree(SONG2016, tmp_path / "song2016"))
+
+
+@pytest.fixture
+def checks(monkeypatch):
+    """Keys of the studies that were checked."""
+    checked, check = [], reading.check
+    monkeypatch.setattr(reading, "check", lambda study: (checked.append(study.key), check(study)))
+    return checked
+
+
+def test_equal_content_is_checked_once(study, checks):
+    reading.load([study])
+    reading.load([study])
+    assert checks == ["song2016"]
+
+
+@pytest.mark.parametrize("name", ["claims.yaml", "workspaces/figure2.txt", "published/table1.csv"])
+def test_any_change_of_a_file_is_checked(study, checks, name):
+    reading.load([study])
+    file = study / name
+    file.write_text(file.read_text() + "\n")
+    with contextlib.suppress(Fault):
+        reading.load([study])
+    assert checks == ["song2016"] * 2
+
+
+def test_a_new_or_renamed_file_and_a_changed_package_are_checked(study, checks, monkeypatch):
+    reading.load([study])
+    (study / "other.txt").write_text("")
+    reading.load([study])
+    (study / "other.txt").rename(study / "renamed.txt")
+    reading.load([study])
+    monkeypatch.setattr(stamps, "_package", lambda: "changed")
+    reading.load([study])
+    assert checks == ["song2016"] * 4
+
+
+def test_a_fault_is_found_every_time(study):
+    file = study / "workspaces" / "figure2.txt"
+    file.write_text(file.read_text().replace(".", "x", 1))
+    messages = []
+    for _ in range(2):
+        with pytest.raises(Fault) as caught:
+            reading.load([study])
+        messages.append(str(caught.value))
+    assert messages[0] == messages[1]
+
+
+def test_what_cannot_be_known_has_no_stamp(study, monkeypatch):
+    assert stamps.stamp_of(study)
+    monkeypatch.setattr(stamps, "MOST_READ", 100)
+    assert stamps.stamp_of(study) is None
+    monkeypatch.undo()
+    os.mkfifo(study / "pipe")
+    assert stamps.stamp_of(study) is None
+    (study / "pipe").unlink()
+    (study / "link").symlink_to(study / "claims.yaml")
+    assert stamps.stamp_of(study) is None
+
+
+def test_stamps_that_cannot_be_written_do_no_harm(study, checks, monkeypatch, tmp_path):
+    (tmp_path / "file").write_text("")
+    monkeypatch.setattr(stamps, "STAMPS", tmp_path / "file" / "stamps")
+    reading.load([study])
+    reading.load([study])
+    assert checks == ["song2016"] * 2
