@@ -13,7 +13,7 @@ from bezierplan.study.definition import Study
 from bezierplan.study.experiments import WORKSPACES
 from bezierplan.study.files import inside
 
-SERVED = [kind for kind, model in WORKSPACES.items() if not model.drawn]
+SERVED = [kind for kind, model in WORKSPACES.items() if not model.drawn and not model.moves]
 """Kinds of workspace that planners meet."""
 
 _EXPECTED = "expected bool, int, float, Literal, or Annotated with a Range"

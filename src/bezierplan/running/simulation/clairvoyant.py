@@ -10,6 +10,7 @@ drives lead in any direction: where a map only gains obstacles, and once, no rob
 
 import heapq
 import math
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +18,7 @@ from numba import njit
 
 from bezierplan.geometry import shortest_paths
 from bezierplan.running.simulation.motion_check import Motion, check
+from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World, positions
 
@@ -32,14 +34,11 @@ def least_way(world: World, problem: Problem) -> shortest_paths.Bound:
     """The shortest way through places that are free at some time: no robot's way is shorter."""
     if isinstance(world, ChangingCells):
         always = np.all([each.occupied for each in world.maps], axis=0)
-        grid = type(world.maps[0])(always, world.maps[0].cell, world.unit, world.maps[0].origin)
-        return shortest_paths.shortest_path(problem._replace(workspace=grid))
-    # No circle stays where it is, and a robot may wait.
-    if np.any(np.hypot(*world.velocities.T) == 0.0):
-        still = np.hypot(*world.velocities.T) == 0.0
-        stays = type(world)(**{**vars(world), "centres": world.centres[still], "radii": world.radii[still], "seen": "circles"})
-        return shortest_paths.shortest_path(problem._replace(workspace=stays.workspace(0)))
-    return shortest_paths.Bound(math.dist(problem.start, problem.target), np.array([problem.start, problem.target], dtype=float))
+        return shortest_paths.shortest_path(problem._replace(workspace=replace(world.maps[0], occupied=always)))
+    # A circle that moves lets a robot pass that waits.
+    still = ~world.velocities.any(axis=1)
+    stays = Circles(world.bounds, world.centres[still], world.radii[still], world.unit)
+    return shortest_paths.shortest_path(problem._replace(workspace=stays))
 
 
 def earliest(world: World, problem: Problem) -> Schedule:
@@ -264,6 +263,8 @@ def _between_corners(places, occupied, begins, pace):
                     continue
                 until = _end_of(since[j], into, begins)
                 earliest = max(time, begins[into] - size / pace) if into > 0 else time
+                if earliest + size / pace >= min(until, best[j, into]):
+                    continue
                 depart = _free_departure(places[i], places[j], size, earliest, min(leave, until - size / pace), occupied, begins, pace)
                 if depart + size / pace < best[j, into]:
                     best[j, into] = depart + size / pace
@@ -289,9 +290,11 @@ def _free_departure(one, other, size, depart, latest, occupied, begins, pace):
             middle = (cuts[k] + cuts[k + 1]) / 2.0
             x, y = one[0] + middle * (other[0] - one[0]), one[1] + middle * (other[1] - one[1])
             enters, leaves = depart + cuts[k] * size / pace, depart + cuts[k + 1] * size / pace
-            for f in range(len(begins)):
+            for f in range(np.searchsorted(begins, enters, side="right") - 1, len(begins)):
                 ends = begins[f + 1] if f + 1 < len(begins) else np.inf
-                if enters < ends - 1e-12 and leaves > begins[f] + 1e-12 and _inside(x, y, occupied[f]):
+                if leaves <= begins[f] + 1e-12:
+                    break
+                if enters < ends - 1e-12 and _inside(x, y, occupied[f]):
                     # It may enter this cell only when this map is over.
                     delayed = max(delayed, ends - cuts[k] * size / pace)
         if delayed == depart:
