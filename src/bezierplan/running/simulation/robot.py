@@ -1,5 +1,6 @@
 """The simulation: plans, drives, and records."""
 
+import itertools
 import math
 import time as clock
 from collections.abc import Callable
@@ -61,11 +62,10 @@ class _Log:
         return Motion(points, times) if len(times) > 1 else Motion(np.repeat(points, 2, axis=0), np.array([0.0, 0.0]))
 
     def follow(self, along: Way, times: np.ndarray, reached: np.ndarray, pace: float) -> None:
-        """Add a drive along a way: the lengths of it reached at some times, with the robot's pace or waiting between them. It may reach the
-        last one before its time."""
-        steps, parts = np.diff(reached), np.diff(times)
-        for k in range(len(steps)):
-            begin, end = reached[k], reached[k + 1]
+        """Add a drive along a way: the lengths of it reached at some times, between which the robot waits or drives at its pace. It may
+        reach the last one before its time.
+        """
+        for k, (begin, end) in enumerate(itertools.pairwise(reached)):
             if end == begin:
                 self.wait(times[k + 1])
                 continue
@@ -73,7 +73,6 @@ class _Log:
             lengths = np.append(inside, end)
             self.points.append(along.place(lengths))
             self.times.append(times[k] + (lengths - begin) / pace)
-            self.waited += max(parts[k] - steps[k] / pace, 0.0) if k + 1 < len(steps) else 0.0
 
     def wait(self, until: float) -> None:
         """Add a wait."""
