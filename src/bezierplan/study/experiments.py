@@ -342,7 +342,8 @@ class Problem(Model):
     ) = Field(
         None,
         description="in a workspace drawn at random, a list of whole numbers: how many circles (of `random_circles` the first so many of a "
-        "layout), or how many occupied cells (`random_blocks`); one problem for each of them and each layout; column `obstacles`",
+        "layout), or how many occupied cells (`random_blocks`), or how many cells change at a time (`random_changing_cells`); one problem "
+        "for each of them and each layout; column `obstacles`",
     )
     side: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 5000, "")] = Field(
         None, description="the side of a random field or of a map of blocks in cells, a whole number from 1 to 5000"
