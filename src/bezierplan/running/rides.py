@@ -25,7 +25,6 @@ from typing import Any
 import numpy as np
 import pyarrow as pa
 
-from bezierplan.geometry import curves
 from bezierplan.planners import planner_module
 from bezierplan.running import execution, watchdog
 from bezierplan.running.execution import Condition
@@ -65,10 +64,10 @@ def row(job: dict, condition: Condition, repeat: int, ride: Ride, world: World) 
     points, times = ride.motion
     moved = np.concatenate([[True], np.any(points[1:] != points[:-1], axis=1)])
     path = Path("polyline", points[moved] if moved.sum() > 1 else np.repeat(points[:1], 2, axis=0))
-    travelled, collided = curves.length(path), not math.isnan(verdict.collision_at)
+    done = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    travelled, collided = float(done[-1]), not math.isnan(verdict.collision_at)
     least = float(verdict.clearance.min())
     lengths = [plan.length for plan in ride.plans]
-    done = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
     driven = [float(np.interp(plan.time, times, done)) for plan in ride.plans]
     leg = int(np.clip(np.searchsorted(times, verdict.collision_at, side="right"), 1, len(times) - 1)) if collided else 0
     moments = np.append(np.arange(0, math.ceil(times[-1])), times[-1])
