@@ -121,7 +121,7 @@ def _plan(
     """A plan from where the robot is, and the way that it follows then; None if it found none."""
     motion = log.motion()
     approach, evaluations, began = motion.points[-1:], 0, clock.process_time()
-    looked = time + (policy.sees == "after" and not isinstance(world, ChangingCells))
+    looked = time if isinstance(world, ChangingCells) else round(time) + (policy.sees == "after")
     if policy.start == "centre":
         approach = cells.way_to_centre(motion, world.workspace(time))
     margins = policy.plan_margins if not isinstance(world, ChangingCells) else (0.0,)
