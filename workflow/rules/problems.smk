@@ -8,10 +8,10 @@ rule problems:
         f"{RESULTS}/problems/{{experiment}}.parquet",
     log:
         f"{RESULTS}/logs/problems/{{experiment}}.log",
-    params:
-        **params(targets.problems_params, "job", "folder", "maps", "code"),
     wildcard_constraints:
         study=studies_of(STILL),
+    params:
+        **params(targets.problems_params, "job", "folder", "maps", "code"),
     script:
         "../scripts/problems.py"
 
@@ -23,9 +23,9 @@ rule bounds:
         f"{RESULTS}/problems/{{experiment}}.bounds.parquet",
     log:
         f"{RESULTS}/logs/bounds/{{experiment}}.log",
-    params:
-        **targets.bounds_params("bounds"),
     wildcard_constraints:
         study=studies_of(STILL),
+    params:
+        **targets.bounds_params("bounds"),
     script:
         "../scripts/bounds.py"
