@@ -1,11 +1,12 @@
 """Alternatives of assumptions: each is a run that differs, and the rules that try them work."""
 
 import pytest
+from studies import studies
 
 from bezierplan.analysis.claims.variants import in_variant, variants
-from bezierplan.study import alternatives, jobs, reading, targets
+from bezierplan.study import alternatives, jobs, targets
 
-STUDIES = reading.load(reading.read_config({}))
+STUDIES = studies()
 ALTERNATIVES = [(key, name) for key, study in STUDIES.items() for name in alternatives.tried(study)]
 
 

@@ -4,14 +4,14 @@ import json
 from functools import cache
 
 import pytest
+from studies import studies
 
 from bezierplan.geometry.region import region
 from bezierplan.running import execution, problems
-from bezierplan.study import reading
 from bezierplan.study.alternatives import alternatives, methods_changed, methods_of_claims, tried, with_alternative
 from bezierplan.study.jobs import job, problems_job
 
-STUDIES = reading.load(reading.read_config({}))
+STUDIES = studies()
 # What a run finds beside its extra columns, as opposed to the settings that it was given.
 FOUND = ("objective", "history", "path_points", "evaluations")
 REPEATS = 3

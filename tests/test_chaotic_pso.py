@@ -11,8 +11,9 @@ from hypothesis import strategies as st
 
 from bezierplan.geometry import curves
 from bezierplan.planners import chaotic_pso, planner_settings, setting_fault
-from bezierplan.planners.parts import chaotic_maps
+from bezierplan.planners.parts import chaotic_maps, penalised
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem
 
 SETTINGS = {
@@ -449,3 +450,59 @@ def test_right_settings_are_none(curve):
 def test_settings_that_do_not_fit_together_are_refused(changes, message):
     with pytest.raises(ValueError, match=message):
         chaotic_pso.check(SETTINGS | changes)
+
+
+# Polygons.
+
+SQUARE = np.array([[-1.0, -1], [1, -1], [1, 1], [-1, 1]])
+
+
+def among(*obstacles, start=(-4.0, 0.0), target=(4.0, 0.0)):
+    return Problem("test", Polygons((-10.0, 10.0, -10.0, 10.0), obstacles, "unit"), start, target)
+
+
+def violation_of(task, x, y, **changed):
+    objective = chaotic_pso._objective(task, chaotic_pso.Settings(**(SETTINGS | changed)))
+    return penalised.violation(np.array(x, dtype=float), np.array(y, dtype=float), objective, np.empty(len(x)))
+
+
+def test_the_violation_of_a_polygon_is_the_mean_depth_as_a_share_of_the_deepest():
+    """Points at depths 0 (outside), 0 (on the edge), 0.25, 1 (the middle) and 0.5 of a square whose largest circle has radius 1."""
+    found, colliding = violation_of(among((SQUARE,)), [3, 1, 0.75, 0, 0], [0, 0, 0, 0, -0.5])
+    assert found == pytest.approx((0.25 + 1 + 0.5) / 5)
+    assert colliding == 3
+
+
+def test_a_hole_is_free_and_an_indented_polygon_has_an_outside_within_its_box():
+    ring = (3 * SQUARE, SQUARE)
+    assert violation_of(among(ring), [0, 0.5], [0, 0.5]) == (0.0, 0)
+    assert violation_of(among(ring), [2], [0]) == (
+        pytest.approx(1.0 / penalised.polygonal_obstacles(among(ring).workspace, 0).deepest[0]),
+        1,
+    )
+    bay = (np.array([[0.0, 0], [6, 0], [6, 6], [4, 6], [4, 2], [2, 2], [2, 6], [0, 6]]),)
+    assert violation_of(among(bay), [3, 3], [4, 2.5]) == (0.0, 0)
+    assert violation_of(among(bay), [3], [1])[1] == 1
+
+
+def test_polygons_grow_by_the_safety_distance():
+    assert violation_of(among((SQUARE,)), [1.2], [0]) == (0.0, 0)
+    found, colliding = violation_of(among((SQUARE,)), [1.2], [0], d_min=0.5)
+    assert (found, colliding) == (pytest.approx(0.3 / 1.5), 1)
+
+
+@given(st.lists(st.tuples(st.floats(-3, 3), st.floats(-3, 3)), min_size=1, max_size=20))
+@hypothesis_settings(max_examples=50, deadline=None)
+def test_a_polygon_with_many_corners_is_like_the_circle_around_it(points):
+    angles = np.linspace(0, math.tau, 721)[:-1]
+    x, y = np.array(points).T
+    polygon = violation_of(among((2 * np.column_stack([np.cos(angles), np.sin(angles)]),)), x, y)
+    assert polygon[0] == pytest.approx(violation_of(problem([[0, 0, 2]]), x, y)[0], abs=1e-4)
+
+
+def test_a_swarm_finds_its_way_round_a_square():
+    task = among((SQUARE,))
+    settings = SETTINGS | {"inertia_damping": 0.98, "velocity_limit": 0.1, "stall_limit": 0}
+    found = chaotic_pso.plan(task, np.random.default_rng(0), **settings)
+    assert found.claimed_feasible
+    assert 2 * math.hypot(3, 1) + 2 <= found.objective < 12

@@ -7,11 +7,12 @@ Claims that ask a function or printed numbers have data of their own.
 import itertools
 from collections import defaultdict
 from functools import cache
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
+from studies import FOLDER as STUDIES
+from studies import KEYS, study
 
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.claims import comparisons, judge, variants
@@ -19,14 +20,11 @@ from bezierplan.analysis.claims.kinds import OfRuns, kinds
 from bezierplan.analysis.claims.material import Material
 from bezierplan.analysis.papers import elhoseny2017, ma2020, song2016, tharwat2018
 from bezierplan.analysis.results import Results
-from bezierplan.study import reading
 from bezierplan.study.model import one_or_list
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
 
-STUDIES = Path(__file__).parents[1] / "config" / "studies"
-KEYS = ("song2016", "elhoseny2017", "tharwat2018", "ma2020", "meledje")
 UNITS, LAYOUTS = 80, 8
 # A level is so many times the one below; single runs are about so much off, as a share.
 STEP, NOISE = 3.0, 0.0005
@@ -34,11 +32,6 @@ TRUTHS = {"claimed_feasible", "feasible", "optimal", "near_optimal", "infeasible
 SPREADS = ("iqr", "std", "range")
 PROBLEM = Problem("", from_lines(["..", ".."], 1.0, "m"), (0.5, 0.5), (1.5, 1.5))
 FALSE_VERDICTS = {"contradicted", "no effect", "seldom", "in part"}
-
-
-@cache
-def study(key):
-    return reading.load([STUDIES / key])[key]
 
 
 @cache

@@ -6,23 +6,22 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from studies import studies
 
 from bezierplan.geometry import checker, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.planners import known_planners
-from bezierplan.running import contract, execution
-from bezierplan.study import reading
+from bezierplan.running import contract, execution, interface
 from bezierplan.study.checked import Fault
 from bezierplan.study.jobs import job
 
 ROOT = Path(__file__).parents[1]
-STUDIES = ("song2016", "elhoseny2017", "tharwat2018", "ma2020", "meledje")
 
 
 def settings_in_force() -> dict[str, dict]:
     """Planner -> its settings in the first experiment of a study that runs it."""
     found = {}
-    for study in reading.load([ROOT / "config" / "studies" / name for name in STUDIES]).values():
+    for study in studies().values():
         for experiment in study.experiments:
             for method in study.methods_of(experiment):
                 described = job(study, experiment, method, "smoke", 0)
@@ -177,6 +176,10 @@ def test_global_generators_get_their_state_back(tmp_path):
     assert (random.getstate(), np.random.get_state()[1].tolist()) == before  # noqa: NPY002
 
 
+def test_there_are_problems_of_every_kind_of_workspace():
+    assert tuple(contract.PROBLEMS) == interface.KINDS
+
+
 @pytest.mark.parametrize("kind", contract.PROBLEMS)
 def test_problems_are_legal_and_only_the_sealed_one_has_no_way(kind):
     for problem in contract.PROBLEMS[kind]():
@@ -202,8 +205,8 @@ FAULTS = {
     "default value": ("Range(1)]", "Range(1)] = 20", {}, "setting evaluations: has a default value"),
     "no annotation": ("evaluations: Annotated[int, Range(1)]", "evaluations", {}, "setting evaluations: has no annotation"),
     "wrong annotation": ("Annotated[int, Range(1)]", "str", {}, "setting evaluations: is annotated with str; expected bool, int,"),
-    "no function": ("def plan(", "def plant(", {}, "has no function plan(problem, rng, *, <settings>)"),
-    "not Python": ("def plan(", "def plan((", {}, "cannot be loaded (SyntaxError: "),
+    "no function": ("def plan(", "def plant(", {}, "no function plan; expected plan(problem, rng, *, <settings>)"),
+    "not Python": ("def plan(", "def plan((", {}, ": SyntaxError: "),
     "unknown workspace": ("KEPT =", 'workspaces = ("gird",)\nKEPT =', {}, "workspaces: gird: unknown; did you mean grid?"),
 }
 
@@ -224,7 +227,7 @@ def test_fault_is_told_in_one_line_before_anything_runs(fault, tmp_path):
     ("planner", "told"),
     [
         ("strait_line", "strait_line: unknown planner, and not the path of a file that ends in .py; did you mean straight_line?"),
-        ("nowhere/walk.py", "nowhere/walk.py: cannot be loaded (FileNotFoundError: "),
+        ("nowhere/walk.py", "nowhere/walk.py: FileNotFoundError: "),
     ],
 )
 def test_planner_that_is_not_there_is_told(planner, told):

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from faults import told
+from studies import arguments
 
 from bezierplan.analysis import audit
 from bezierplan.analysis.papers import elhoseny2017
@@ -68,7 +69,7 @@ def broken(rows, rule):
     return set(rows.loc[rows["rule"].str.contains(rule) & ~rows["consistent"], "place"])
 
 
-def test_where_road_maps_are_not_the_longest(rows):
+def test_where_roadmaps_are_not_the_longest(rows):
     assert broken(rows, "PRM the longest") == {"route=case2, obstacles=5, method=prm", "route=case2, obstacles=25, method=prm"}
 
 
@@ -190,10 +191,12 @@ def test_means_of_fields_follow_the_free_diagonals():
 def test_memory_is_of_the_fields_of_the_study():
     described = checked.read(FOLDER / "experiments.yaml")
     gravel = described["problems"]["gravel"]
-    assert described["workspaces"]["gravel"] == {"kind": "random_field", **elhoseny2017.GRAVEL}
-    assert {key: gravel[key] for key in elhoseny2017.GRAVEL_FIELD} == elhoseny2017.GRAVEL_FIELD
-    assert gravel["obstacles"] == list(elhoseny2017.MORE_OBSTACLES)
-    table = elhoseny2017.memory().set_index(["held", "obstacles", "side"])["megabytes"]
+    given = arguments("elhoseny2017", "memory")
+    same = {key: given[key] for key in ("radius", "clear_ends")}
+    assert described["workspaces"]["gravel"] == {"kind": "random_field", "unit": "cell", **same}
+    assert (gravel["start"], gravel["target"], gravel["side"]) == ([0, 0], [given["side"]] * 2, given["side"])
+    assert gravel["obstacles"] == given["obstacles"]
+    table = elhoseny2017.memory(**given).set_index(["held", "obstacles", "side"])["megabytes"]
     cells = table["occupied cells"]
     assert (cells.xs(500, level="side") == 501**2 / 1e6).all(), "obstacles take no cells of their own"
     assert table["certified check"].xs(500, level="side").is_monotonic_increasing, "but edges"

@@ -6,19 +6,25 @@ from pathlib import Path as File
 import numpy as np
 import pandas as pd
 import pytest
+from studies import arguments, study
 
 from bezierplan.analysis.papers import elhoseny2017
 from bezierplan.figures.panels import drawing
 from bezierplan.geometry import cell_length, curves
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
-from bezierplan.study import jobs, reading
+from bezierplan.study import jobs
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Path
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "elhoseny2017"
 PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
+
+
+def given(function):
+    """The arguments that the study gives a function."""
+    return arguments("elhoseny2017", function)
 
 
 def test_expected_lengths_are_those_of_free_and_blocked_diagonals():
@@ -42,7 +48,7 @@ def test_the_lengths_along_free_and_blocked_diagonals_are_those_of_cells4():
 
 
 def test_one_radius_fits_both_fields_best():
-    table = elhoseny2017.radius_fit(PUBLISHED)
+    table = elhoseny2017.radius_fit(PUBLISHED, **given("radius_fit"))
     least = table[table["lengths"] == "least error"]
     assert set(least["radius / side"]) == {0.025}
     assert least["mean error / mean length"].tolist() == pytest.approx([0.0395, 0.0288], abs=5e-5)
@@ -54,7 +60,7 @@ def test_one_radius_fits_both_fields_best():
 
 
 def test_the_curves_beside_the_printed_lengths():
-    frame = elhoseny2017.radius_lengths(PUBLISHED)
+    frame = elhoseny2017.radius_lengths(PUBLISHED, **given("radius_lengths"))
     assert set(frame["side"]) == {100, 200}
     own = frame[(frame["side"] == 100) & (frame["lengths"] == "printed, Case 2")]
     assert own["cells4"].tolist() == [159, 168, 183, 195, 211]
@@ -62,7 +68,7 @@ def test_the_curves_beside_the_printed_lengths():
 
 
 def colours(operator):
-    marks = elhoseny2017.crossover_and_mutation()
+    marks = elhoseny2017.crossover_and_mutation(**given("crossover_and_mutation"))
     cells = marks[(marks["operator"] == operator) & (marks["mark"] == "cell")]
     assert len(cells) == 16
     return {role: set(own["group"]) for role, own in cells.groupby("role")}
@@ -79,14 +85,14 @@ def test_mutation_changes_one_digit():
     found = colours("mutation")
     assert found["accent"] == {"0011"}
     assert found["muted"] == {"1011", "0111", "0001", "0010"}
-    marks = elhoseny2017.crossover_and_mutation()
+    marks = elhoseny2017.crossover_and_mutation(**given("crossover_and_mutation"))
     places = marks[marks["mark"] == "cell"].drop_duplicates("group").set_index("group")[["x", "y"]]
     for child in found["muted"]:
         assert np.abs(places.loc[child] - places.loc["0011"]).sum() == 1, "drawn beside its parent"
 
 
 def test_figures_may_show_baselines_by_name():
-    own = reading.load(reading.read_config({"studies": ["elhoseny2017"]}))["elhoseny2017"]
+    own = study("elhoseny2017")
     assert jobs.methods_of(own, "figure7", "fields100") == ["straight_line"]
     assert jobs.methods_of(own, "figure10", "fields100") == ["prm", "abc_ep", "ga", "mga"]
     assert jobs.caption(own, "figure7", "full").startswith(own.figures["figure7"].title)
@@ -97,7 +103,7 @@ def curve_of(marks):
 
 
 def test_the_genes_of_a_chromosome_are_those_of_its_field():
-    marks = drawing.data(elhoseny2017.chromosome())
+    marks = drawing.data(elhoseny2017.chromosome(**given("chromosome")))
     genes = marks[marks["mark"] == "cell"].sort_values(["gene", "width"])
     assert len(genes) == 50
     assert (genes["value"].to_numpy()[::2] == genes["value"].to_numpy()[1::2]).all()
@@ -120,7 +126,7 @@ def test_the_genes_of_a_chromosome_are_those_of_its_field():
 
 
 def test_ten_points_are_judged_in_turn():
-    marks = drawing.data(elhoseny2017.validation())
+    marks = drawing.data(elhoseny2017.validation(**given("validation")))
     circles = marks[marks["mark"] == "circle"]
     assert len(circles) == 3
     assert set(circles["radius"]) == {1.0}

@@ -130,11 +130,11 @@ WORDS = {
     "repeats below 0": (E, "full: 100,", "full: -1,", "experiments: routes: repeats: full: -1: expected"),
     "repeats that are true": (E, "full: 100,", "full: true,", "experiments: routes: repeats: full: True: expected"),
     "repeats in words": (E, "full: 100,", "full: many,", "experiments: routes: repeats: full: 'many': expected"),
-    "repeats of nothing": (E, "full: 100,", "full: ,", "experiments: routes: repeats: full: nothing stands here; expected"),
+    "repeats of nothing": (E, "full: 100,", "full: ,", "experiments: routes: repeats: full: has no value; expected"),
     "repeats that are a list": (E, "repeats: {", "repeats: [1] #{", "experiments: routes: repeats: [1]: expected a mapping with smoke"),
     "more chunks than jobs": (
         E,
-        "extended: 500}\n    chunk: {smoke: 2, full: 50, extended: 250}",
+        "extended: 250}\n    chunk: {smoke: 2, full: 50, extended: 250}",
         "extended: 1000000}\n    chunk: {smoke: 2, full: 50, extended: 1}",
         "experiments: routes: chunk: extended: 1: 1000000 repeats are more than 10000 chunks",
     ),
@@ -229,6 +229,19 @@ WORDS = {
         "methods: [nonsmooth,",
         "methods: [shortest_path,",
         "methods: shortest_path: a baseline; it joins by itself",
+    ),
+    "worth beside a method": (E, "worth: {baseline: rounded", "worth: {baseline: smooth", "worth: baseline: smooth: unknown"),
+    "worth in an unknown experiment": (
+        E,
+        "rounded, experiments: [routes]",
+        "rounded, experiments: [route]",
+        "worth: experiments: route: unknown; did you mean routes?",
+    ),
+    "worth beside a baseline that stays out": (
+        E,
+        "worth: {baseline: rounded, experiments: [routes]}\n\nexperiments:\n  routes:\n",
+        "worth: {baseline: random_search, experiments: [routes]}\n\nexperiments:\n  routes:\n    vary: {population: [10]}\n",
+        "worth: experiments: routes: the baseline random_search does not join it; leave it out",
     ),
     "no methods": (
         E,
@@ -351,6 +364,24 @@ WORDS = {
         "side: 1000000000: expected the side",
     ),
     # Artefacts
+    "an unknown argument of a function": (
+        C,
+        "arguments: {bits: 8, genes: 6}",
+        "arguments: {bits: 8, gene: 6}",
+        "checks: 0: arguments: gene: unknown; did you mean genes?",
+    ),
+    "an argument too few": (
+        C,
+        "arguments: {bits: 8, genes: 6}",
+        "arguments: {bits: 8}",
+        "arguments: genes: missing; genes_in_range needs it",
+    ),
+    "an argument in words": (
+        C,
+        "arguments: {bits: 8, genes: 6}",
+        "arguments: {bits: eight, genes: 6}",
+        "arguments: bits: 'eight': expected",
+    ),
     "an unknown metric of boxes": (
         A,
         "{kind: workspace, workspace: figure2, numbers: free}",
@@ -416,6 +447,66 @@ WORDS = {
         "{kind: workspace, workspace: figure2, numbers: free}",
         "{kind: tracks, experiment: routes, by: lenght, runs: 2}",
         "panels: 0: by: lenght: unknown; did you mean length?",
+    ),
+    "each of nothing": (
+        A,
+        "{kind: workspace, workspace: figure2, numbers: free}",
+        "{kind: workspace, numbers: free, each: []}",
+        "panels: 0: each: []: expected a list of at least two mappings",
+    ),
+    "each of words": (
+        A,
+        "{kind: workspace, workspace: figure2, numbers: free}",
+        "{kind: workspace, numbers: free, each: [figure2, figure2]}",
+        "panels: 0: each: 0: 'figure2': expected a mapping",
+    ),
+    "a key of one panel misspelt": (
+        A,
+        "{kind: workspace, workspace: figure2, numbers: free}",
+        "{kind: workspace, numbers: free, each: [{workspace: figure2}, {worksace: figure2}]}",
+        "panels: 0: each: 1: worksace: unknown key; did you mean workspace?",
+    ),
+    "a key of all panels misspelt": (
+        A,
+        "{kind: workspace, workspace: figure2, numbers: free}",
+        "{kind: workspace, numbrs: free, each: [{workspace: figure2}, {workspace: figure2}]}",
+        "panels: 0: numbrs: unknown key; did you mean numbers?",
+    ),
+    "a wrong value for all panels": (
+        A,
+        "{kind: workspace, workspace: figure2, numbers: free}",
+        "{kind: workspace, numbers: 3, each: [{workspace: figure2}, {workspace: figure2}]}",
+        "panels: 0: numbers: 3: expected which cells show their number",
+    ),
+    "an unknown name in one panel": (
+        A,
+        "{kind: workspace, workspace: figure2, numbers: free}",
+        "{kind: workspace, numbers: free, each: [{workspace: figure2}, {workspace: narow}]}",
+        "panels: 0: each: 1: workspace: narow: unknown; did you mean narrow?",
+    ),
+    "a key both in each and beside it": (
+        A,
+        "{kind: workspace, workspace: figure2, numbers: free}",
+        "{kind: workspace, numbers: free, each: [{workspace: figure2}, {workspace: figure2, numbers: all}]}",
+        "panels: 0: each: 1: numbers: is given beside each as well; expected it in one of the two places",
+    ),
+    "a column both in each and beside it": (
+        A,
+        "{kind: workspace, workspace: figure2, numbers: free}",
+        "{kind: boxes, experiment: routes, metric: length, where: {method: smooth}, each: [{title: one}, {where: {method: nonsmooth}}]}",
+        "panels: 0: each: 1: where: method: is given beside each as well",
+    ),
+    "each within each": (
+        A,
+        "{kind: workspace, workspace: figure2, numbers: free}",
+        "{kind: workspace, numbers: free, each: [{workspace: figure2}, {each: [{workspace: figure2}, {workspace: figure2}]}]}",
+        "panels: 0: each: 1: each: is given beside each as well",
+    ),
+    "each misspelt": (
+        A,
+        "{kind: workspace, workspace: figure2, numbers: free}",
+        "{kind: workspace, numbers: free, eahc: [{workspace: figure2}, {workspace: narrow}]}",
+        "panels: 0: eahc: unknown key; did you mean each?",
     ),
     "1e9 runs of tracks": (
         A,
@@ -564,7 +655,7 @@ WORDS = {
         "0_15,nonsmooth,generation_1pct,unstated,,generation,7\n0_15,nonsmooth,objective",
         "the same keys, metric and statistic as line 2",
     ),
-    "a column twice": (T, "problem,method,", "problem,problem,", "table1.csv: line 1: column problem stands there twice"),
+    "a column twice": (T, "problem,method,", "problem,problem,", "table1.csv: line 1: column problem is listed twice"),
     "a row that is too long": (T, "unstated,,generation,26", "unstated,,generation,26,27", "table1.csv: line 2: expected 7 values"),
     # Claims
     "a claim twice": (C, "id: C2", "id: C1", "claims.yaml: claims: C1: another one has this id already"),
@@ -625,7 +716,7 @@ WORDS = {
         "metric: [objectiv, length]}",
         "variants: metric: objectiv: unknown; did you mean objective?",
     ),
-    "a report of no": (C, "secondary: true}", "secondary: false}", "secondary: False: expected true: shown, does not decide"),
+    "a report of no": (C, "secondary: true}", "secondary: false}", "secondary: False: expected true: shown, but not counted"),
     # Assumptions
     "a default that is not in force": (
         S,
@@ -649,7 +740,7 @@ WORDS = {
         S,
         "    default: 6\n",
         "    default:\n",
-        "assumptions.yaml: assumptions: 1: default: nothing stands here; expected the value in force",
+        "assumptions.yaml: assumptions: 1: default: has no value; expected the value in force",
     ),
     "an assumption twice": (S, "id: O2\n", "id: O1\n", "assumptions.yaml: assumptions: O1: another one has this id already"),
     "an assumption of another name": (
@@ -674,7 +765,7 @@ WORDS = {
         S,
         "alternatives: [piecewise_cubic, bezier]",
         "alternatives: [bezier, bezier]",
-        "alternatives: ['bezier', 'bezier']: 'bezier' stands there twice",
+        "alternatives: ['bezier', 'bezier']: 'bezier' is listed twice",
     ),
     "an alternative of nothing": (
         S,
@@ -730,7 +821,7 @@ PLANNERS = {
         "def plan(problem, rng, *, tries: int, more: int):\n    pass\n",
         "settings: more: missing; walk.py needs it",
     ),
-    "unknown workspaces": ("workspaces = ('gird',)\n" + PLANNER, "walk.py: workspaces: ('gird',): expected kinds among grid"),
+    "unknown workspaces": ("workspaces = ('gird',)\n" + PLANNER, "walk.py: workspaces: gird: unknown; did you mean grid?"),
     "workspaces that are a word": ("workspaces = 'grid'\n" + PLANNER, "walk.py: workspaces: 'grid': expected kinds among grid"),
     "other workspaces": (
         "workspaces = ('circles',)\n" + PLANNER,

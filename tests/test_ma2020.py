@@ -6,6 +6,7 @@ from pathlib import Path as File
 import numpy as np
 import pandas as pd
 import pytest
+from studies import arguments
 
 from bezierplan.analysis import audit
 from bezierplan.analysis.papers import ma2020
@@ -19,6 +20,7 @@ from bezierplan.workspaces import files
 from bezierplan.workspaces.problem import Path
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "ma2020"
+SIDE = 20
 STUDY = checked.read(FOLDER / "experiments.yaml")
 PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
 
@@ -130,17 +132,17 @@ def test_printed_numbers(table, rows):
     [(34.6248, (12, 16)), (32.8663, (6, 19)), (31.7964, (12, 14)), (31.2144, (10, 15)), (35.4526, (10, 18)), (33.7963, (14, 14))],
 )
 def test_printed_minima_are_lattice_lengths(length, moves):
-    assert ma2020.nearest_lattice_length(length) == moves
+    assert ma2020.nearest_lattice_length(length, SIDE) == moves
     assert abs(moves[0] + moves[1] * math.sqrt(2) - length) < ma2020.LATTICE_TOLERANCE
 
 
 def test_nearest_lattice_length_is_one_of_a_path_from_corner_to_corner():
-    for length in np.linspace(ma2020.STRAIGHT, 60, 200):
-        straight, diagonal = ma2020.nearest_lattice_length(length)
+    for length in np.linspace(SIDE * math.sqrt(2), 60, 200):
+        straight, diagonal = ma2020.nearest_lattice_length(length, SIDE)
         assert straight % 2 == 0
         assert straight + 2 * diagonal >= 40
         assert diagonal >= 1
-    assert ma2020.nearest_lattice_length(35.4147) != (34, 1)  # near, but no path from corner to corner
+    assert ma2020.nearest_lattice_length(35.4147, SIDE) != (34, 1)  # near, but no path from corner to corner
 
 
 def test_lattice_lengths():
@@ -158,13 +160,13 @@ def test_lattice_lengths():
 
 def test_chance_of_lattice_lengths():
     """Against lengths drawn at random; the eight printed minima are no chance."""
-    chance = ma2020.chance_of_lattice(31, 36, ma2020.LATTICE_TOLERANCE)
+    chance = ma2020.chance_of_lattice(31, 36, ma2020.LATTICE_TOLERANCE, SIDE)
     drawn = np.random.default_rng(0).uniform(31, 36, 4000)
-    near = [straight + diagonal * math.sqrt(2) for straight, diagonal in map(ma2020.nearest_lattice_length, drawn)]
+    near = [straight + diagonal * math.sqrt(2) for straight, diagonal in (ma2020.nearest_lattice_length(length, SIDE) for length in drawn)]
     assert np.mean(np.abs(near - drawn) <= ma2020.LATTICE_TOLERANCE) == pytest.approx(chance, abs=0.012)
     assert chance == pytest.approx(0.068, abs=0.002)
     assert chance**8 < 1e-9
-    assert ma2020.chance_of_lattice(31, 36, 1.0) == pytest.approx(1)
+    assert ma2020.chance_of_lattice(31, 36, 1.0, SIDE) == pytest.approx(1)
 
 
 def test_audit():
@@ -192,7 +194,7 @@ def test_audit_sees_a_changed_number(row, value):
 
 
 def test_figure_1():
-    marks = ma2020.corners_and_curve()
+    marks = ma2020.corners_and_curve(**arguments("ma2020", "corners_and_curve"))
     lengths = {}
     for panel, own in marks.groupby("drawn"):
         for label, line in own[own["mark"] == "line"].groupby("label"):
@@ -208,11 +210,11 @@ def test_figure_1():
 
 
 def test_figure_2_swaps_the_genes_behind_the_cut():
-    marks = ma2020.crossover()
+    marks = ma2020.crossover(**arguments("ma2020", "crossover"))
     texts = marks[marks["mark"] == "text"]
     rows = {key: [int(text) for text in own.sort_values("x")["text"]] for key, own in texts.groupby(["drawn", "y"], sort=False)}
     before, after = ([rows[panel, height] for height in (1.3, 0.0)] for panel in ("before", "after"))
-    assert np.array_equal(before, ma2020.PARENTS)
+    assert np.array_equal(before, arguments("ma2020", "crossover")["parents"])
     for own, other, child in zip(before, before[::-1], after):
         assert child == own[:7] + other[7:]
     codes = np.array(before)

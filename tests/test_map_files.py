@@ -56,6 +56,26 @@ def test_colours_transparency_and_sixteen_bits_are_read(tmp_path):
     assert np.array_equal(ros_map(tmp_path, pixels=PIXELS.astype(np.uint16) * 257).occupied, ros_map(tmp_path).occupied)
 
 
+def test_a_map_that_was_saved_on_another_machine(tmp_path):
+    """Like TurtleBot3's: the image's path is that of its author, its header has a comment, all but a few pixels are unknown."""
+    rows, columns = 12, 16
+    pixels = np.full((rows, columns), 205, dtype=np.uint8)
+    pixels[3:9, 2:13] = 0
+    pixels[4:8, 3:12] = 254
+    (tmp_path / "map.pgm").write_bytes(b"P5\n# CREATOR: map_saver.cpp 0.050 m/pix\n%d %d\n255\n" % (columns, rows) + pixels.tobytes())
+    (tmp_path / "map.yaml").write_text(
+        "image: /home/somebody/map.pgm\nresolution: 0.050000\norigin: [-10.000000, -10.000000, 0.000000]\nnegate: 0\n"
+        "occupied_thresh: 0.65\nfree_thresh: 0.196\n\n"
+    )
+    grid = files.load({"kind": "ros_map", "unit": "m", "file": "map.yaml"}, tmp_path)
+    assert np.array_equal(~grid.occupied, (pixels == 254)[::-1])
+    assert grid.bounds == pytest.approx((-10.0, -9.2, -10.0, -9.4))
+    assert files.sources({"kind": "ros_map", "unit": "m", "file": "map.yaml"}, tmp_path)[1] == tmp_path / "map.pgm"
+    (tmp_path / "map.pgm").unlink()
+    with pytest.raises(ValueError, match=r"image: /home/somebody/map\.pgm: no such file"):
+        files.load({"kind": "ros_map", "unit": "m", "file": "map.yaml"}, tmp_path)
+
+
 def test_negated_colours(tmp_path):
     assert np.array_equal(ros_map(tmp_path, YAML.replace("negate: 0", "negate: 1"), 255 - PIXELS).occupied, ros_map(tmp_path).occupied)
 

@@ -7,6 +7,7 @@ from pathlib import Path as File
 import numpy as np
 import pandas as pd
 import pytest
+from studies import arguments, study
 
 from bezierplan.analysis.papers import meledje
 from bezierplan.figures.panels import drawing
@@ -25,7 +26,7 @@ from bezierplan.workspaces.ground import centres, cheapest, edge_energy, ground_
 from bezierplan.workspaces.problem import Path, Problem
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "meledje"
-STUDY = reading.load([FOLDER])["meledje"]
+STUDY = study("meledje")
 PUBLISHED = {file.stem: pd.read_csv(file) for file in (FOLDER / "published").glob("*.csv")}
 
 
@@ -44,11 +45,11 @@ def test_counts_of_the_published_tables_add_to_the_trials():
     for name in ("table2", "table3", "table4", "table5"):
         counts = PUBLISHED[name].query("statistic == 'count'").groupby("method")["value"]
         assert (counts.size() == 3).all()
-        assert (counts.sum() == meledje.TRIALS).all()
+        assert (counts.sum() == 100).all()
 
 
 def test_repeats_are_the_trials_of_the_paper():
-    assert STUDY.experiments["operators"].repeats["full"] == meledje.TRIALS
+    assert STUDY.experiments["operators"].repeats["full"] == 100
     assert STUDY.experiments["operators"].seeds == "shared"
 
 
@@ -126,7 +127,7 @@ def test_the_robot_plans_again_from_the_cell_where_it_is(environment, percent):
 
 
 def test_chromosome_shows_the_numbers_of_the_paper():
-    marks = drawing.data(meledje.chromosome())
+    marks = drawing.data(meledje.chromosome(**arguments("meledje", "chromosome")))
     genes = marks[(marks["part"] == "genes") & (marks["mark"] == "text") & marks["text"].str.isdigit()]
     assert genes["text"].astype(int).to_list() == [1, 41, 65, 35, 38, 60, 100]
     line = marks[marks["mark"] == "line"]
@@ -135,17 +136,26 @@ def test_chromosome_shows_the_numbers_of_the_paper():
 
 
 def test_children_of_the_drawn_crossover_exchange_their_tails():
-    marks = drawing.data(meledje.crossover())
+    marks = drawing.data(meledje.crossover(**arguments("meledje", "crossover")))
     texts = marks[marks["mark"] == "text"]
     rows = {part: [own["text"].astype(int).to_list() for _, own in of.groupby("y", sort=False)] for part, of in texts.groupby("part")}
     one, other = rows["parents"]
     assert rows["children"] == [one[:3] + other[3:], other[:3] + one[3:]]
 
 
+def test_drawn_mutations_have_the_settings_in_force():
+    given, settings = arguments("meledje", "mutations"), STUDY.resolved("proposed")
+    assert given["any_node"] == (settings["without_obstacle"] == "any_node")
+    assert given["beside_obstacle"] == (settings["obstacle_node"] == "neighbour")
+    assert given["same_signs"] == (settings["direction"] == "same_signs")
+    assert given["whole_path"] == (settings["ref21_test"] == "path")
+    assert (given["keep_better"], given["penalty"]) == (settings["keep_better"], settings["penalty"])
+
+
 def test_drawn_mutations_show_what_is_said_of_them():
     home = workspace("operators")
     ground = ground_of(home, 1.0)
-    marks = drawing.data(meledje.mutations(home))
+    marks = drawing.data(meledje.mutations(home, **arguments("meledje", "mutations")))
     met = {}
     for (operator, label), line in marks[marks["mark"] == "line"].groupby(["operator", "group"]):
         cells = (np.floor(line["y"]) * 10 + np.floor(line["x"])).astype(int).tolist()

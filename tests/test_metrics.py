@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from bezierplan.analysis import measures, metrics
 from bezierplan.workspaces.grid import from_lines
-from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.problem import Path, Problem
 
 # One occupied cell, x and y from 10 to 20.
 GRID = from_lines(["....", "....", ".#..", "...."], 10.0, "unit")
@@ -223,3 +223,31 @@ def test_an_outlier_lies_more_than_one_and_a_half_ranges_beyond_a_quartile(end, 
     expected = [0.0] * 18
     expected[0 if end == "low" else 8] = outlier
     assert metrics.values(table, "outlier", PROBLEMS).to_list() == expected
+
+
+def rounded_corner(radius):
+    """A leg of length 5, a quarter of a circle as one cubic piece, a leg of length 5."""
+    k = 4 / 3 * math.tan(math.pi / 8) * radius
+    x = [0, 5 / 3, 10 / 3, 5, 5 + k, 5 + radius, 5 + radius, 5 + radius, 5 + radius, 5 + radius]
+    y = [0, 0, 0, 0, 0, radius - k, radius, radius + 5 / 3, radius + 10 / 3, radius + 5]
+    return Path("cubic_chain", np.column_stack([x, y]).astype(float))
+
+
+@pytest.mark.parametrize("radius", [1.0, 2.0, 4.0])
+def test_bending_of_an_arc_is_its_angle_over_its_radius_and_its_largest_turn_that_of_one_part(radius):
+    path = rounded_corner(radius)
+    assert measures.bending(path) == pytest.approx(math.pi / 2 / radius, rel=0.05)
+    assert measures.max_turn(path) == pytest.approx(math.degrees(measures.BENDING_PART / radius), rel=0.05)
+
+
+def test_a_corner_bends_by_its_squared_angle_over_the_length_of_a_part():
+    corner = Path("polyline", np.array([[0.0, 0], [3, 0], [3, 3]]))
+    assert measures.bending(corner) == pytest.approx((math.pi / 2) ** 2 / measures.BENDING_PART)
+    assert measures.max_turn(corner) == pytest.approx(90)
+
+
+def test_what_is_straight_does_not_bend():
+    for path in (Path("polyline", np.array([[0.0, 0], [1, 1], [4, 4]])), Path("bezier", np.array([[0.0, 0], [1, 2], [4, 8]]))):
+        assert measures.bending(path) == pytest.approx(0, abs=1e-12)
+        assert measures.max_turn(path) == pytest.approx(0, abs=1e-5)
+    assert measures.bending(Path("polyline", np.zeros((2, 2)))) == 0

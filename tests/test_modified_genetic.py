@@ -11,7 +11,7 @@ from bezierplan.geometry.checker import check as certified
 from bezierplan.geometry.curves import bezier_pieces
 from bezierplan.geometry.region import region
 from bezierplan.planners import modified_genetic as planner
-from bezierplan.planners.parts import diversity, gene_curves, gene_lists
+from bezierplan.planners.parts import diversity, gene_curves, gene_lattice, gene_lists
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
@@ -507,3 +507,72 @@ def test_settings_that_do_not_fit():
     with pytest.raises(ValueError, match="first_points: 60; a curve has at most 59"):
         planner.check(SETTINGS | {"first_points": 60})
     planner.check(SETTINGS)
+
+
+# MGA-C: what it takes to get through a maze.
+
+WALLED = np.zeros((9, 9), dtype=bool)
+WALLED[3, :7] = WALLED[6, 2:] = True  # back and forth
+
+
+def maze():
+    grid = Grid(WALLED, 1.0, "cell")
+    return grid, planner.field_of(grid, np.array([[0.5, 0.5], [8.5, 8.5]]), "cell", "columns", "geodesic")
+
+
+def test_points_are_joined_by_their_distance_over_free_cells():
+    """Along the maze's corridors, although the projection on the line from start to target has them in another order."""
+    _, maze_field = maze()
+    way = [(4, 0), (8, 2), (8, 4), (3, 4), (0, 6), (1, 8), (6, 8)]
+    genes = np.sort(np.array([9 * x + y for x, y in way]))
+    inner = gene_lattice.polygon(genes, maze_field)[1:-1]
+    assert inner.tolist() == [[x + 0.5, y + 0.5] for x, y in way]
+
+
+def test_first_population_from_roadmaps_holds_free_points_that_lead_through_the_maze():
+    grid, maze_field = maze()
+    task = Problem("maze", grid, (0.5, 0.5), (8.5, 8.5))
+    first, counts = planner._from_roadmaps(task, np.random.default_rng(1), maze_field, wanted=5, most=50, nodes=60, neighbours=8)
+    assert len(first) == len(counts) > 0
+    for ones, count in zip(first, counts):
+        genes = ones[:count]
+        assert np.all(np.diff(genes) > 0)
+        assert maze_field.settable[genes].all()
+        # The way leads through both gaps.
+        points = maze_field.points[genes]
+        assert ((points[:, 0] >= 6) & (points[:, 1] < 7)).any()
+        assert ((points[:, 0] <= 3) & (points[:, 1] > 2)).any()
+
+
+def test_no_roadmap_gives_no_chromosome():
+    grid, maze_field = maze()
+    task = Problem("maze", grid, (0.5, 0.5), (8.5, 8.5))
+    first, counts = planner._from_roadmaps(task, np.random.default_rng(1), maze_field, wanted=5, most=0, nodes=60, neighbours=8)
+    assert first.shape[0] == len(counts) == 0
+
+
+def test_a_change_removes_adds_or_shifts_one_point_each_as_often():
+    _, maze_field = maze()
+    rng, before = np.random.default_rng(2), {9 * 4 + 0, 9 * 8 + 4, 9 * 0 + 6}
+    tally = {-1: 0, 0: 0, 1: 0}
+    for _ in range(3000):
+        child = np.zeros(planner._ROOM, dtype=np.int64)
+        child[:3] = sorted(before)
+        count = planner._change_point(rng, child, 3, maze_field)
+        after = set(child[:count].tolist())
+        assert len(after) == count
+        assert maze_field.settable[list(after)].all()
+        assert len(before - after) == (count <= 3 and after != before)
+        tally[count - 3] += 1
+    assert tally[-1] / 3000 == pytest.approx(1 / 3, abs=0.04)
+    # Of the additions, those that draw a point that is there already change nothing.
+    assert tally[1] / 3000 == pytest.approx(1 / 3, abs=0.04)
+
+
+def test_the_last_point_is_never_removed():
+    _, maze_field = maze()
+    rng = np.random.default_rng(3)
+    for _ in range(200):
+        child = np.zeros(planner._ROOM, dtype=np.int64)
+        child[0] = 9 * 4
+        assert planner._change_point(rng, child, 1, maze_field) >= 1

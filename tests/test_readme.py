@@ -37,6 +37,7 @@ DRY = {
     "snakemake song2016_table1": "snakemake -n song2016_table1",
     "snakemake results/extended/song2016/figures/figure4.svg": "snakemake -n results/extended/song2016/figures/figure4.svg",
     "snakemake alternatives": "snakemake -n alternatives",
+    "snakemake readings": "snakemake -n readings",
     "snakemake extended --executor slurm --jobs 100 --default-resources slurm_partition=PARTITION mem_mb=2000 runtime=30": (
         "snakemake -n extended --jobs 100 --default-resources slurm_partition=PARTITION mem_mb=2000 runtime=30"
     ),

@@ -1,14 +1,14 @@
 """One run again, from its name alone."""
 
 import pytest
+from studies import study
 
 from bezierplan.commands import replay
 from bezierplan.running import execution, problems
-from bezierplan.study import reading
 from bezierplan.study.checked import Fault
 from bezierplan.study.jobs import job, problems_job
 
-STUDIES = reading.load(reading.read_config({"studies": ["song2016"]}))
+STUDIES = {"song2016": study("song2016")}
 
 
 def test_run_made_again_equals_the_row_of_its_chunk(tmp_path):

@@ -1,11 +1,13 @@
 """What only one study needs: its functions for claims, its data for figures, and its audit; and that its files name what exists."""
 
 import math
-from pathlib import Path as File
 
 import numpy as np
 import pandas as pd
 import pytest
+from studies import FOLDER as STUDIES
+from studies import KEYS, arguments
+from studies import study as shared
 
 from bezierplan.analysis import audit, metrics
 from bezierplan.analysis.papers import song2016, tharwat2018
@@ -17,10 +19,10 @@ from bezierplan.study import checked, checks, reading
 from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
 
-STUDIES = File(__file__).parents[1] / "config" / "studies"
 THARWAT = checked.read(STUDIES / "tharwat2018" / "experiments.yaml")
 # Of the planner's settings in force.
 SAMPLES, BETA = 100, 100.0
+SEQUENCES = arguments("tharwat2018", "chaotic_sequences")
 
 
 def published(study):
@@ -38,13 +40,13 @@ def faults(rows):
 
 
 def test_genes_stay_in_range():
-    assert song2016.genes_in_range({}, {}, {}) == ("+", 0.0, None, song2016.TRIALS)
+    assert song2016.genes_in_range({}, {}, {}, bits=8, genes=6) == ("+", 0.0, None, song2016.TRIALS)
 
 
 def test_genes_out_of_range_are_counted(monkeypatch):
     monkeypatch.setattr(song2016, "TRIALS", 3)
     monkeypatch.setattr(song2016, "complement_bit", lambda genes, bit, bits: genes.fill(256))
-    assert song2016.genes_in_range({}, {}, {}) == ("-", 3.0 * song2016.GENES, None, 3)
+    assert song2016.genes_in_range({}, {}, {}, bits=8, genes=6) == ("-", 18.0, None, 3)
 
 
 def test_audit_of_song2016():
@@ -52,26 +54,27 @@ def test_audit_of_song2016():
     assert len(rows) == 8
     assert not faults(rows)
     late = published("song2016")["table1"].replace({"value": {26.0: 101.0}})
-    assert len(faults(song2016.audit({"table1": late}))) == (late["value"] == 101).sum() > 0
+    assert len(faults(song2016.audit(published("song2016") | {"table1": late}))) == (late["value"] == 101).sum() > 0
 
 
 def test_chaotic_sequences():
-    table = tharwat2018.chaotic_sequences()
+    parameters = chaotic_maps.Parameters(**{name: SEQUENCES[name] for name in chaotic_maps.Parameters._fields})
+    table = tharwat2018.chaotic_sequences(**SEQUENCES)
     assert table.groupby("map").size().to_dict() == dict.fromkeys(tharwat2018.CHAOTIC, 500)
     assert table["value"].between(0, 1).all()
     for name, own in table.groupby("map"):
-        again = chaotic_maps.sequence(name, own["value"].iloc[0], 500, tharwat2018.PARAMETERS)
+        again = chaotic_maps.sequence(name, own["value"].iloc[0], 500, parameters)
         assert again.values.tolist() == own["value"].to_list()
         assert again.collapsed_at == 0
 
 
 def test_parameters_of_the_maps_are_those_in_force():
-    assert {name: THARWAT["settings"][name] for name in tharwat2018.PARAMETERS._fields} == tharwat2018.PARAMETERS._asdict()
+    assert all(SEQUENCES[name] == THARWAT["settings"][name] for name in chaotic_maps.Parameters._fields)
 
 
 def test_gauss_above():
     """The exact share is 1 - log2(1.7)."""
-    mark, share, (low, high), sequences = tharwat2018.gauss_above({}, {}, {})
+    mark, share, (low, high), sequences = tharwat2018.gauss_above({}, {}, {}, limit=0.7)
     assert (mark, sequences) == ("-", tharwat2018.SEQUENCES)
     assert low < 1 - math.log2(1.7) < high
     assert low < share < high
@@ -225,7 +228,7 @@ def test_several_homotopy_classes(runs, mark, classes, counted):
 
 
 def test_ends_are_those_of_the_problems():
-    marks = tharwat2018.ends(problem("equal").workspace).set_index("role")[["x", "y"]]
+    marks = tharwat2018.ends(problem("equal").workspace, **arguments("tharwat2018", "ends")).set_index("role")[["x", "y"]]
     for described in THARWAT["problems"].values():
         assert marks.loc["start"].to_list() == described["start"]
         assert marks.loc["target"].to_list() == described["target"]
@@ -233,13 +236,14 @@ def test_ends_are_those_of_the_problems():
 
 def test_movement_follows_equation_8():
     """The parts of each velocity join head to tail from the particle's place to its next one; C1 and C2 are those in force."""
-    assert tuple(THARWAT["settings"][name] for name in ("inertia", "c1", "c2")) == (tharwat2018.INERTIA, tharwat2018.C1, tharwat2018.C2)
-    marks = tharwat2018.movement()
-    for number, (x, v, p, r1, r2) in enumerate(tharwat2018.MOVED_PARTICLES):
+    given = arguments("tharwat2018", "movement")
+    assert all(given[name] == THARWAT["settings"][name] for name in ("inertia", "c1", "c2"))
+    marks = tharwat2018.movement(**given)
+    for number, (x, v, p, r1, r2) in enumerate(given["particles"]):
         arrows = [marks[marks["group"] == f"{part} {number}"]["x"].to_list() for part in ("inertia", "cognition", "social part")]
         assert arrows[0][0] == x
         assert [head for _, head in arrows[:-1]] == [tail for tail, _ in arrows[1:]]
-        moved = x + v + 1.5 * r1 * (p - x) + 1.5 * r2 * (tharwat2018.G - x)
+        moved = x + v + 1.5 * r1 * (p - x) + 1.5 * r2 * (given["best"] - x)
         assert arrows[-1][1] == pytest.approx(moved)
         assert marks.loc[marks["group"] == f"new x {number}", "x"].item() == pytest.approx(moved)
 
@@ -284,7 +288,7 @@ def test_audit_sees_a_changed_number(table, metric):
 
 def test_published_numbers_of_tharwat2018():
     tables = published("tharwat2018")
-    assert [len(tables[name]) for name in tharwat2018.RANKED] == [3 * rows for rows in tharwat2018.RANKED.values()]
+    assert [len(tables[name]) for name in tharwat2018.RANKED] == [3 * rows for rows in (8, 8, 5, 10)]
     best = tables["table4"].query("metric == 'objective'").set_index("method")["value"]
     assert (best["cpso2_gauss"], best["cpso2_singer"]) == (14.90, 10.21)
     for name in tharwat2018.RANKED:
@@ -304,12 +308,20 @@ def test_methods_of_tharwat2018():
     assert set(plan.history.tolist()) == {plan.objective}
 
 
-@pytest.mark.parametrize("folder", sorted(STUDIES.iterdir()), ids=lambda folder: folder.name)
-def test_every_default_of_an_assumption_is_in_force(folder):
+@pytest.mark.parametrize("key", KEYS)
+def test_study_is_free_of_faults(key):
+    """All checks pass, and no test has changed the copy that all of them share."""
+    study = reading.read_study(STUDIES / key)
+    checks.check(study)
+    assert study == shared(key)
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_every_default_of_an_assumption_is_in_force(key):
     """Of all five studies; `load` refuses a default that is not, which is tried here with a value that no setting has."""
-    study = reading.read_study(folder)
+    study = shared(key)
     governed = [assumption for assumption in study.assumptions if assumption.setting]
-    assert len(governed) >= {"song2016": 9, "tharwat2018": 15, "ma2020": 14}.get(folder.name, 5)
+    assert len(governed) >= {"song2016": 9, "tharwat2018": 15, "ma2020": 14}.get(key, 5)
     for assumption in governed:
         checks.check_assumption(study, assumption, "here")
         named = isinstance(assumption.default, dict)

@@ -8,7 +8,7 @@ import pytest
 from faults import told
 
 from bezierplan.running import execution
-from bezierplan.study import jobs, keys, reading
+from bezierplan.study import artefacts, jobs, keys, model, reading
 from bezierplan.study.checked import Fault
 
 SONG = Path(__file__).parents[1] / "config" / "studies" / "song2016"
@@ -37,7 +37,7 @@ FAULTS = {
         "start_cel: 0,",
         "problems: 0_15: start_cel: unknown key; did you mean start_cell?",
     ),
-    "key given twice": (EXPERIMENTS, "  generations: 100 ", "  population: 100 ", "population: this key stands here twice"),
+    "key given twice": (EXPERIMENTS, "  generations: 100 ", "  population: 100 ", "population: this key is given twice"),
     "wrong type of a setting": (EXPERIMENTS, "population: 200", "population: many", "population: 'many'; expected a whole number"),
     "wrong type of a cell": (EXPERIMENTS, "cell: 10,", "cell: ten,", "cell: 'ten': expected the side of a cell"),
     "wrong type of repeats": (EXPERIMENTS, "full: 100,", "full: 1.5,", "full: 1.5: expected a whole number"),
@@ -251,6 +251,22 @@ def test_settings_of_a_problem_stand_between_those_of_the_study_and_of_a_method(
     assert "settings" not in jobs.job(study, "routes", "shortest_path", "smoke", 0)["problems"]["0_255"]
     assert "On 0 to 255: genes 5, samples 7, generations 9" in jobs.caption(study, "table1", "smoke")
     assert all("settings" not in problem for problem in jobs.problems_job(study, "routes", "smoke")["problems"].values())
+
+
+def test_panels_that_are_written_once_are_those_written_out():
+    def panels(*given):
+        figure = {"title": "A figure", "columns": 1, "panels": list(given)}
+        return model.parsed(artefacts.ArtefactsFile, {"figures": {"figure1": figure}}, "here").figures["figure1"].panels
+
+    shared = {"kind": "boxes", "experiment": "routes", "metric": "length"}
+    first = {"title": "one", "where": {"method": "smooth", "problem": ["0_15"]}, "limits": True}
+    second = {"where": {"problem": ["15_255"], "method": "smooth"}}
+    each = [{"title": "one", "where": {"problem": ["0_15"]}, "limits": True}, {"where": {"problem": ["15_255"]}}]
+    last = {"kind": "workspace", "workspace": "figure2"}
+    once = panels(shared | {"where": {"method": "smooth"}, "each": each}, last)
+    assert [panel.plain() for panel in once] == [panel.plain() for panel in panels(shared | first, shared | second, last)]
+    assert [panel.plain() for panel in once] == [shared | first, shared | second, last]
+    assert [panel.place for panel in once] == ["0: each: 0", "0: each: 1", "1"]
 
 
 def test_tables_of_keys_are_those_of_the_models():

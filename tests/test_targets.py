@@ -8,13 +8,14 @@ from types import SimpleNamespace
 import pytest
 from docutils.core import publish_parts
 from snakemake.iocontainers import OutputFiles
+from studies import study
 
 from bezierplan.running import log
-from bezierplan.study import reading, targets
+from bezierplan.study import targets
 from bezierplan.study.checked import Fault
 
-STUDIES = reading.load(reading.read_config({"studies": ["song2016"]}))
-SONG = STUDIES["song2016"]
+SONG = study("song2016")
+STUDIES = {"song2016": SONG}
 RULES = ("runs", "table", "all", "default")
 
 

@@ -69,7 +69,7 @@ def test_ways_are_those_of_the_runs(found):
     buffers = [np.empty(SETTINGS["samples"]) for _ in range(3)]
     for best, position in zip(run["history"], points[:, 1:-1]):
         length = penalised.length(position.T.ravel(), again, *buffers)
-        violation, _ = penalised.violation(buffers[0], buffers[1], again.circles, buffers[2])
+        violation, _ = penalised.violation(buffers[0], buffers[1], again, buffers[2])
         assert penalised.fitness(length, violation, again) == pytest.approx(best, rel=1e-12)
     np.testing.assert_array_equal(points[-1].ravel(), run["path_points"])
 
@@ -89,7 +89,7 @@ def test_the_best_run_of_each_of_the_commonest_values_is_drawn(found):
 
 def test_a_run_that_ends_elsewhere_is_a_fault(found):
     job = JOB | {"settings": JOB["settings"] | {"c1": 1.4}}
-    with pytest.raises(ValueError, match=r"study/routes/field,inertia=0.7/swarm/\d: made again it ends in another path"):
+    with pytest.raises(ValueError, match=r"study/routes/field,inertia=0.7/swarm/\d: its rerun ends in another path"):
         tracks.data(found._replace(jobs={"swarm": job}), by="homotopy", runs=1)
 
 

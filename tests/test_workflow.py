@@ -16,7 +16,7 @@ import yaml
 ROOT = Path(__file__).parents[1]
 TREE = ("Snakefile", "workflow", "src", "config", "profiles", "Makefile", "environment.txt", "environment-build.txt")
 GENETIC = ("nonsmooth", "smooth", "smooth_cubic", "smooth_single", "random_search")
-METHODS = (*GENETIC, "shortest_path", "straight_line")
+METHODS = (*GENETIC, "shortest_path", "straight_line", "rounded")
 EXPERIMENTS = "config/studies/song2016/experiments.yaml"
 SMALL = {
     "population: 200": "population: 10",
@@ -71,11 +71,11 @@ def runs(number, methods=METHODS):
 
 
 TABLES = {"table table1": 1, "table feasibility": 1, "claims": 1, "summary": 1}
-ARTEFACTS_OF_RUNS = TABLES | {"figure figure3": 1, "figure figure4": 1, "figure figure5": 1}
+ARTEFACTS_OF_RUNS = TABLES | {"worth": 1, "figure figure3": 1, "figure figure4": 1, "figure figure5": 1}
 
 OF_PUBLISHED = {"table table1": 1, "claims": 1, "audit": 1, "summary": 1}
 # A label is printed by what shows the thing that it names.
-OF_LABELS = {name: 1 for name in ARTEFACTS_OF_RUNS if name != "claims"}
+OF_LABELS = {name: 1 for name in ARTEFACTS_OF_RUNS if name not in ("claims", "worth")}
 
 
 @pytest.fixture(scope="module")
@@ -137,7 +137,7 @@ EDITS = {
         "src/bezierplan/analysis/measures.py",
         "FINE_SAMPLES = 4001",
         "FINE_SAMPLES = 4002",
-        TABLES | {"figure figure3": 1, "figure figure4": 1, "figure figure5": 1},
+        ARTEFACTS_OF_RUNS,
     ),
     "a kind of figure": (
         "src/bezierplan/figures/panels/convergence.py",
@@ -145,7 +145,12 @@ EDITS = {
         "from __future__ import annotations\n\nNEW = 1",
         {"figure figure4": 1},
     ),
-    "a setting of one method": (EXPERIMENTS, "samples: 701}", "samples: 701, population: 202}", runs(2, ["nonsmooth"]) | TABLES),
+    "a setting of one method": (
+        EXPERIMENTS,
+        "samples: 701}",
+        "samples: 701, population: 202}",
+        runs(2, ["nonsmooth"]) | TABLES | {"worth": 1},
+    ),
     "a setting of all methods": (EXPERIMENTS, "penalty: 10.0", "penalty: 11.0", runs(2, GENETIC) | ARTEFACTS_OF_RUNS),
     "a published number": ("config/studies/song2016/published/table1.csv", "225.4982", "225.5982", OF_PUBLISHED),
     "a map": (

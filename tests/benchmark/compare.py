@@ -40,7 +40,7 @@ GOOD = 8.0
 
 STUDY = reading.load(reading.read_config({"studies": ["tharwat2018"]}))["tharwat2018"]
 PROBLEM = Problem("public", files.load(STUDY.workspaces["public"], STUDY.folder), (0.0, 0.0), (4.0, 6.0))
-SETTINGS = STUDY.resolved("pso") | STUDY.levels["profile"]["tuned"] | {"stall_limit": 0}
+SETTINGS = STUDY.resolved("pso") | STUDY.presets["profile"]["tuned"] | {"stall_limit": 0}
 PARTICLES, ITERATIONS, DIMENSIONS = SETTINGS["particles"], SETTINGS["iterations"], 2 * SETTINGS["control_points"]
 EVALUATIONS = PARTICLES * (ITERATIONS + 1)
 LOW, HIGH = np.repeat(np.reshape(PROBLEM.workspace.bounds, (2, 2)).T, DIMENSIONS // 2, axis=1)
@@ -56,7 +56,7 @@ def _fitness(z, objective):
     fitness = np.empty(len(z))
     for i in range(len(z)):
         length = penalised.length(z[i], objective, x, y, scratch)
-        violation, _ = penalised.violation(x, y, objective.circles, scratch)
+        violation, _ = penalised.violation(x, y, objective, scratch)
         fitness[i] = penalised.fitness(length, violation, objective)
     return fitness
 
@@ -69,7 +69,7 @@ def fitness(positions: np.ndarray) -> np.ndarray:
 
 
 def ours(method: str) -> Callable[[int], float]:
-    settings = STUDY.resolved(method) | STUDY.levels["profile"]["tuned"] | {"stall_limit": 0}
+    settings = STUDY.resolved(method) | STUDY.presets["profile"]["tuned"] | {"stall_limit": 0}
     return lambda seed: chaotic_pso.plan(PROBLEM, np.random.default_rng(seed), **settings).objective
 
 

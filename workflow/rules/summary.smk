@@ -1,6 +1,23 @@
 # All studies together.
 
 
+rule worth:
+    input:
+        inputs(targets.worth_inputs),
+    output:
+        report(
+            "results/{scale}/worth.csv",
+            category="summary",
+            labels={"item": "worth", "shows": "each method beside the exact shortest path with rounded corners"},
+        ),
+    log:
+        "results/{scale}/worth.log",
+    params:
+        **params(targets.worth_params, "job", "code"),
+    script:
+        "../scripts/worth.py"
+
+
 rule summary:
     input:
         inputs(targets.summary_inputs),

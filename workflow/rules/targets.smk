@@ -1,7 +1,9 @@
 # Names for what a user may want: everything, a scale, a study, a table or figure. `snakemake --list-target-rules` lists them.
 
 try:
-    targets.check_names(STUDIES, [*(rule.name for rule in workflow.rules), "all", "smoke", "extended", "alternatives", "default"])
+    targets.check_names(
+        STUDIES, [*(rule.name for rule in workflow.rules), "all", "smoke", "extended", "alternatives", "readings", "default"]
+    )
 except checked.Fault as fault:
     sys.exit(str(fault))
 
@@ -24,6 +26,11 @@ rule extended:
 rule alternatives:
     input:
         targets.files_of_sensitivity(STUDIES, "full"),
+
+
+rule readings:
+    input:
+        targets.files_of_readings(STUDIES, "full"),
 
 
 for study in STUDIES:

@@ -15,4 +15,5 @@ with log.job(snakemake) as output:
     claims = pd.concat([pd.read_csv(file) for file in files.claims], ignore_index=True)
     numbers.to_csv(output.numbers, index=False, float_format="%.10g", lineterminator="\n")
     claims.to_csv(output.claims, index=False, float_format="%.10g", lineterminator="\n")
-    Path(output.summary).write_text(summary.report(numbers, claims, job["titles"], snakemake.wildcards.scale), encoding="utf-8")
+    report = summary.report(numbers, claims, pd.read_csv(files.worth), job["titles"], snakemake.wildcards.scale)
+    Path(output.summary).write_text(report, encoding="utf-8")

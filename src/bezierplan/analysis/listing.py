@@ -27,11 +27,11 @@ _DECIMALS = 3
 def table(
     spec: dict,
     files: list[str],
-    functions: Mapping[str, Callable[[dict[str, pd.DataFrame]], pd.DataFrame]],
+    functions: Mapping[str, Callable[..., pd.DataFrame]],
     labels: Mapping[str, str],
 ) -> pd.DataFrame:
-    """A table of kind `transcribed` (every cell as written), `function` (called with all published tables by file name), or
-    `comparison` (`beside`).
+    """A table of kind `transcribed` (every cell as written), `function` (called with all published tables by file name, and with
+    its arguments), or `comparison` (`beside`).
 
     files: of published numbers; for a transcribed table its only file; for a comparison those of its tables.
     """
@@ -40,7 +40,8 @@ def table(
         return pd.read_csv(file, dtype=str, keep_default_na=False)
     if spec["kind"] == "comparison":
         return beside(spec, {Path(file).name.partition(".")[0]: pd.read_csv(file) for file in files}, labels)
-    return functions[spec["function"]]({Path(file).stem: published_table(file) for file in files})
+    published = {Path(file).stem: published_table(file) for file in files}
+    return functions[spec["function"]](published, **spec.get("arguments", {}))
 
 
 def beside(spec: dict, comparisons: dict[str, pd.DataFrame], labels: Mapping[str, str]) -> pd.DataFrame:

@@ -339,10 +339,18 @@ def fine_bad(path: Path, grid: Grid) -> int:
 
 
 def length_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
-    """A length counted in cells (`cell_length`). Raises ValueError, naming the run, if one lies below its problem's bound."""
+    """A length counted in cells (`cell_length`). Raises ValueError, naming the run, if one lies below its problem's bound.
+
+    NaN for a path that touches an occupied cell: it is free, but along an obstacle's side rounding would decide which cells it counts, and
+    the bound is that of free cells.
+    """
     from bezierplan.geometry import cell_length
 
-    lengths = of_path_on_grid(getattr(cell_length, name), runs, problems)
+    def measure(path: Path, grid: Grid) -> float:
+        touched = cell_length.touched_cells(*cell_length.samples(path, grid))
+        return np.nan if cell_length.occupied_cells(*touched, grid.occupied) else getattr(cell_length, name)(path, grid)
+
+    lengths = of_path_on_grid(measure, runs, problems)
     for run, length, bound in zip(runs["id"], lengths, runs["octile_bound"]):
         if length < bound * (1 - 1e-12):
             raise ValueError(f"run {run} is said to be feasible, but its length {length:.12g} in cells lies below the bound {bound:.12g}")

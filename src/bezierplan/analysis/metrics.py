@@ -163,7 +163,7 @@ METRICS: dict[str, Metric] = {
     "excess_reference": Metric("u", "length - length of the best known path of the same kind", True, measures.excess_reference),
     "cells4": Metric(
         "u",
-        "cells that the path touches, 1.5 for a diagonal step",
+        "cells that the path touches, 1.5 for a diagonal step; none for a path that touches an occupied cell",
         True,
         partial(measures.length_in_cells, "length4"),
         least="octile_bound",

@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 
+from bezierplan.analysis import worth
 from bezierplan.analysis.claims.verdicts import VERDICTS
 
 NUMBERS = ("reproduced", "not told apart", "cannot fail", "not reproduced")
@@ -106,8 +107,12 @@ def markdown(table: pd.DataFrame) -> str:
     return "\n".join("| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |" for row in rows)
 
 
-def report(numbers: pd.DataFrame, claims: pd.DataFrame, titles: dict[str, str], scale: str) -> str:
-    """The summary of a scale as markdown: the outcome of each study, then its claims with their verdicts."""
+def report(numbers: pd.DataFrame, claims: pd.DataFrame, measured: pd.DataFrame, titles: dict[str, str], scale: str) -> str:
+    """The summary of a scale as markdown: the outcome of each study, what its methods are worth, then its claims with their
+    verdicts.
+
+    measured: rows with the columns `worth.COLUMNS`.
+    """
     parts = [
         f"# Outcome at scale {scale}",
         "`numbers`: published numbers that can be judged and say something new. `reproduced`: those within the central 95 % of what our "
@@ -118,6 +123,7 @@ def report(numbers: pd.DataFrame, claims: pd.DataFrame, titles: dict[str, str], 
         "are not among them. `stable`: claims with the same verdict under every reading of what the paper leaves open, out of those on "
         "which other readings were tried. Readings that do not decide are left out here; `numbers.csv` and `claims.csv` have them.",
         markdown(outcome(numbers, claims)),
+        *worth.section(measured, titles),
     ]
     for study, title in titles.items():
         own = claims[(claims["study"] == study) & claims["primary"]].set_index("id")

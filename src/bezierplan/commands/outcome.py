@@ -18,6 +18,7 @@ KEPT, README = Path("docs/outcome"), Path("README.md")
 PICTURE = "song2016/figures/figure3.png"
 BLOCK = "outcome"
 SENSITIVITY = "sensitivity.csv"
+WORTH = "worth.csv"
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
@@ -33,11 +34,13 @@ def write() -> None:
     claims = summary.with_readings(pd.read_csv(DECIDING / "claims.csv"), pd.read_csv(PAPERS_SIZE / "claims.csv"), pd.concat(tried))
     numbers = pd.read_csv(DECIDING / "numbers.csv")
     titles = {key: study.title for key, study in reading.load(reading.read_config({})).items()}
+    measured = pd.read_csv(DECIDING / WORTH)
     numbers.to_csv(KEPT / "numbers.csv", index=False)
     claims.to_csv(KEPT / "claims.csv", index=False)
-    (KEPT / "summary.md").write_text(summary.report(numbers, claims, titles, DECIDING.name), encoding="utf-8")
+    (KEPT / "summary.md").write_text(summary.report(numbers, claims, measured, titles, DECIDING.name), encoding="utf-8")
     for frame in tried:
         frame.to_csv(KEPT / f"{frame['study'].iloc[0]}_{SENSITIVITY}", index=False)
+    shutil.copyfile(DECIDING / WORTH, KEPT / WORTH)
     shutil.copyfile(PAPERS_SIZE / PICTURE, KEPT / PICTURE.replace("/figures/", "_"))
     README.write_text(summary.with_block(README.read_text(encoding="utf-8"), BLOCK, table(KEPT)), encoding="utf-8")
 

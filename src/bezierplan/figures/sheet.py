@@ -13,6 +13,7 @@ studies, with the keys that name what is shown. A kind with panels that are not 
 """
 
 import importlib
+import json
 import math
 import re
 import string
@@ -31,7 +32,7 @@ from bezierplan.figures import style
 from bezierplan.workspaces.problem import Problem, Workspace
 
 # Keys that any panel may have in addition to the options of its kind.
-PANEL_KEYS = ("kind", "title", "experiment", "where", "workspace", "data", "published")
+PANEL_KEYS = ("kind", "title", "experiment", "where", "workspace", "data", "published", "arguments", "each")
 
 
 class Scene(NamedTuple):
@@ -63,17 +64,18 @@ def data(
     """Everything that is drawn: the rows of all panels, with the panel number (0, 1, ...) in the first column.
 
     panels: kind, title, experiment or data with where (as in `analysis.results.select`) or workspace, and options of the kind. results: by
-    experiment. workspaces: by name. functions: what `data` may name; each is called once, for the table that its panels draw, with the
-    workspace if a panel names one, and with the published tables if a panel asks for them; for a panel with an experiment it is called
-    with the panel's results. published: all published tables by file name. Raises ValueError for options or runs that a kind
+    experiment. workspaces: by name. functions: what `data` may name; each is called once for all panels that draw the same table: with the
+    workspace if they name one, with the published tables if they ask for them, and with their arguments; for a panel with an experiment it
+    is called with the panel's results. published: all published tables by file name. Raises ValueError for options or runs that a kind
     cannot draw.
     """
     alone = [panel for panel in panels if "data" in panel and "experiment" not in panel]
-    wanted = {(panel["data"], panel.get("workspace")): panel.get("published", False) for panel in alone}
-    tables = {
-        (name, home): functions[name](*([workspaces[home]] if home else []), *([published] if asked else []))
-        for (name, home), asked in wanted.items()
-    }
+    tables = {}
+    for panel in alone:
+        if _call(panel) not in tables:
+            given = [workspaces[panel["workspace"]]] if "workspace" in panel else []
+            given += [published] if panel.get("published") else []
+            tables[_call(panel)] = functions[panel["data"]](*given, **panel.get("arguments", {}))
     frames = []
     for number, panel in enumerate(panels):
         options = {name: value for name, value in panel.items() if name not in PANEL_KEYS}
@@ -83,11 +85,16 @@ def data(
     return pd.concat(frames, ignore_index=True)
 
 
+def _call(panel: dict[str, Any]) -> str:
+    """The call of a panel's function: equal for panels that draw the same table."""
+    return json.dumps([panel[key] for key in ("data", "workspace", "published", "arguments") if key in panel])
+
+
 def _source(
     panel: dict[str, Any],
     results: dict[str, Results],
     workspaces: dict[str, Workspace],
-    tables: dict[tuple[str, str | None], pd.DataFrame],
+    tables: dict[str, pd.DataFrame],
     functions: Mapping[str, Callable[..., pd.DataFrame]],
 ) -> Results | tuple[Results, pd.DataFrame] | Workspace | pd.DataFrame | None:
     """What a panel draws from."""
@@ -96,7 +103,7 @@ def _source(
         found = found._replace(runs=select(found.runs, panel.get("where", {})))
         return (found, functions[panel["data"]](found)) if "data" in panel else found
     if "data" in panel:
-        return select(tables[panel["data"], panel.get("workspace")], panel.get("where", {})).copy()
+        return select(tables[_call(panel)], panel.get("where", {})).copy()
     return workspaces[panel["workspace"]] if "workspace" in panel else None
 
 

@@ -24,7 +24,7 @@ from bezierplan.workspaces.problem import Path, Problem
 
 logger = logging.getLogger(__name__)
 
-workspaces = ("circles",)
+workspaces = ("circles", "polygons")
 
 ChaoticTerm = Literal["none", "cognitive", "social"]
 RandomNumbers = Literal["dimension", "particle", "iteration"]
@@ -268,13 +268,11 @@ class _Rules(NamedTuple):
 
 def _objective(problem: Problem, settings: Settings) -> Objective:
     ends, free = _basis(settings.curve, settings.control_points, settings.samples)
-    field = problem.workspace
-    circles = np.empty((len(field.radii), 3))
-    circles[:, :2], circles[:, 2] = field.centres, field.radii + settings.d_min
     return Objective(
         ends=np.array([problem.start, problem.target]).T @ ends,
         free=free,
-        circles=circles,
+        circles=penalised.round_obstacles(problem.workspace, settings.d_min),
+        polygons=penalised.polygonal_obstacles(problem.workspace, settings.d_min),
         penalty=get_args(Penalty).index(settings.penalty),
         beta=float(settings.beta),
     )
@@ -369,7 +367,7 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
             length = penalised.length(x[i], objective, curve_x, curve_y, scratch)
             if not rules.count_collisions and penalised.least_fitness(length, objective) >= p_fitness[i]:
                 continue
-            violation, colliding = penalised.violation(curve_x, curve_y, objective.circles, scratch)
+            violation, colliding = penalised.violation(curve_x, curve_y, objective, scratch)
             infeasible += violation > FEASIBLE
             colliding_samples += colliding
             fitness = penalised.fitness(length, violation, objective)

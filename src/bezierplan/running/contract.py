@@ -1,10 +1,9 @@
-"""Contract tests for a planner, from this package or your own: the requirements of `problem.py`, on small and degenerate problems.
+"""Contract tests for a planner, from this package or your own: the requirements of `planners`, on small and degenerate problems.
 
 Every setting of a planner needs a value. The planner counts its own budget: the tests check its count, not its actual work.
 """
 
 import copy
-import inspect
 import itertools
 import math
 import random
@@ -18,8 +17,8 @@ from numba import njit
 
 from bezierplan.geometry import checker, curves
 from bezierplan.geometry.region import Region, region
-from bezierplan.planners import Plan, Range, known_planners, planner_module, planner_settings, setting_fault
-from bezierplan.running import answer
+from bezierplan.planners import Plan, Range, known_planners, planner_settings, setting_fault
+from bezierplan.running import answer, interface
 from bezierplan.running.execution import TAKEN
 from bezierplan.study.checked import Fault, closest
 from bezierplan.workspaces import grid
@@ -63,32 +62,7 @@ def check_planner(planner: str, settings: dict[str, Any]) -> Iterator[Finding]:
 def _loaded(planner: str) -> ModuleType:
     if not planner.endswith(".py") and planner not in known_planners():
         raise Fault(f"{planner}: unknown planner, and not the path of a file that ends in .py{closest(planner, known_planners())}")
-    try:
-        module = planner_module(planner)
-    except Exception as error:  # a user's file can fail in any way
-        raise Fault(f"{planner}: cannot be loaded ({_told(error)})") from error
-    if not inspect.isfunction(getattr(module, "plan", None)):
-        raise Fault(f"{planner}: has no function plan(problem, rng, *, <settings>)")
-    unknown = set(getattr(module, "workspaces", ())) - set(PROBLEMS)
-    if unknown:
-        raise Fault(f"{planner}: workspaces: {min(unknown)}: unknown{closest(min(unknown), PROBLEMS)}")
-    _check_signature(module, planner)
-    return module
-
-
-def _check_signature(module: ModuleType, planner: str) -> None:
-    """Raise Fault unless every setting is annotated as `problem.py` requires, without a default value."""
-    expected = "expected bool, int, float, Literal, or Annotated with a Range"
-    for name, parameter in inspect.signature(module.plan).parameters.items():
-        if parameter.kind is inspect.Parameter.KEYWORD_ONLY and parameter.annotation is inspect.Parameter.empty:
-            raise Fault(f"{planner}: setting {name}: has no annotation; {expected}")
-        if parameter.default is not inspect.Parameter.empty:
-            raise Fault(f"{planner}: setting {name}: has a default value; a study gives a value to every setting")
-    for name, annotation in planner_settings(module).items():
-        try:
-            _wanted(annotation)
-        except KeyError:
-            raise Fault(f"{planner}: setting {name}: is annotated with {inspect.formatannotation(annotation)}; {expected}") from None
+    return interface.loaded(planner, planner)
 
 
 def _check_settings(module: ModuleType, settings: dict[str, Any], planner: str) -> list[Finding]:

@@ -1,12 +1,14 @@
 """Models of `artefacts.yaml`: tables and figures, and how names are printed."""
 
-from typing import Annotated, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import Field, PlainValidator, TypeAdapter, ValidationError
 
-from bezierplan.figures.panels import Panel, kinds
+from bezierplan.figures.panels import EACH, Panel, kinds
 from bezierplan.study.experiments import File
 from bezierplan.study.model import (
+    ARGUMENTS,
+    Arguments,
     Column,
     Experiment,
     Function,
@@ -18,9 +20,11 @@ from bezierplan.study.model import (
     Statistic,
     Where,
     Whole,
+    first_fault,
     listed,
     one_of,
     one_or_list,
+    wrong,
 )
 
 PublishedFile = Annotated[File, Names("published")]
@@ -90,6 +94,7 @@ class FunctionTable(Table):
     function: Function = Field(
         description="the name of a function of `src/bezierplan/analysis/papers/<study>.py`, called with all published tables by file name"
     )
+    arguments: Arguments = Field({}, description=ARGUMENTS)
 
 
 class Comparison(Table):
@@ -105,12 +110,61 @@ TABLES = {model.model_fields["kind"].annotation.__args__[0]: model for model in 
 """Kind -> its model."""
 
 
+class Each(Model):
+    """The part of a panel that makes it several."""
+
+    each: list[dict[str, Any]] = Field(min_length=2, description=EACH)
+
+
+_PANEL = TypeAdapter(Annotated[Panel, one_of("kind", kinds())])
+
+
+def _expanded(given: Any) -> dict[str, Panel]:
+    """The panels that an entry in a list of panels stands for, by the keys in it that lead to them."""
+    if not isinstance(given, dict) or "each" not in given:
+        return {"": _PANEL.validate_python(given)}
+    panels = {}
+    for number, own in enumerate(Each(each=given["each"]).each):
+        place = f"each: {number}"
+        try:
+            joined = _joined(own, given, place)
+            panels[place] = _PANEL.validate_python({key: value for key, value in joined.items() if key != "each"})
+        except ValidationError as error:
+            path = first_fault(error)
+            key = path[0].split(":")[0]
+            raise wrong(": ".join(path if key in given and key not in own else [place, *path])) from None
+    return panels
+
+
+def _joined(own: dict[str, Any], shared: dict[str, Any], place: str) -> dict[str, Any]:
+    """The keys of both; mappings that stand in both are joined likewise."""
+    joined = own | shared
+    for key in own.keys() & shared.keys():
+        if not (isinstance(own[key], dict) and isinstance(shared[key], dict)):
+            raise wrong(f"{place}: {key}: is given beside each as well; expected it in one of the two places")
+        joined[key] = _joined(own[key], shared[key], f"{place}: {key}")
+    return joined
+
+
+_ENTRIES = TypeAdapter(Annotated[list[Annotated[Any, PlainValidator(_expanded)]], Field(min_length=1)])
+
+
+def _panels(given: Any) -> list[Panel]:
+    """The panels of a figure, each with its place in the list that is given."""
+    panels = []
+    for number, entry in enumerate(_ENTRIES.validate_python(given)):
+        for place, panel in entry.items():
+            panel._place = f"{number}: {place}" if place else str(number)
+            panels.append(panel)
+    return panels
+
+
 class Figure(Model):
     """Panels on one sheet."""
 
     title: Line = Field(description="one line")
     columns: Literal[1, 2, 3, 4, 5] = Field(description="panels side by side, 1 to 5")
-    panels: list[Annotated[Panel, one_of("kind", kinds())]] = Field(description="a list of panels", min_length=1)
+    panels: Annotated[list[Panel], PlainValidator(_panels)] = Field(description="a list of panels")
 
 
 class ArtefactsFile(Model):

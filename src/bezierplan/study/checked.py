@@ -50,7 +50,7 @@ def _mapping(loader: _Loader, node: yaml.MappingNode) -> dict:
         if not isinstance(key, yaml.ScalarNode):
             raise yaml.MarkedYAMLError(problem="a key is a list or a mapping; expected a name", problem_mark=key.start_mark)
         if key.value in content:
-            raise yaml.MarkedYAMLError(problem=f"{key.value}: this key stands here twice", problem_mark=key.start_mark)
+            raise yaml.MarkedYAMLError(problem=f"{key.value}: this key is given twice", problem_mark=key.start_mark)
         # Names are text even when they look like numbers.
         content[key.value] = loader.construct_object(value, deep=True)
     return content

@@ -3,9 +3,12 @@ numbers. Every fault is reported in one line.
 """
 
 import importlib
+import inspect
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, partial
 from typing import Any
+
+from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.claims.kinds import Check
@@ -22,7 +25,7 @@ from bezierplan.study.design import Design, in_first_variant
 from bezierplan.study.experiments import WORKSPACES
 from bezierplan.study.files import inside
 from bezierplan.study.jobs import job
-from bezierplan.study.model import Model, named, one_or_list
+from bezierplan.study.model import Model, first_fault, named, one_or_list
 from bezierplan.study.planner_checks import asked, check_complete, check_settings, loaded
 from bezierplan.workspaces import files
 from bezierplan.workspaces.problem import Problem
@@ -38,8 +41,8 @@ def check(study: Study) -> None:
     for name, figure in study.figures.items():
         if name in study.tables:
             raise Fault(f"{place}: figures: {name}: a table has this name already")
-        for number, panel in enumerate(figure.panels):
-            _check_names(design, functions, panel, f"{place}: figures: {name}: panels: {number}")
+        for panel in figure.panels:
+            _check_names(design, functions, panel, f"{place}: figures: {name}: panels: {panel.place}")
     place = relative(study.folder / "claims.yaml")
     _check_ids(study.claims, f"{place}: claims")
     for claim in study.claims:
@@ -64,10 +67,10 @@ def _known(name: Any, known: Iterable[Any], place: str) -> None:
         raise Fault(f"{place}: {name}: unknown{closest(name, known)}")
 
 
-def _functions(study: Study) -> list[str]:
-    """Names of the public functions of a study's module."""
+def _functions(study: Study) -> dict[str, Callable]:
+    """The public functions of a study's module, by name."""
     names = vars(importlib.import_module(study.module())) if study.module() else {}
-    return [name for name, value in names.items() if callable(value) and not name.startswith("_")]
+    return {name: value for name, value in names.items() if callable(value) and not name.startswith("_")}
 
 
 # experiments.yaml
@@ -100,6 +103,8 @@ def _check_experiments(study: Study, place: str) -> None:
         _check_problem(study, built, name, f"{place}: problems: {name}")
     for name in study.experiments:
         _check_experiment(study, built, name, f"{place}: experiments: {name}")
+    if study.worth:
+        _check_worth(study, f"{place}: worth")
 
 
 def _check_shared_settings(study: Study, used: set[str], place: str) -> None:
@@ -187,6 +192,16 @@ def _check_experiment(study: Study, built: Callable[[str], Problem], name: str, 
         _check_method_in(study, built, name, method, place)
 
 
+def _check_worth(study: Study, place: str) -> None:
+    """The methods of each experiment have the baseline beside them."""
+    baseline = study.worth.baseline
+    _known(baseline, study.baselines, f"{place}: baseline")
+    for experiment in study.worth.experiments:
+        _known(experiment, study.experiments, f"{place}: experiments")
+        if baseline not in study.methods_of(experiment):
+            raise Fault(f"{place}: experiments: {experiment}: the baseline {baseline} does not join it; leave it out")
+
+
 def _check_method_in(study: Study, built: Callable[[str], Problem], name: str, method: str, place: str) -> None:
     """A method's planner supports the problems of an experiment, and its settings are valid under every condition."""
     module, experiment = planner_module(study.planner(method)), study.experiments[name]
@@ -208,7 +223,7 @@ def _check_method_in(study: Study, built: Callable[[str], Problem], name: str, m
 # Names defined elsewhere, in artefacts.yaml and claims.yaml
 
 
-def _check_names(design: Design, functions: list[str], model: Model, place: str) -> None:
+def _check_names(design: Design, functions: dict[str, Callable], model: Model, place: str) -> None:
     """Names in a model refer to something that exists. The columns of a panel without runs belong to its function."""
     study = design.study
     experiments = one_or_list(getattr(model, "experiment", None) or [])
@@ -236,6 +251,24 @@ def _check_names(design: Design, functions: list[str], model: Model, place: str)
             design.check_where(experiments, name, where, baselines=not isinstance(model, Check))
         elif what == "published":
             inside(study.folder, f"published/{name}", f"{where}: {name}")
+        if what == "function" and len(path) == 1:
+            _check_arguments(functions[name], getattr(model, "arguments", {}), f"{place}: arguments")
+
+
+def _check_arguments(function: Callable, given: dict[str, Any], place: str) -> None:
+    """A function's keyword-only arguments are given, each as its annotation says."""
+    accepted = {
+        name: parameter for name, parameter in inspect.signature(function).parameters.items() if parameter.kind is parameter.KEYWORD_ONLY
+    }
+    for name in given:
+        _known(name, accepted, place)
+    for name, parameter in accepted.items():
+        if name not in given:
+            raise Fault(f"{place}: {name}: missing; {function.__name__} needs it")
+        try:
+            TypeAdapter(parameter.annotation, config=ConfigDict(strict=True)).validate_python(given[name])
+        except ValidationError as error:
+            raise Fault(": ".join([place, name, *first_fault(error)])) from None
 
 
 def _at(place: str, path: tuple[str, ...]) -> str:
@@ -243,13 +276,13 @@ def _at(place: str, path: tuple[str, ...]) -> str:
     return ": ".join([place, *(path[:-1] if path[-1].isdecimal() else path)])
 
 
-def _check_table(design: Design, functions: list[str], table: Table, place: str) -> None:
+def _check_table(design: Design, functions: dict[str, Callable], table: Table, place: str) -> None:
     _check_names(design, functions, table, place)
     if isinstance(table, Pivot) and table.published:
         published.check(design, table)
 
 
-def _check_claim(design: Design, functions: list[str], claim: Claim, place: str) -> None:
+def _check_claim(design: Design, functions: dict[str, Callable], claim: Claim, place: str) -> None:
     _check_names(design, functions, claim, place)
     for value in claim.variants.get("metric", []):
         _known(value, metrics.METRICS, f"{place}: variants: metric")

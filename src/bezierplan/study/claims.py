@@ -42,15 +42,16 @@ class Claim(Model):
         "are theirs",
     )
     finding: Literal[True] = Field(None, description="true: our own finding, no sentence of the paper; left out otherwise")
-    note: Line = Field(None, description="one line that stands with the reason of the verdict")
-    holds: Literal["all", "any"] = Field("all", description="`all` comparisons of the deciding checks (left out: this), or `any` of them")
+    note: Line = Field(None, description="one line that is shown with the reason for the verdict")
+    holds: Literal["all", "any"] = Field("all", description="`all` comparisons of the primary checks (left out: this), or `any` of them")
     variants: dict[str, listed(Values, least=2)] = Field(
         {},
-        description="column → list of values, the first of which decides; in a further row a value stands for the first one",
+        description="column → list of values: the claim is judged with the first one, and once more, in a row of its own, with each of the "
+        "others in its place",
         min_length=1,
     )
     checks: list[Annotated[Check, one_of("test", kinds())]] = Field(
-        description="a list of checks, of which at least one decides", min_length=1
+        description="a list of checks, at least one of them primary", min_length=1
     )
 
     @model_validator(mode="after")
@@ -77,7 +78,7 @@ class Assumption(Model):
     id: Annotated[str, matching(r"^[OM][1-9][0-9]*[a-z]?$", "O or M and a number")] = Field(
         description="O or M and a number, such as O1; O1b for a second setting of the same point"
     )
-    detail: Line = Field(description="what is left open, one line")
+    detail: Line = Field(description="what the paper leaves open, one line")
     default: Annotated[Any, mapping_or(Annotated[dict[Name, Setting], MinLen(1)], Setting)] = Field(
         description="the value in force; or method → value, and then the alternatives are for these methods alone"
     )

@@ -12,7 +12,7 @@ from bezierplan.planners import planner_module, planner_settings
 from bezierplan.running import worlds
 from bezierplan.study.artefacts import Figure, Pivot, Table
 from bezierplan.study.claims import Assumption, Claim
-from bezierplan.study.experiments import Experiment, Method, Policy, Problem, Workspace
+from bezierplan.study.experiments import Experiment, Method, Policy, Problem, Workspace, Worth
 from bezierplan.workspaces import files
 
 
@@ -36,6 +36,7 @@ class Study:
     workspaces: dict[str, Workspace]
     problems: dict[str, Problem]
     experiments: dict[str, Experiment]
+    worth: Worth | None
     labels: dict[str, str]
     tables: dict[str, Table]
     figures: dict[str, Figure]

@@ -64,7 +64,7 @@ class Method(Model):
     planner: File = Field(description="the name of a file in `src/bezierplan/planners`, or of a file `.py` in the study's folder")
     settings: Settings = Field({}, description="settings of this method alone, by name; the strongest")
     policy: Name = Field(None, description="the name of a policy, in experiments in worlds that move and only there")
-    variant_of: Name = Field(None, description="the method whose published numbers this one stands beside")
+    variant_of: Name = Field(None, description="the method whose published numbers this one is compared with")
 
 
 Margins = Annotated[
@@ -391,6 +391,13 @@ class Experiment(Model):
         return self.seeds != "own"
 
 
+class Worth(Model):
+    """What the summary measures the study's methods against."""
+
+    baseline: Name = Field(description="a baseline")
+    experiments: listed(Name) = Field(description="the experiments in which the methods are compared with it; it must join each of them")
+
+
 class ExperimentsFile(Model):
     """The file."""
 
@@ -418,3 +425,4 @@ class ExperimentsFile(Model):
     )
     problems: dict[ProblemName, Problem] = Field(description="name → workspace, start and target", min_length=1)
     experiments: dict[Name, Experiment] = Field(description="name → problems × varied settings × methods × repeats", min_length=1)
+    worth: Worth = Field(None, description="what the summary measures the study's methods against: a row of `worth.csv` for each method")

@@ -20,17 +20,18 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
         ("The file", experiments.ExperimentsFile),
         ("A method or baseline", experiments.Method),
         ("A policy, for experiments in worlds that move", experiments.Policy),
-        ("A workspace has `unit`, the name of the unit of length, `kind`, and by kind", experiments.WORKSPACES),
+        ("A workspace has `kind`, and by kind", experiments.WORKSPACES),
         ("A change of `changing_cells`", experiments.Change),
         ("A problem", experiments.Problem),
         ("An experiment", experiments.Experiment),
+        ("`worth`", experiments.Worth),
     ],
     "artefacts": [
         ("The file", artefacts.ArtefactsFile),
-        ("A **table** has `title`, one line, `kind`, and by kind", artefacts.TABLES),
+        ("A **table** has `kind`, and by kind", artefacts.TABLES),
         ("An entry of a table's `values`", artefacts.TableValue),
         ("A **figure**", artefacts.Figure),
-        ("A panel has `kind`, perhaps `title`, one line above it, and by kind", panels.kinds()),
+        ("A panel has `kind`, and by kind", panels.kinds()),
     ],
     "claims": [
         ("A claim", claims.Claim),
@@ -40,8 +41,8 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
 }
 """File -> its tables: what stands above, and the model of a mapping or those of its kinds."""
 
-# Keys listed above a table of kinds.
-_ABOVE = ("kind", "test", "unit", "title")
+# Keys named above a table of kinds.
+_ABOVE = ("kind", "test")
 
 
 def described(name: str) -> str:
@@ -56,15 +57,19 @@ def _table(model: type[Model]) -> str:
 
 
 def _by_kind(models: dict[str, type[Model]]) -> str:
-    """A row for each key, with the kinds in which it has this meaning."""
+    """A row for each key, with the kinds in which it has this meaning; first those of all kinds."""
     rows: dict[tuple[str, str | None], list[str]] = {}
     for kind, model in models.items():
         for name, field in keys(model).items():
-            if name not in _ABOVE or (name == "unit" and issubclass(model, kinds.Check)):
+            if name not in _ABOVE:
                 rows.setdefault((_name(name, field), field.description), []).append(f"`{kind}`")
     shared = sorted(rows.items(), key=lambda row: -len(row[1]) if len(row[1]) > len(models) / 2 else 0)
     return "\n".join(
-        ["| kind | key | means |", "| --- | --- | --- |", *(f"| {', '.join(kinds)} | {name} | {text} |" for (name, text), kinds in shared)]
+        [
+            "| kind | key | means |",
+            "| --- | --- | --- |",
+            *(f"| {', '.join(kinds) if len(kinds) < len(models) else 'all'} | {name} | {text} |" for (name, text), kinds in shared),
+        ]
     )
 
 

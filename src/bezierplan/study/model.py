@@ -46,7 +46,7 @@ class Model(BaseModel):
             if field.is_required() and key not in given:
                 raise wrong(f"{key}: missing key; {field.description}")
             if key in given and given[key] is None:
-                raise wrong(f"{key}: nothing stands here; expected {field.description}")
+                raise wrong(f"{key}: has no value; expected {field.description}")
         return given
 
     @field_validator("*", mode="wrap")
@@ -94,10 +94,15 @@ def parsed(model: type[M], content: Any, place: str) -> M:
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        # After a key that is itself wrong, pydantic puts `[key]`.
-        faults = [([str(key) for key in fault["loc"] if key != "[key]"], _fault(fault, None)) for fault in error.errors(include_url=False)]
-        path, text = min(faults, key=lambda fault: (": unknown key" not in fault[1], len(fault[0])))
-        raise Fault(": ".join([place, *path, text])) from None
+        raise Fault(": ".join([place, *first_fault(error)])) from None
+
+
+def first_fault(error: ValidationError) -> list[str]:
+    """The fault that is reported of several: the keys that lead to it, and the end of the message."""
+    # After a key that is itself wrong, pydantic puts `[key]`.
+    faults = [([str(key) for key in fault["loc"] if key != "[key]"], _fault(fault, None)) for fault in error.errors(include_url=False)]
+    path, text = min(faults, key=lambda fault: (": unknown key" not in fault[1], len(fault[0])))
+    return [*path, text]
 
 
 def wrong(text: str) -> PydanticCustomError:
@@ -219,7 +224,7 @@ def listed(item: Any, *, least: int = 1, single: bool = False) -> Any:
             raise PydanticCustomError("expected", "{text}", {"text": f"a list of at least {least}"})
         texts = [repr(each) for each in items]
         if repeated := [text for number, text in enumerate(texts) if text in texts[:number]]:
-            raise wrong(f"{shown(given)}: {repeated[0]} stands there twice")
+            raise wrong(f"{shown(given)}: {repeated[0]} is listed twice")
         return items if isinstance(given, list) else items[0]
 
     return Annotated[list[item], PlainValidator(check)]
@@ -281,6 +286,9 @@ Experiment = Annotated[Name, Names("experiment")]
 Workspace = Annotated[Name, Names("workspace")]
 Function = Annotated[Name, Names("function")]
 Where = Annotated[dict[Column, Values], Names("where")]
+Arguments = dict[Name, Any]
+"""Keyword-only arguments of a function of a study's module, which `checks` compares with their annotations."""
+ARGUMENTS = "the function's keyword-only arguments, by name: values that the paper gives, or that were chosen"
 
 
 def named(model: Model, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], str, Any]]:

@@ -25,7 +25,7 @@ def check(design: Design, table: Pivot) -> None:
             raise Fault(f"{place}: line 1: column {column} is missing; expected key columns, {', '.join(COLUMNS)}")
     for number, column in enumerate(header):
         if column in header[:number]:
-            raise Fault(f"{place}: line 1: column {column} stands there twice")
+            raise Fault(f"{place}: line 1: column {column} is listed twice")
         if column not in COLUMNS and column not in design.columns(experiment):
             raise Fault(f"{place}: line 1: column: {column}: unknown{closest(column, design.columns(experiment))}")
     keys = [column for column in header if column not in COLUMNS]

@@ -75,6 +75,7 @@ def read_study(folder: Path) -> Study:
         workspaces=experiments.workspaces,
         problems=experiments.problems,
         experiments=experiments.experiments,
+        worth=experiments.worth,
         labels=artefacts.labels,
         tables=artefacts.tables,
         figures=artefacts.figures,

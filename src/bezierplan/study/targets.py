@@ -13,7 +13,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from bezierplan.running.digest import PACKAGE, content_digest, source_digest
-from bezierplan.study import alternatives, definition, design, jobs
+from bezierplan.study import alternatives, choices, definition, design, jobs
 from bezierplan.study.artefacts import Pivot
 from bezierplan.study.checked import Fault
 from bezierplan.study.claims import Claim
@@ -309,6 +309,21 @@ def sensitivity_params(given: Studies, scale: str, study: str) -> dict:
     return {"described": alternatives.alternatives_described(given[study]), "code": _code("sensitivity")}
 
 
+def readings_inputs(given: Studies, scale: str, study: str) -> dict[str, list[str]]:
+    """Input files of the search for a reading."""
+    job = choices.readings_job(given[study], scale)
+    problems, bounds = _problems(scale, study, job["experiments"]), _bounds(scale, study, job["experiments"])
+    return {"problems": problems, "bounds": bounds, "published": [given[study].published_file(name) for name in job["tables"]]}
+
+
+def readings_params(given: Studies, scale: str, study: str) -> dict:
+    """Params of the search for a reading."""
+    job = choices.readings_job(given[study], scale)
+    planners = {_planner(each["planner"]) for table in job["tables"].values() for each in table["jobs"].values()}
+    published = content_digest(*(given[study].published_file(name) for name in job["tables"]))
+    return {"job": job, "published": published, "code": _code("readings", *sorted(planners))}
+
+
 # ---------------------------------------------------------------------------------------------------------------------
 # All studies together
 
@@ -323,6 +338,7 @@ def summary_inputs(given: Studies, scale: str) -> dict[str, list[str]]:
     return {
         "comparisons": [f"{_folder(scale, study)}/tables/{table}.comparison.csv" for study, table in _published_tables(given)],
         "claims": [f"{_folder(scale, key)}/claims.csv" for key, study in given.items() if study.claims],
+        "worth": f"results/{scale}/worth.csv",
     }
 
 
@@ -336,6 +352,35 @@ def summary_params(given: Studies, scale: str) -> dict:
         "titles": {key: study.title for key, study in given.items()},
     }
     return {"job": job, "code": _code("summary")}
+
+
+def worth_inputs(given: Studies, scale: str) -> dict[str, list[str]]:
+    """Input files of the table `worth`."""
+    found: dict[str, list[str]] = {"runs": [], "problems": [], "bounds": []}
+    for key, study in given.items():
+        experiments = study.worth.experiments if study.worth else []
+        found["runs"] += [file for name in experiments for file in _chunks(study, scale, name, _measured(study, name))]
+        found["problems"] += _problems(scale, key, experiments)
+        found["bounds"] += _bounds(scale, key, experiments)
+    return found
+
+
+def _measured(study: Study, experiment: str) -> list[str]:
+    """Methods of an experiment, and the baseline that they are measured against."""
+    return [*study.experiments[experiment].methods, study.worth.baseline]
+
+
+def worth_params(given: Studies, scale: str) -> dict:
+    """Params of the table `worth`: `job`, study -> baseline, and experiment -> repeats."""
+    job = {
+        key: {
+            "baseline": study.worth.baseline,
+            "repeats": {name: study.experiments[name].repeats[scale] for name in study.worth.experiments},
+        }
+        for key, study in given.items()
+        if study.worth
+    }
+    return {"job": job, "code": _code("worth")}
 
 
 # ---------------------------------------------------------------------------------------------------------------------
@@ -390,6 +435,13 @@ def files_of_scale(given: Studies, scale: str) -> list[str]:
 def files_of_sensitivity(given: Studies, scale: str) -> list[str]:
     """The table of alternatives of each study that has any."""
     return [f"{_folder(scale, key)}/sensitivity.csv" for key, study in given.items() if alternatives.tried(study)]
+
+
+def files_of_readings(given: Studies, scale: str) -> list[str]:
+    """The readings of each study that has published numbers and leaves choices open."""
+    return [
+        f"{_folder(scale, key)}/readings.csv" for key, study in given.items() if choices.printed_tables(study) and choices.choices(study)
+    ]
 
 
 def files_of_smoke(given: Studies) -> list[str]:

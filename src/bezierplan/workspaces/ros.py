@@ -44,9 +44,14 @@ def read(file: Path, unit: str, robot_radius: float = 0.0, most_pixels: int = MO
 
 
 def image_of(file: Path, content: dict[str, Any] | None = None) -> Path:
-    """The image of a map_server YAML file. Raises ValueError if there is none."""
+    """The image of a map_server YAML file. Raises ValueError if there is none.
+
+    ROS's map_saver writes the path at which it saved the image. On another machine, the image of that name beside the YAML file is meant.
+    """
     name = (content or _content(file))["image"]
     image = file.parent / name
+    if not image.is_file():
+        image = file.parent / Path(name).name
     if not image.is_file():
         raise ValueError(f"image: {name}: no such file in {file.parent}; expected the image beside its YAML file")
     return image

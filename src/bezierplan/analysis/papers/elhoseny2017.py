@@ -6,6 +6,7 @@ Numbers of equations, sections, tables and figures are the paper's.
 
 import itertools
 import math
+from fractions import Fraction
 from typing import NamedTuple
 
 import numpy as np
@@ -20,13 +21,10 @@ from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path
 
-# Section 3.3.1 prints these Q statistics, the mean to two decimals, and these counts N11, N00, N10, N01 of the first pair.
-SAID_Q = {("S1", "S2"): 0.0, ("S1", "S3"): 0.0, ("S2", "S3"): -1 / 3}
-SAID_MEAN_Q = -0.11
-SAID_COUNTS = {"N11": 3, "N00": 2, "N10": 3, "N01": 2}
 
-# Sections 3.3 and 4.2.2.
-ETA, ETA_DECAY, ITERATIONS = 0.8, 0.99, 80
+def said(published: dict[str, pd.DataFrame]) -> dict[str, float]:
+    """Values in the text, by quantity; a fraction stands for its value."""
+    return {row.quantity: float(Fraction(str(row.value))) for row in published["text_values"].itertuples()}
 
 
 def solutions(published: dict[str, pd.DataFrame]) -> dict[str, np.ndarray]:
@@ -55,12 +53,12 @@ def q_table(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
 
 def q_example(check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]) -> tuple[str, float, None, int]:
     """Claim C20: whether the Q statistics of Table 1 agree with the text. The effect is the largest difference from a printed value."""
-    genes = solutions(published)
-    found = {pair: q_of_rows(genes[pair[0]], genes[pair[1]]) for pair in SAID_Q}
+    genes, printed = solutions(published), said(published)
+    found = {f"Q of {one} and {other}": q_of_rows(genes[one], genes[other]) for one, other in itertools.combinations(genes, 2)}
     mean = float(np.mean(list(found.values())))
-    differences = [abs(found[pair] - said) for pair, said in SAID_Q.items()]
-    holds = max(differences) < 1e-12 and round(mean, 2) == SAID_MEAN_Q
-    return "+" if holds else "-", max(*differences, abs(mean - SAID_MEAN_Q)), None, len(found)
+    differences = [abs(q - printed[pair]) for pair, q in found.items()]
+    holds = max(differences) < 1e-12 and round(mean, 2) == printed["mean Q"]
+    return "+" if holds else "-", max(*differences, abs(mean - printed["mean Q"])), None, len(found)
 
 
 def printed_over_bound(check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]) -> tuple[str, float, None, int]:
@@ -91,7 +89,8 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     3.3 eta decreases linearly to 0.
     """
     rows = []
-    for table, side in (("table2", 100), ("table3", 200)):
+    printed = said(published)
+    for table, side in _sides(published).items():
         cells = published[table]
         for row in cells.itertuples():
             rule = f"no path between opposite corners counts less than {DIAGONAL:g} cells for each of the side"
@@ -130,16 +129,17 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
         rows.append(_row("table5", f"method=GA, obstacles={obstacles}", rule, time, other, time == other))
     genes = solutions(published)
     for name, found in counts(genes["S1"], genes["S2"]).items():
-        rows.append(
-            _row("table1", f"S1, S2: {name}", "the text counts as it defines", SAID_COUNTS[name], found, SAID_COUNTS[name] == found)
-        )
-    said = q_statistic(SAID_COUNTS["N11"], SAID_COUNTS["N00"], SAID_COUNTS["N10"], SAID_COUNTS["N01"])
-    rows.append(_row("table1", "S1, S2: Q", "Q of the counts in the text is the printed one", SAID_Q["S1", "S2"], said, said == 0))
-    last = ETA * ETA_DECAY**ITERATIONS
-    rows.append(_row("text", "3.3, 4.2.2", f"eta decreases to 0 over the {ITERATIONS} iterations", 0.0, round(last, 4), last < 0.005))
-    half = ETA * (1 - ETA_DECAY ** (ITERATIONS // 2))
+        number = int(printed[f"{name} of S1 and S2"])
+        rows.append(_row("table1", f"S1, S2: {name}", "the text counts as it defines", number, found, number == found))
+    q = q_statistic(*(int(printed[f"{name} of S1 and S2"]) for name in ("N11", "N00", "N10", "N01")))
+    of_text = printed["Q of S1 and S2"]
+    rows.append(_row("table1", "S1, S2: Q", "Q of the counts in the text is the printed one", of_text, q, q == of_text))
+    eta, decay, iterations = printed["eta"], printed["decay of eta"], int(printed["iterations"])
+    last = eta * decay**iterations
+    rows.append(_row("text", "3.3, 4.2.2", f"eta decreases to 0 over the {iterations} iterations", 0.0, round(last, 4), last < 0.005))
+    half = eta * (1 - decay ** (iterations // 2))
     rule = "eta decreases linearly: half of the way in half of the iterations"
-    rows.append(_row("text", "3.3, 4.2.2", rule, 0.5, round(half / (ETA - last), 4), abs(half / (ETA - last) - 0.5) < 0.005))
+    rows.append(_row("text", "3.3, 4.2.2", rule, 0.5, round(half / (eta - last), 4), abs(half / (eta - last) - 0.5) < 0.005))
     # A table of drives would say how fast the obstacles are.
     drives = sum(not {"speed", "moment"}.isdisjoint(table) for table in published.values())
     rule = "the title speaks of a dynamic field: some table has obstacles that move"
@@ -165,35 +165,32 @@ def printed_times(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
     return published["table6"].rename(columns={"value": "cpu_s"})[["method", "obstacles", "cpu_s"]]
 
 
-LARGER_SIDES = (100, 200, 500, 1000, 2000)
-# The workspace and the problem `gravel` of the study.
-GRAVEL = {"radius": 0.004, "clear_ends": 2.0, "unit": "cell"}
-GRAVEL_FIELD = {"side": 500, "start": [0, 0], "target": [500, 500]}
-MORE_OBSTACLES = (25, 50, 100, 200, 400)
-
-
-def memory() -> pd.DataFrame:
+def memory(*, sides: list[int], side: int, obstacles: list[int], radius: float, clear_ends: float) -> pd.DataFrame:
     """Memory used by empty fields of several sides, and by one with many obstacles; columns: side, obstacles, held (what is stored),
     megabytes.
 
     All planners share the occupied cells; the certified check stores them again, with all edges and corners of cells.
+
+    sides: of the empty fields. side, obstacles, radius and clear_ends: of the others, as in a `random_field`.
     """
-    empty = [(side, 0, Circles((0.0, side, 0.0, side), np.empty((0, 2)), np.empty(0), "cell")) for side in LARGER_SIDES]
-    fields = [(side, count, random_field.from_circles(circles)) for side, count, circles in empty]
-    for count in MORE_OBSTACLES:
-        described = GRAVEL_FIELD | {"obstacles": count, "layout": 0}
-        fields.append((GRAVEL_FIELD["side"], count, random_field.field(GRAVEL, described, "elhoseny2017/gravel")))
+    empty = [(each, 0, Circles((0.0, each, 0.0, each), np.empty((0, 2)), np.empty(0), "cell")) for each in sides]
+    fields = [(each, count, random_field.from_circles(circles)) for each, count, circles in empty]
+    for count in obstacles:
+        described = {"side": side, "start": [0, 0], "target": [side, side], "obstacles": count, "layout": 0}
+        gravel = {"radius": radius, "clear_ends": clear_ends, "unit": "cell"}
+        fields.append((side, count, random_field.field(gravel, described, "elhoseny2017/gravel")))
     rows = []
-    for side, count, grid in fields:
+    for length, count, grid in fields:
         checked = sum(array.nbytes for array in region(grid) if isinstance(array, np.ndarray))
         for held, size in (("occupied cells", grid.occupied.nbytes), ("certified check", checked)):
-            rows.append({"side": side, "obstacles": count, "held": held, "megabytes": size / 1e6})
+            rows.append({"side": length, "obstacles": count, "held": held, "megabytes": size / 1e6})
     return pd.DataFrame(rows)
 
 
-RADII = (0.015, 0.02, 0.025, 0.03, 0.04, 0.05, 0.06)  # shares of the side
-SIDES = {"table2": 100, "table3": 200}
-OBSTACLES = (5, 10, 15, 20, 25)
+def _sides(published: dict[str, pd.DataFrame]) -> dict[str, int]:
+    """The side of the fields of a table of lengths, in cells."""
+    printed = said(published)
+    return {table: int(printed[f"side in {table}"]) for table in ("table2", "table3")}
 
 
 def expected_length(side: int, radius: float, obstacles: np.ndarray | int) -> np.ndarray | float:
@@ -208,7 +205,7 @@ def expected_length(side: int, radius: float, obstacles: np.ndarray | int) -> np
 
 def _printed_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """Lengths of the proposed method in Tables 2 and 3; columns: side, route, obstacles and value, in cells."""
-    tables = [published[table].assign(side=side) for table, side in SIDES.items()]
+    tables = [published[table].assign(side=side) for table, side in _sides(published).items()]
     rows = pd.concat(tables, ignore_index=True)
     return rows.loc[rows["method"] == "mga", ["side", "route", "obstacles", "value"]]
 
@@ -220,8 +217,9 @@ def _errors(printed: pd.DataFrame, side: int, radius: float) -> tuple[float, flo
     return error, error / own["value"].mean()
 
 
-def radius_fit(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """The printed lengths of the proposed method, those expected for several obstacle radii, and the errors of the latter.
+def radius_fit(published: dict[str, pd.DataFrame], *, radii: list[float]) -> pd.DataFrame:
+    """The printed lengths of the proposed method, those expected for several obstacle radii (shares of the side), and the errors of the
+    latter.
 
     The last rows have the radius with the least error (relative to the mean length, averaged over both sides), in steps of a thousandth
     of the side.
@@ -229,29 +227,30 @@ def radius_fit(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
     printed = _printed_lengths(published)
     errors = radius_errors(published).groupby("radius")["relative_error"].mean()
     best = float(errors.idxmin())
+    numbers = sorted(printed["obstacles"].unique())
     rows = []
     for (side, route), own in printed.groupby(["side", "route"]):
         lengths = own.set_index("obstacles")["value"]
-        rows.append({"lengths": f"printed, {route}", "side": side, **{f"{n} obstacles": lengths[n] for n in OBSTACLES}})
-    for name, radius in [("expected", radius) for radius in RADII] + [("least error", best)]:
-        for side in SIDES.values():
+        rows.append({"lengths": f"printed, {route}", "side": side, **{f"{n} obstacles": lengths[n] for n in numbers}})
+    for name, radius in [("expected", radius) for radius in radii] + [("least error", best)]:
+        for side in _sides(published).values():
             cells, share = _errors(printed, side, radius)
-            expected = {f"{n} obstacles": round(expected_length(side, radius, n), 1) for n in OBSTACLES}
+            expected = {f"{n} obstacles": round(expected_length(side, radius, n), 1) for n in numbers}
             error = {"mean error (cell)": round(cells, 2), "mean error / mean length": round(share, 4)}
             rows.append({"lengths": name, "radius / side": radius, "side": side, **expected, **error})
-    columns = ["lengths", "radius / side", "side", *(f"{n} obstacles" for n in OBSTACLES), "mean error (cell)", "mean error / mean length"]
+    columns = ["lengths", "radius / side", "side", *(f"{n} obstacles" for n in numbers), "mean error (cell)", "mean error / mean length"]
     return pd.DataFrame(rows)[columns]
 
 
-def radius_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
+def radius_lengths(published: dict[str, pd.DataFrame], *, radii: list[float]) -> pd.DataFrame:
     """Printed and expected lengths against the number of obstacles; columns: side, lengths (which), obstacles, cells4 (in cells)."""
     printed = _printed_lengths(published).rename(columns={"value": "cells4"})
     printed["lengths"] = "printed, " + printed.pop("route").str.replace("case", "Case ")
-    counts = np.arange(min(OBSTACLES), max(OBSTACLES) + 1)
+    counts = np.arange(printed["obstacles"].min(), printed["obstacles"].max() + 1)
     expected = [
         pd.DataFrame({"side": side, "lengths": f"R = {radius:g} N", "obstacles": counts, "cells4": expected_length(side, radius, counts)})
-        for side in SIDES.values()
-        for radius in (0.015, 0.025, 0.05)
+        for side in _sides(published).values()
+        for radius in radii
     ]
     return pd.concat([printed, *expected], ignore_index=True)
 
@@ -262,7 +261,7 @@ def radius_errors(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
     return pd.DataFrame(
         [
             {"radius": thousandths / 1000, "side": side, "relative_error": _errors(printed, side, thousandths / 1000)[1]}
-            for side in SIDES.values()
+            for side in _sides(published).values()
             for thousandths in range(5, 81)
         ]
     )
@@ -272,25 +271,21 @@ def radius_errors(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
 # Drawings
 
 
-# Section 2.2.1: the parents of the example.
-PARENTS = ("0011", "0000")
-
-
-def crossover_and_mutation() -> pd.DataFrame:
-    """Figure 1: marks of the sixteen four-digit chromosomes, once with the crossover of the parents of Section 2.2.1, and once with the
-    mutation of the first; column operator.
+def crossover_and_mutation(*, parents: list[str]) -> pd.DataFrame:
+    """Figure 1: marks of the sixteen four-digit chromosomes, once with the crossover of two parents, and once with the mutation of the
+    first; column operator.
 
     The first two digits give the row and the last two the column, so that neighbours differ in one digit.
     """
     rows, columns = ("10", "00", "01", "11"), ("00", "01", "11", "10")
     at = {row + column: (i, -j) for i, column in enumerate(columns) for j, row in enumerate(rows)}
-    one, other = PARENTS
+    one, other = parents
     crossed = {head[:cut] + tail[cut:] for cut in range(1, 4) for head, tail in ((one, other), (other, one))}
     mutated = {one[:digit] + "10"[int(one[digit])] + one[digit + 1 :] for digit in range(4)}
     marks = []
-    for operator, parents, children in (("crossover", PARENTS, crossed), ("mutation", PARENTS[:1], mutated)):
+    for operator, origins, children in (("crossover", parents, crossed), ("mutation", parents[:1], mutated)):
         for chromosome, (x, y) in at.items():
-            role = "accent" if chromosome in parents else "muted" if chromosome in children else "none"
+            role = "accent" if chromosome in origins else "muted" if chromosome in children else "none"
             label = {"accent": "parent", "muted": "possible child", "none": None}[role]
             box = {"mark": "cell", "group": chromosome, "role": role, "x": x, "y": y, "width": 0.92, "height": 0.92, "label": label}
             marks.append(box | {"operator": operator})
@@ -344,26 +339,22 @@ def is_free(path: Path, grid: Grid) -> bool:
     return occupied_cells(*touched_cells(*samples(path, grid)), grid.occupied) == 0
 
 
-# Fig. 3: 25 places. The paper gives neither its field nor its points; here one circle covers the central cell.
-CHROMOSOME_SIDE = 4
-CHROMOSOME_POINTS = 2
-
-
-def chromosome() -> pd.DataFrame:
+def chromosome(*, least_distance: float) -> pd.DataFrame:
     """Figure 3: marks of a field of 25 places, the curve of a valid chromosome in it, and below it the chromosome's genes.
 
-    Every cell is a gene; its number grows by one upwards, and by five to the right. The chromosome is the first valid one among random
-    ones with two control points.
+    Every place is a gene; its number grows by one upwards, and by five to the right. The paper gives neither its field nor its points: here
+    one circle covers the central place, and the chromosome is the first valid one among random ones with two control points.
+    least_distance: the smallest allowed distance between control points.
     """
-    side = CHROMOSOME_SIDE
+    side, number = 4, 2
     grid = random_field.from_circles(Circles((0, side, 0, side), np.array([[2.0, 2.0]]), np.array([0.8]), "cell"))
     start, target = (0, 0), (side, side)
     rng = np.random.default_rng(0)
     path, points = None, []
     while path is None or not is_free(path, grid):
-        drawn = verdicts(rng.integers(0, side + 1, (CHROMOSOME_POINTS, 2)), grid, LEAST_DISTANCE)
+        drawn = verdicts(rng.integers(0, side + 1, (number, 2)), grid, least_distance)
         points = [each.point for each in drawn if each.word == "accepted" and each.point not in (start, target)]
-        path = curve_through(points, start, target) if len(points) == CHROMOSOME_POINTS else None
+        path = curve_through(points, start, target) if len(points) == number else None
     marks = []
     words = {"mark": "text", "role": "note"}
     gene_width, top = 0.44, 1.4
@@ -386,31 +377,37 @@ def chromosome() -> pd.DataFrame:
     return pd.DataFrame(marks)
 
 
-# Fig. 4: the paper gives ten points, three obstacles and the least distance; the field is that of Fig. 2, the radius that of its circles.
-LEAST_DISTANCE = 2.5
-CANDIDATES = 10
-VALIDATION = {"radius": 0.05, "clear_ends": 2.0, "unit": "cell"}
-VALIDATED = {"side": 20, "start": (4, 0), "target": (16, 18), "obstacles": 3}
-
-
-def validation() -> pd.DataFrame:
-    """Figure 4: marks of ten random points in a field, tested in turn, circles of the least distance around the accepted points, and their
+def validation(
+    *,
+    points: int,
+    least_distance: float,
+    side: int,
+    start: list[int],
+    target: list[int],
+    obstacles: int,
+    radius: float,
+    clear_ends: float,
+) -> pd.DataFrame:
+    """Figure 4: marks of random points in a field, tested in turn, circles of the least distance around the accepted points, and their
     curve. Further columns: candidate (its number) and verdict.
 
-    The random fields and points shown are the first in which each rule rejects a point and the curve is free.
+    The random fields and points shown are the first in which each rule rejects a point and the curve is free. points: their number. The
+    arguments from side on describe the field, as in a `random_field`.
     """
-    start, target = VALIDATED["start"], VALIDATED["target"]
+    ends = tuple(start), tuple(target)
+    workspace = {"radius": radius, "clear_ends": clear_ends, "unit": "cell"}
     for number in itertools.count():
-        grid = random_field.field(VALIDATION, VALIDATED | {"layout": number}, "elhoseny2017/figure4")
-        points = np.random.default_rng(number).integers(0, VALIDATED["side"] + 1, (CANDIDATES, 2))
-        found = verdicts(points, grid, LEAST_DISTANCE)
-        path = curve_through([each.point for each in found if each.word == "accepted"], start, target)
+        described = {"side": side, "start": ends[0], "target": ends[1], "obstacles": obstacles, "layout": number}
+        grid = random_field.field(workspace, described, "elhoseny2017/figure4")
+        drawn = np.random.default_rng(number).integers(0, side + 1, (points, 2))
+        found = verdicts(drawn, grid, least_distance)
+        path = curve_through([each.point for each in found if each.word == "accepted"], *ends)
         if {each.word for each in found} == {"obstacle", "too near", "accepted"} and is_free(path, grid):
             break
     angles = np.linspace(0, 2 * math.pi, 61)
     marks = [
-        {"mark": "circle", "role": "obstacle", "group": "obstacles", "label": "obstacle", "x": x, "y": y, "radius": radius}
-        for (x, y), radius in zip(grid.drawn.centres.tolist(), grid.drawn.radii)
+        {"mark": "circle", "role": "obstacle", "group": "obstacles", "label": "obstacle", "x": x, "y": y, "radius": reach}
+        for (x, y), reach in zip(grid.drawn.centres.tolist(), grid.drawn.radii)
     ]
     looks = {
         "accepted": ("first", "control point"),
@@ -419,8 +416,8 @@ def validation() -> pd.DataFrame:
     }
     for candidate, (point, word) in enumerate(found, 1):
         if word == "accepted":
-            ring = {"mark": "line", "role": "muted", "group": f"ring {candidate}", "label": f"distance r = {LEAST_DISTANCE:g}"}
-            circle = np.array(point) + LEAST_DISTANCE * np.column_stack([np.cos(angles), np.sin(angles)])
+            ring = {"mark": "line", "role": "muted", "group": f"ring {candidate}", "label": f"distance r = {least_distance:g}"}
+            circle = np.array(point) + least_distance * np.column_stack([np.cos(angles), np.sin(angles)])
             marks += [ring | {"x": x, "y": y} for x, y in circle.tolist()]
     x, y = grid.in_units(np.column_stack(samples(path, grid))).T
     marks += [{"mark": "line", "role": "third", "group": "curve", "label": "Bezier curve", "x": a, "y": b} for a, b in zip(x, y)]
@@ -429,6 +426,6 @@ def validation() -> pd.DataFrame:
         dot = {"mark": "dots", "role": role, "group": word, "label": label, "candidate": candidate, "verdict": word}
         marks.append(dot | {"x": point[0], "y": point[1]})
         marks.append({"mark": "text", "role": "note", "x": point[0] - 0.8, "y": point[1] + 0.7, "text": str(candidate)})
-    for role, (x, y) in (("start", start), ("target", target)):
+    for role, (x, y) in zip(("start", "target"), ends, strict=True):
         marks.append({"mark": "dots", "role": role, "group": role, "label": role, "x": x, "y": y})
     return pd.DataFrame(marks)

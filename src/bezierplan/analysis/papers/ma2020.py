@@ -9,10 +9,6 @@ from bezierplan.analysis.results import Results, path_of, select
 from bezierplan.geometry import curves
 from bezierplan.planners.parts.genetic import swap_tails
 
-BITS = 9  # of a cell number of 20 x 20 cells (Section 4)
-SIDE = 20  # cells from start to target, along x and along y (Section 4)
-STRAIGHT = SIDE * math.sqrt(2)
-
 # Methods that plan on cells.
 LATTICE_METHODS = ("aco", "ga", "aco_ga", "asfa_ga")
 
@@ -23,45 +19,46 @@ LATTICE_TOLERANCE = 0.0045
 # A time up to this many times another counts as slightly longer.
 SLIGHTLY = 1.5
 
-# Fig. 1 gives its five points only as a picture; these form a similar zigzag.
-ZIGZAG = np.array([(0, 0), (1.5, 4), (5, 3), (6, 7.5), (10, 6), (11, 10), (14, 12)], dtype=float)
-
-# Two chromosomes of ten genes, cut between the seventh and eighth gene as in Fig. 2.
-PARENTS = np.array([[380, 341, 322, 283, 264, 205, 167, 128, 69, 39], [361, 342, 303, 245, 206, 187, 149, 110, 72, 18]])
-CUT = 7
-
 # Number of parameters at which the speed of a curve is sampled, and the share of its maximum below which it counts as zero.
 SPEED_SAMPLES = 20_001
 STILL = 1e-6
 
 
-def corners_and_curve() -> pd.DataFrame:
-    """Marks of Figure 1, column `drawn`: a path with corners, the Bezier curve with these corners as control points, and both."""
-    steps = curves.sample_matrix("bezier", len(ZIGZAG), 201) @ ZIGZAG
-    corners = _line(ZIGZAG, "second", "path with corners")
+def corners_and_curve(*, points: list[list[float]]) -> pd.DataFrame:
+    """Marks of Figure 1, column `drawn`: a path with corners, the Bezier curve with these corners as control points, and both.
+
+    points: start, corners and target.
+    """
+    zigzag = np.array(points, dtype=float)
+    steps = curves.sample_matrix("bezier", len(zigzag), 201) @ zigzag
+    corners = _line(zigzag, "second", "path with corners")
     curve = _line(steps, "first", "Bezier curve")
-    points = _dots(ZIGZAG[1:-1], "third", "corners P1 to P5")
-    ends = pd.concat([_dots(ZIGZAG[:1], "start", "start S"), _dots(ZIGZAG[-1:], "target", "target T")])
-    parts = {"corners": [corners, points, ends], "curve": [curve, points, ends], "both": [corners, curve, points, ends]}
+    inner = _dots(zigzag[1:-1], "third", f"corners P1 to P{len(zigzag) - 2}")
+    ends = pd.concat([_dots(zigzag[:1], "start", "start S"), _dots(zigzag[-1:], "target", "target T")])
+    parts = {"corners": [corners, inner, ends], "curve": [curve, inner, ends], "both": [corners, curve, inner, ends]}
     return pd.concat([pd.concat(marks).assign(drawn=name) for name, marks in parts.items()], ignore_index=True)
 
 
-def crossover() -> pd.DataFrame:
-    """Marks of Figure 2, column `drawn`: two chromosomes as rows of cell numbers before and after the crossover's tails are swapped."""
-    children = PARENTS.copy()
-    swap_tails(*children, BITS * CUT, BITS)
+def crossover(*, parents: list[list[int]], bits: int, cut: int) -> pd.DataFrame:
+    """Marks of Figure 2, column `drawn`: two chromosomes as rows of cell numbers before and after the crossover's tails are swapped.
+
+    bits: of a cell number. cut: the number of genes before the cut.
+    """
+    own = np.array(parents)
+    children = own.copy()
+    swap_tails(*children, bits * cut, bits)
     frames = []
-    for drawn, rows in (("before", PARENTS), ("after", children)):
+    for drawn, rows in (("before", own), ("after", children)):
         for height, row in zip((1.3, 0.0), rows):
             # A gene keeps the colour of its original chromosome.
             for place, gene in enumerate(row):
-                role = "accent" if gene == PARENTS[0, place] else "muted"
+                role = "accent" if gene == own[0, place] else "muted"
                 box = {"mark": "cell", "role": role, "x": place, "y": height, "width": 0.96, "height": 0.8}
                 frames.append(
                     pd.DataFrame([box, {"mark": "text", "role": "note", "x": place, "y": height, "text": str(gene)}]).assign(drawn=drawn)
                 )
-        cut = _line(np.array([(CUT - 0.5, -0.7), (CUT - 0.5, 2.0)]), "second", "cut between genes 7 and 8")
-        frames.append(cut.assign(drawn=drawn))
+        line = _line(np.array([(cut - 0.5, -0.7), (cut - 0.5, 2.0)]), "second", f"cut between genes {cut} and {cut + 1}")
+        frames.append(line.assign(drawn=drawn))
     return pd.concat(frames, ignore_index=True)
 
 
@@ -77,15 +74,17 @@ def _marks(mark: str, points: np.ndarray, role: str, label: str) -> pd.DataFrame
     return pd.DataFrame({"mark": mark, "group": label, "role": role, "x": points[:, 0], "y": points[:, 1], "label": label})
 
 
-def nearest_lattice_length(length: float) -> tuple[int, int]:
-    """Straight and diagonal moves of the 8-connected paths from corner to corner of the map whose length is nearest to a given one.
+def nearest_lattice_length(length: float, side: int) -> tuple[int, int]:
+    """Straight and diagonal moves of the 8-connected paths from corner to corner of a map whose length is nearest to a given one.
+
+    side: cells from start to target, along x and along y.
 
     The half diagonals from start and to target count as one diagonal move. The number of straight moves is even, and with s straight
     and d diagonal moves, s + 2 d is at least twice the side.
     """
     found = []
     for diagonal in range(1, int(length / math.sqrt(2)) + 2):
-        for straight in range(max(0, 2 * SIDE - 2 * diagonal), int(length) + 2, 2):
+        for straight in range(max(0, 2 * side - 2 * diagonal), int(length) + 2, 2):
             found.append((abs(straight + diagonal * math.sqrt(2) - length), straight, diagonal))
     return min(found)[1:]
 
@@ -96,6 +95,7 @@ def lattice_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
     Columns: workspace, method, statistic, printed, straight moves, diagonal moves, lattice length, distance (cells), chance (the
     probability that a random length is as near, over the lattice methods' printed range of this statistic, in whole cells), met.
     """
+    side = _side(published)
     lengths = pd.concat([published["table1"], published["table2"]])
     lengths = lengths[(lengths["metric"] == "length") & (lengths["statistic"] != "mean")]
     rows = []
@@ -103,7 +103,7 @@ def lattice_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
         rivals = own.loc[own["method"].isin(LATTICE_METHODS), "value"]
         low, high = math.floor(rivals.min()), math.ceil(rivals.max())
         for row in own.itertuples():
-            straight, diagonal = nearest_lattice_length(row.value)
+            straight, diagonal = nearest_lattice_length(row.value, side)
             length = straight + diagonal * math.sqrt(2)
             distance = abs(row.value - length)
             rows.append(
@@ -116,17 +116,17 @@ def lattice_lengths(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
                     "diagonal moves": diagonal,
                     "lattice length": f"{length:.4f}",
                     "distance": f"{distance:.4f}",
-                    "chance": f"{chance_of_lattice(low, high, distance):.3f}",
+                    "chance": f"{chance_of_lattice(low, high, distance, side):.3f}",
                     "met": "yes" if distance <= LATTICE_TOLERANCE else "no",
                 }
             )
     return pd.DataFrame(rows)
 
 
-def chance_of_lattice(low: float, high: float, tolerance: float) -> float:
+def chance_of_lattice(low: float, high: float, tolerance: float, side: int) -> float:
     """The probability that a length drawn uniformly from an interval is within a tolerance of the length of an 8-connected path."""
     diagonal, straight = np.meshgrid(np.arange(1, int(high)), np.arange(0, int(high) + 2, 2))
-    lengths = np.sort((straight + diagonal * math.sqrt(2))[straight + 2 * diagonal >= 2 * SIDE])
+    lengths = np.sort((straight + diagonal * math.sqrt(2))[straight + 2 * diagonal >= 2 * side])
     starts, ends = np.clip(lengths - tolerance, low, high), np.clip(lengths + tolerance, low, high)
     starts = np.maximum(starts, np.maximum.accumulate(np.append(low, ends[:-1])))
     return float(np.maximum(ends - starts, 0).sum() / (high - low))
@@ -161,13 +161,15 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     the text about lengths and times are checked against the tables.
     """
     tables = {name: published[name] for name in ("table1", "table2")}
+    side = _side(published)
+    shortest = side * math.sqrt(2)
     rows = []
     for name, table in tables.items():
         lengths = table[table["metric"] == "length"]
         for row in lengths.itertuples():
-            rows.append(_row(name, row, "no path is shorter than the straight line", STRAIGHT, row.value >= STRAIGHT))
+            rows.append(_row(name, row, "no path is shorter than the straight line", shortest, row.value >= shortest))
         for row in lengths[lengths["method"].isin(LATTICE_METHODS) & (lengths["statistic"] != "mean")].itertuples():
-            straight, diagonal = nearest_lattice_length(row.value)
+            straight, diagonal = nearest_lattice_length(row.value, side)
             nearest = straight + diagonal * math.sqrt(2)
             rule = "a path of 8 neighbours has a length s + d sqrt(2) with s even"
             rows.append(_row(name, row, rule, nearest, abs(row.value - nearest) <= LATTICE_TOLERANCE))
@@ -187,6 +189,13 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
         rule = "a share of the cells is a whole number of cells"
         rows.append(_said("parameters", f"workspace={workspace}", rule, cells, round(cells), abs(cells - round(cells)) < 1e-9))
     return rows
+
+
+def _side(published: dict[str, pd.DataFrame]) -> int:
+    """Cells of both maps along x and along y, as printed: those from start to target."""
+    parameters = published["parameters"]
+    (side,) = parameters.loc[parameters["parameter"] == "grid_size", "value"].unique()
+    return int(side)
 
 
 def _means(table: pd.DataFrame, metric: str) -> dict[str, float]:

@@ -5,7 +5,7 @@ Numbers of equations, sections, tables and figures are the paper's. Drawings use
 
 import itertools
 from collections.abc import Iterator, Sequence
-from typing import get_args
+from typing import get_args, get_type_hints
 
 import numpy as np
 import pandas as pd
@@ -17,112 +17,91 @@ from bezierplan.planners.parts.node_mutation import Mutation, mutate
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.ground import centres, ground_of, obstacles_met
 
-# Figure 2: cells of a grid of 10 x 10, numbered from 1.
-CHROMOSOME = (1, 41, 65, 35, 38, 60, 100)
-SIDE = 10
-BESIDE = 0.45  # of a cell: any nearer to the path there is no room for a number
-
-# Figure 3: a second parent in addition to that of Figure 2, and the number of nodes after which both are cut.
-OTHER = (1, 22, 54, 77, 100)
-CUT = 3
-
-# Figure 4, on the map `operators`: columns and rows of the nodes of a feasible path, and of one whose second edge meets an obstacle.
-FREE_PATH = ((0, 0), (2, 4), (5, 5), (9, 6))
-BLOCKED_PATH = ((0, 0), (1, 2), (6, 5), (8, 5), (9, 6))
-# The settings in force that the operators read.
-RULES = node_genetic.Rules(
-    mutation=0,
-    population=2,
-    generations=0,
-    stall=1,
-    initial=0,
-    most_nodes=1,
-    selection=0,
-    crossover_probability=1.0,
-    one_cut=True,
-    mutation_probability=1.0,
-    each_node=False,
-    any_node=True,
-    beside_obstacle=False,
-    keep_better=False,
-    same_signs=False,
-    whole_path=False,
-    penalty=15.0,
-    elitism=0,
-    best_so_far=False,
-)
+# Of a cell: any nearer to the path there is no room for a number.
+BESIDE = 0.45
 # Number of seeds to search for one whose mutation shows what the paper says about the operator.
 SEEDS = 1000
 
-TRIALS = 100  # Section 4
+# The counts of `said` that Fisher's exact test compares, its level, and the sign of what counts as best.
+TESTED = ("optimal", "infeasible")
 ALPHA = 0.05
-OTHERS = ("random", "ref12", "ref21")
-
-# What Section 4 says about the proposed mutation: (metric, words, 1 if the highest value is meant, -1 if the lowest).
-SAID = (
-    ("optimal", "most optimal solutions", 1),
-    ("found", "most optimal and near-optimal solutions together", 1),
-    ("near_optimal", "most near-optimal solutions", 1),
-    ("infeasible", "fewest infeasible solutions", -1),
-    ("objective", "lowest mean fitness", -1),
-    ("generation_improved", "lowest mean generation number", -1),
-    ("cpu_s", "highest mean solution time", 1),
-)
+SIGN = {"highest": 1, "lowest": -1}
 
 
-def chromosome() -> pd.DataFrame:
-    """Figure 2: the genes (part `genes`), and their path on a grid of 10 x 10 cells (part `path`)."""
-    genes = _genes(CHROMOSOME, 0, ["accent", *["muted"] * (len(CHROMOSOME) - 2), "accent"])
+def chromosome(*, genes: list[int], side: int) -> pd.DataFrame:
+    """Figure 2: genes, numbers of cells from 1 (part `genes`), and their path on a grid of side x side cells (part `path`)."""
+    row = _genes(genes, 0, ["accent", *["muted"] * (len(genes) - 2), "accent"])
     names = [{"mark": "text", "role": "note", "x": x, "y": -0.9, "text": word} for x, word in ((0, "start"), (3, "passage"), (6, "target"))]
-    places = [_place(number) for number in CHROMOSOME]
+    places = [_place(number, side) for number in genes]
     way = shapely.LineString(places)
     # Cells that the path crosses between its nodes show no number, because the path would make it illegible.
-    numbers = [number for number in range(1, SIDE * SIDE + 1) if shapely.Point(_place(number)).distance(way) > BESIDE]
-    cells = [{"mark": "cell", "role": "free", **_box(*_place(number))} for number in range(1, SIDE * SIDE + 1)]
-    others = [{"mark": "text", "role": "note", **_words(number, *_place(number))} for number in numbers]
-    nodes = [mark for number in CHROMOSOME for mark in _gene(number, *_place(number), "accent")]
-    path = [*cells, *others, *_path(places, "accent", "path"), *nodes]
-    return pd.concat([pd.DataFrame([*genes, *names]).assign(part="genes"), pd.DataFrame(path).assign(part="path")])
+    cells = {number: _place(number, side) for number in range(1, side * side + 1)}
+    boxes = [{"mark": "cell", "role": "free", **_box(*place)} for place in cells.values()]
+    apart = {number: place for number, place in cells.items() if shapely.Point(place).distance(way) > BESIDE}
+    others = [{"mark": "text", "role": "note", **_words(number, *place)} for number, place in apart.items()]
+    nodes = [mark for number, place in zip(genes, places, strict=True) for mark in _gene(number, *place, "accent")]
+    path = [*boxes, *others, *_path(places, "accent", "path"), *nodes]
+    return pd.concat([pd.DataFrame([*row, *names]).assign(part="genes"), pd.DataFrame(path).assign(part="path")])
 
 
-def crossover() -> pd.DataFrame:
-    """Figure 3: two parents (part `parents`) and their children (part `children`), each parent's nodes in a distinct style."""
-    one, other = np.array(CHROMOSOME), np.array(OTHER)
+def crossover(*, parents: list[list[int]], cut: int) -> pd.DataFrame:
+    """Figure 3: two parents (part `parents`) and their children (part `children`), each parent's nodes in a distinct style.
+
+    cut: the number of nodes after which both are cut.
+    """
+    one, other = (np.array(parent) for parent in parents)
     frames = []
-    for part, (first, second) in {"parents": (CHROMOSOME, OTHER), "children": (_child(one, other), _child(other, one))}.items():
-        own = {"parents": (len(first), 0), "children": (CUT, CUT)}[part]
+    for part, (first, second) in {"parents": parents, "children": (_child(one, other, cut), _child(other, one, cut))}.items():
+        own = {"parents": (len(first), 0), "children": (cut, cut)}[part]
         looks = [["accent"] * own[0] + ["muted"] * (len(first) - own[0]), ["muted"] * (own[1] or len(second))]
         looks[1] += ["accent"] * (len(second) - len(looks[1]))
         marks = [*_genes(first, 1.5, looks[0]), *_genes(second, 0, looks[1])]
-        cut = [{"mark": "line", "role": "second", "group": "cut", "x": CUT - 0.5, "y": y, "label": "cut"} for y in (-0.8, 2.3)]
-        frames.append(pd.DataFrame([*marks, *cut]).assign(part=part))
+        line = [{"mark": "line", "role": "second", "group": "cut", "x": cut - 0.5, "y": y, "label": "cut"} for y in (-0.8, 2.3)]
+        frames.append(pd.DataFrame([*marks, *line]).assign(part=part))
     return pd.concat(frames)
 
 
-def _child(head: np.ndarray, tail: np.ndarray) -> tuple[int, ...]:
+def _child(head: np.ndarray, tail: np.ndarray, cut: int) -> list[int]:
     child = np.empty(len(head) + len(tail), dtype=np.int64)
-    return tuple(child[: node_genetic.join(head, CUT, tail, CUT, len(tail), child)].tolist())
+    return child[: node_genetic.join(head, cut, tail, cut, len(tail), child)].tolist()
 
 
-def mutations(grid: Grid) -> pd.DataFrame:
+def mutations(
+    grid: Grid,
+    *,
+    free_path: list[list[int]],
+    blocked_path: list[list[int]],
+    any_node: bool,
+    beside_obstacle: bool,
+    keep_better: bool,
+    same_signs: bool,
+    whole_path: bool,
+    penalty: float,
+) -> pd.DataFrame:
     """Figure 4: a path before and after a mutation, by operator, and the cells that were tried instead of the node.
 
     Random mutation makes a feasible path infeasible; reference 12 changes a node that is not before the obstacle, and the path stays
     infeasible; the proposed mutation changes the one that is. The first seed with this result is used.
+
+    free_path, blocked_path: columns and rows of the nodes of a feasible path, and of one whose second edge meets an obstacle. The others:
+    settings that the operators read, as in `node_genetic.Rules`.
     """
+    unread = {name: kind() for name, kind in get_type_hints(node_genetic.Rules).items()}
+    read = {"any_node": any_node, "beside_obstacle": beside_obstacle, "keep_better": keep_better, "same_signs": same_signs}
+    rules = node_genetic.Rules(**(unread | read | {"whole_path": whole_path, "penalty": penalty}))
     frames = []
-    for operator, places in (("random", FREE_PATH), ("ref12", BLOCKED_PATH), ("proposed", BLOCKED_PATH)):
+    for operator, places in (("random", free_path), ("ref12", blocked_path), ("proposed", blocked_path)):
         before = np.array([column + grid.occupied.shape[1] * row for column, row in places])
-        after, k = next(_shown(grid, operator, before))
+        after, k = next(_shown(grid, operator, before, rules))
         frames.append(pd.DataFrame(_mutation(grid, operator, before, after, k)).assign(operator=operator))
     return pd.concat(frames)
 
 
-def _shown(grid: Grid, operator: str, before: np.ndarray) -> Iterator[tuple[np.ndarray, int]]:
+def _shown(grid: Grid, operator: str, before: np.ndarray, rules: node_genetic.Rules) -> Iterator[tuple[np.ndarray, int]]:
     """Paths after a mutation that shows what the paper says about the operator, each with the index of the changed node."""
     ground = ground_of(grid, 1.0)
     drawn = np.setdiff1d(np.flatnonzero(~grid.occupied), before[[0, -1]])
-    rules = RULES._replace(mutation=get_args(Mutation).index(operator))
+    rules = rules._replace(mutation=get_args(Mutation).index(operator))
     for seed in range(SEEDS):
         after = before.copy()
         mutate(np.random.default_rng(seed), after, drawn, ground, rules)
@@ -148,9 +127,9 @@ def _mutation(grid: Grid, operator: str, before: np.ndarray, after: np.ndarray, 
         yield {"mark": "dots", "role": role, "x": x, "y": y, "group": role, "label": label}
 
 
-def _place(number: int) -> tuple[float, float]:
+def _place(number: int, side: int) -> tuple[float, float]:
     """Column and row of a cell of Figure 2, from 1."""
-    return (number - 1) % SIDE + 1.0, (number - 1) // SIDE + 1.0
+    return (number - 1) % side + 1.0, (number - 1) // side + 1.0
 
 
 def _genes(numbers: Sequence[int], y: float, roles: Sequence[str]) -> Iterator[dict]:
@@ -186,20 +165,27 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     operators by optima as environment 1 does.
     """
     tables = {name: table.set_index(["method", "metric"])["value"] for name, table in published.items() if "problem" in table}
+    trials = {name: int(published[name]["n"].max()) for name in tables}
+    operators = list(published["table2"]["method"].unique())
+    others = [method for method in operators if method != "proposed"]
+    said = list(published["said"].itertuples())
     rows = []
     for name, table in tables.items():
-        for method in ("proposed", *OTHERS):
+        for method in ("proposed", *others):
             total = sum(table[method, metric] for metric in ("optimal", "near_optimal", "infeasible"))
-            rows.append(_row(name, f"method={method}", "the three counts add to the trials", total, TRIALS, total == TRIALS))
-        for metric, words, sign in SAID:
-            own, *theirs = (_printed(table, method, metric) for method in ("proposed", *OTHERS))
+            rule = "the three counts add to the trials"
+            rows.append(_row(name, f"method={method}", rule, total, trials[name], total == trials[name]))
+        for each in said:
+            sign = SIGN[each.best]
+            own, *theirs = (_printed(table, method, each.quantity) for method in ("proposed", *others))
             best = sign * max(sign * value for value in theirs)
-            rule = f"the proposed mutation has the {words} (Section 4)"
-            rows.append(_row(name, f"metric={metric}", rule, own, best, sign * (own - best) > 0))
-    for metric, words, sign in SAID[:4:3]:
-        rows += _fisher_rows(tables, metric, words, sign)
-    ranks = {name: [table[method, "optimal"] for method in ("proposed", *OTHERS)] for name, table in tables.items()}
-    pairs = list(itertools.combinations(range(len(OTHERS) + 1), 2))
+            rule = f"the proposed mutation has the {each.words} (Section 4)"
+            rows.append(_row(name, f"metric={each.quantity}", rule, own, best, sign * (own - best) > 0))
+    for each in said:
+        if each.quantity in TESTED:
+            rows += _fisher_rows(tables, trials, others, each.quantity, each.words, SIGN[each.best])
+    ranks = {name: [table[method, "optimal"] for method in ("proposed", *others)] for name, table in tables.items()}
+    pairs = list(itertools.combinations(range(len(operators)), 2))
     for name in ("table3", "table4", "table5"):
         agree = sum(np.sign(ranks[name][i] - ranks[name][j]) == np.sign(ranks["table2"][i] - ranks["table2"][j]) for i, j in pairs)
         rule = "pairs of operators that rank by optima as in Table 2 (Section 4): all"
@@ -211,13 +197,14 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     return rows
 
 
-def _fisher_rows(tables: dict[str, pd.Series], metric: str, words: str, sign: int) -> list[dict]:
+def _fisher_rows(tables: dict[str, pd.Series], trials: dict[str, int], others: list[str], metric: str, words: str, sign: int) -> list[dict]:
     """Whether the proposed mutation's count differs from each other one by more than chance."""
     from scipy import stats
 
-    pairs = list(itertools.product(tables, OTHERS))
+    pairs = list(itertools.product(tables, others))
     counts = [[tables[name][method, metric] for method in ("proposed", other)] for name, other in pairs]
-    p = holm(np.array([stats.fisher_exact([[count, TRIALS - count] for count in both]).pvalue for both in counts]))
+    squares = [[[count, trials[name] - count] for count in both] for (name, _), both in zip(pairs, counts, strict=True)]
+    p = holm(np.array([stats.fisher_exact(square).pvalue for square in squares]))
     return [
         _row(
             *(name, f"metric={metric}, proposed and {other}"),

@@ -17,9 +17,6 @@ from bezierplan.planners.parts import chaotic_maps
 from bezierplan.workspaces.problem import Problem, Workspace
 from bezierplan.workspaces.seeds import generator
 
-# Commonly used parameters of the maps where the paper gives a range or nothing.
-PARAMETERS = chaotic_maps.Parameters(singer_mu=1.07, singer_x4=13.302875, sine_a=4.0, piecewise_p=0.4, sinusoidal_a=2.3)
-
 # The three control points (x, y), in units, of the best known single Bezier curves, by workspace: the results of 300 long runs, improved
 # by sequential quadratic programming. Their lengths are 7.7263 and 7.5180.
 BEST_KNOWN = {
@@ -35,71 +32,54 @@ MOVED = 1  # the one that moves in Figures 10 and 11: the middle one
 GRID = 201  # places along each side of the field
 RIM = 0.01  # least height of a valley's edge above its lowest node, as a share of its value
 
-START, TARGET = (0.0, 0.0), (4.0, 6.0)  # Section 5.1, in units
-
-# Figure 2: the swarm's best place G and two particles in one dimension, each with its place x, velocity v, best place p, r1 and r2.
-# The places are an example; C1 and C2 are those of Table 2.
-G = 8.0
-MOVED_PARTICLES = ((1.0, 1.5, 3.0, 0.5, 0.3), (13.0, -1.0, 11.5, 0.6, 0.25))
-INERTIA, C1, C2 = 1.0, 1.5, 1.5
-
 SEQUENCES = 100  # of the Gauss map
 FIRST_VALUES = 10  # discarded from each of them
+NO_PARAMETERS = chaotic_maps.Parameters(*[math.nan] * len(chaotic_maps.Parameters._fields))  # which that map has
 
-# Section 5.1: the number of rows that each table ranks; Table 6 ranks the numbers of obstacles.
-RANKED = {"table3": 8, "table4": 8, "table5": 5, "table6": 10}
-PARTICLES = 20  # Table 2
-REPEATS = 10  # Section 5.1
+RANKED = ("table3", "table4", "table5", "table6")  # tables whose rows are ranked (Section 5.1)
 WHISKER = 1.5  # interquartile ranges from a box to the ends of its whiskers
 CONVERGED = 0.01  # runs that end within this share of the shortest path of their class have reached its optimum
 
 # The maps of Section 3.3, in its order.
 CHAOTIC = chaotic_maps.MAPS[:8]
 
-# What the text says about best values: (place, method said to be better, method said to be worse).
-SAID = (
-    ("5.3, Fig 8", "cpso1_singer", "cpso1_logistic"),
-    ("5.3, Fig 8", "cpso1_logistic", "cpso1_sine"),
-    *(
-        ("5.3, Fig 8", f"cpso1_{name}", f"cpso1_{worst}")
-        for name in CHAOTIC
-        for worst in ("tent", "piecewise")
-        if name not in ("tent", "piecewise")
-    ),
-    *(("5.4", better, "pso") for better in ("cpso1_singer", "cpso1_sine", "cpso2_singer", "cpso2_sine")),
-    *(("5.4, 5.6, 6", f"cpso2_{name}", f"cpso1_{name}") for name in CHAOTIC),
-)
 
+def chaotic_sequences(
+    *, iterations: int, singer_mu: float, singer_x4: float, sine_a: float, piecewise_p: float, sinusoidal_a: float
+) -> pd.DataFrame:
+    """Figure 3: one row per map of the paper and iteration; columns: map, iteration (from 1), value. Each map has one random start.
 
-def chaotic_sequences() -> pd.DataFrame:
-    """Figure 3: one row per map of the paper and iteration; columns: map, iteration (1 to 500), value. Each map has one random start."""
+    The other arguments: parameters of the maps, as in `chaotic_maps.Parameters`.
+    """
+    parameters = chaotic_maps.Parameters(singer_mu, singer_x4, sine_a, piecewise_p, sinusoidal_a)
     rng = np.random.default_rng(0)
     frames = []
     for name in CHAOTIC:
-        start = chaotic_maps.random_start(rng, name, PARAMETERS)
-        values = chaotic_maps.sequence(name, start, 500, PARAMETERS).values
-        frames.append(pd.DataFrame({"map": name, "iteration": np.arange(1, 501), "value": values}))
+        start = chaotic_maps.random_start(rng, name, parameters)
+        values = chaotic_maps.sequence(name, start, iterations, parameters).values
+        frames.append(pd.DataFrame({"map": name, "iteration": np.arange(1, iterations + 1), "value": values}))
     return pd.concat(frames, ignore_index=True)
 
 
-def ends(workspace: Workspace) -> pd.DataFrame:
+def ends(workspace: Workspace, *, start: list[float], target: list[float]) -> pd.DataFrame:
     """Figure 5: marks of start and target, for any circles."""
-    dots = [("dots", role, role, *place) for role, place in (("start", START), ("target", TARGET))]
+    dots = [("dots", role, role, *place) for role, place in (("start", start), ("target", target))]
     return pd.DataFrame(dots, columns=["mark", "role", "label", "x", "y"])
 
 
-def movement() -> pd.DataFrame:
-    """Figure 2: marks of two particles that move in one dimension, the three parts of each velocity (eq. 8) from tail to head.
+def movement(*, particles: list[list[float]], best: float, inertia: float, c1: float, c2: float) -> pd.DataFrame:
+    """Figure 2: marks of particles that move in one dimension, the three parts of each velocity (eq. 8) from tail to head.
 
+    particles: of each its place x, velocity v, best place p, r1 and r2. best: the swarm's best place. inertia, c1, c2: as in eq. 8.
     Further columns: part (of the velocity, its name) and value (its signed length).
     """
     rows = []
-    for number, (x, v, p, r1, r2) in enumerate(MOVED_PARTICLES):
+    for number, (x, v, p, r1, r2) in enumerate(particles):
         line = -5.0 * number  # the height at which the particle moves
-        parts = {"w v": INERTIA * v, "C1 r1 (p - x)": C1 * r1 * (p - x), "C2 r2 (G - x)": C2 * r2 * (G - x)}
+        parts = {"w v": inertia * v, "C1 r1 (p - x)": c1 * r1 * (p - x), "C2 r2 (G - x)": c2 * r2 * (best - x)}
         moved = x + sum(parts.values())
         names = zip(("inertia", "cognition", "social part"), ("third", "first", "second"), parts.items(), strict=True)
-        aside = math.copysign(1.0, G - x)  # words are placed beyond the heads
+        aside = math.copysign(1.0, best - x)  # words are placed beyond the heads
         rows.append({"mark": "line", "role": "muted", "group": f"line {number}", "x": -1.0, "y": line})
         rows.append({"mark": "line", "role": "muted", "group": f"line {number}", "x": 15.0, "y": line})
         tail = x
@@ -109,7 +89,7 @@ def movement() -> pd.DataFrame:
             tail += part
             words = {"mark": "text", "role": "note", "y": line + 0.9 * height, "text": f"{name} {formula}"}
             rows.append(words | {"x": moved + aside * 4.3})
-        for role, place, words in (("first", x, "x"), ("third", p, "p"), ("start", moved, "new x"), ("target", G, "G")):
+        for role, place, words in (("first", x, "x"), ("third", p, "p"), ("start", moved, "new x"), ("target", best, "G")):
             label = {"first": "place", "third": "its best place", "start": "next place", "target": "the swarm's best place"}[role]
             rows.append({"mark": "dots", "role": role, "group": f"{words} {number}", "label": label, "x": place, "y": line})
             if words != "new x":
@@ -158,19 +138,19 @@ def flow_chart() -> pd.DataFrame:
 
 
 def gauss_above(
-    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]
+    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame], *, limit: float
 ) -> tuple[str, float, tuple[float, float] | None, int]:
-    """Claim C39: the share of values above 0.7 in long sequences of the Gauss map, without their first values.
+    """Claim C39: the share of values above a limit in long sequences of the Gauss map, without their first values.
 
-    It has a limit, 1 - log2(1.7) = 0.234, since the map's values have the density 1 / ((1 + x) ln 2). The interval is that of the mean over
-    sequences, each one unit.
+    It tends to 1 - log2(1 + limit), which is 0.234 for 0.7, since the map's values have the density 1 / ((1 + x) ln 2). The interval is
+    that of the mean over sequences, each one unit.
     """
     rng = np.random.default_rng(0)
     shares = []
     for _ in range(SEQUENCES):
-        start = chaotic_maps.random_start(rng, "gauss", PARAMETERS)
-        values = chaotic_maps.sequence("gauss", start, 1000, PARAMETERS).values[FIRST_VALUES:]
-        shares.append(np.mean(values > 0.7))
+        start = chaotic_maps.random_start(rng, "gauss", NO_PARAMETERS)
+        values = chaotic_maps.sequence("gauss", start, 1000, NO_PARAMETERS).values[FIRST_VALUES:]
+        shares.append(np.mean(values > limit))
     share = float(np.mean(shares))
     reach = 1.96 * float(np.std(shares, ddof=1)) / math.sqrt(SEQUENCES)
     return "-" if share > 0 else "+", share, (share - reach, share + reach), SEQUENCES
@@ -218,12 +198,12 @@ def _landscape(results: Results) -> pd.DataFrame:
     return landscape(results.problems[run["problem"]], run["workspace"], int(run["samples"]), float(run["beta"]))
 
 
-def best_curves(workspace: Workspace) -> pd.DataFrame:
+def best_curves(workspace: Workspace, *, start: list[float], target: list[float]) -> pd.DataFrame:
     """Lengths, in units, of the best Bezier curves found with one control point and more, and of the exact shortest path.
 
     Columns: path (which of the two), control_points, length (of `SAMPLES` samples, of the exact path its own).
     """
-    problem = Problem("", workspace, START, TARGET)
+    problem = Problem("", workspace, tuple(start), tuple(target))
     numbers = range(1, MOST_POINTS + 1)
     rows = [("best Bezier curve found", n, best_curve(problem, n, SAMPLES)[0]) for n in numbers]
     rows += [("exact shortest path", n, shortest_paths.shortest_path(problem).length) for n in numbers]
@@ -354,8 +334,10 @@ def several_homotopy_classes(
     return "+" if number > 1 else "?" if few else "-", float(number), None, len(runs)
 
 
-def least_above(check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]) -> tuple[str, float, None, int]:
-    """Claim C3: whether the least mean value belongs to more particles than `PARTICLES`.
+def least_above(
+    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame], *, limit: int
+) -> tuple[str, float, None, int]:
+    """Claim C3: whether the least mean value belongs to more particles than a limit.
 
     The effect is the share of bootstrap draws from our repeats in which it does; repeats with equal numbers start alike and are drawn
     together.
@@ -364,21 +346,23 @@ def least_above(check: dict, results: dict[str, Results], published: dict[str, p
     values = runs.pivot_table(index="repeat", columns="particles", values=check["metric"]).dropna()
     rng = generator("tharwat2018/C3")
     means = values.to_numpy()[rng.integers(len(values), size=(statistics.DRAWS, len(values)))].mean(axis=1)
-    share = float((values.columns.to_numpy()[means.argmin(axis=1)] > PARTICLES).mean())
+    share = float((values.columns.to_numpy()[means.argmin(axis=1)] > limit).mean())
     return _surely(share), share, None, len(values)
 
 
-def outliers_of_others_alone(check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]) -> tuple[str, float, None, int]:
-    """Claim C20: whether box plots of the paper's ten runs show outliers for other maps, but none for Singer.
+def outliers_of_others_alone(
+    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame], *, runs_drawn: int
+) -> tuple[str, float, None, int]:
+    """Claim C20: whether box plots of as many runs as the paper's show outliers for other maps, but none for Singer.
 
-    The effect is the share of draws of ten runs of each map, in both variants, that do. With many runs, some are always outliers.
+    The effect is the share of draws of `runs_drawn` runs of each map, in both variants, that do. With many runs, some are always outliers.
     """
     runs = select(results[check["experiment"]].runs, check.get("where", {}))
     rng = generator("tharwat2018/C20")
     singer, others = np.zeros(statistics.DRAWS, dtype=bool), np.zeros(statistics.DRAWS, dtype=bool)
     for variant, name in itertools.product(("cpso1", "cpso2"), CHAOTIC):
         values = runs.loc[runs["method"] == f"{variant}_{name}", check["metric"]].to_numpy()
-        drawn = values[rng.integers(len(values), size=(statistics.DRAWS, REPEATS))]
+        drawn = values[rng.integers(len(values), size=(statistics.DRAWS, runs_drawn))]
         low, high = np.quantile(drawn, [0.25, 0.75], axis=1)
         reach = WHISKER * (high - low)
         outside = ((drawn < (low - reach)[:, None]) | (drawn > (high + reach)[:, None])).any(axis=1)
@@ -403,9 +387,11 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     values and the second population of Section 5.5 are checked against the tables, and against each other.
     """
     tables = {name: published[name] for name in RANKED}
+    particles = float(published["table2"].set_index("symbol")["value"]["N"])
     rows = []
-    for name, count in RANKED.items():
-        total = float(_cells(tables[name], "rank")["value"].sum())
+    for name, table in tables.items():
+        ranks = _cells(table, "rank")["value"]
+        total, count = float(ranks.sum()), len(ranks)
         limit = count * (count + 1) / 2
         consistent = abs(total - limit) <= count * 0.05 + 1e-9  # each of them is printed to one decimal
         rows.append(_row(name, "all rows", f"mean ranks of {count} rows add to {limit:g}, up to rounding", total, limit, consistent))
@@ -413,7 +399,7 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
     for name, table in tables.items():
         for metric, rule, limit, sign in (
             ("rank", "a rank is at least 1", 1, 1),
-            ("collisions_a", f"of {PARTICLES} particles at most {PARTICLES} collide in an iteration", PARTICLES, -1),
+            ("collisions_a", f"of {particles:g} particles at most {particles:g} collide in an iteration", particles, -1),
             ("objective", "no path is shorter than the straight line", straight, 1),
         ):
             for row in _cells(table, metric).itertuples():
@@ -426,7 +412,7 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
                 rule = "Table 5 has the number of Table 3 or 4"
                 rows.append(_row("table5", _place(row), rule, row.value, first[row.method], row.value == first[row.method]))
     best = _by_method(pd.concat(list(tables.values())[:3]).drop_duplicates(["method", "metric"]), "objective")
-    for place, better, worse in SAID:
+    for place, better, worse in published["said"].itertuples(index=False):
         table = "table5" if worse == "pso" else "table4" if better.startswith("cpso2") else "table3"
         rule = f"the text ({place}) has {better} better than {worse}"
         rows.append(_row(table, f"method={better}, metric=objective", rule, best[better], best[worse], best[better] < best[worse]))

@@ -7,11 +7,30 @@ need them.
 import importlib
 from functools import cache
 from pathlib import Path
-from typing import ClassVar
+from typing import Any, ClassVar
 
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 
-from bezierplan.study.model import Column, Experiment, Flag, Function, Line, Metric, Model, Where, Whole, Workspace, wrong
+from bezierplan.study.model import (
+    ARGUMENTS,
+    Arguments,
+    Column,
+    Experiment,
+    Flag,
+    Function,
+    Line,
+    Metric,
+    Model,
+    Where,
+    Whole,
+    Workspace,
+    wrong,
+)
+
+EACH = (
+    "a list of at least two mappings, for panels that differ in a few keys: each becomes a panel, with its own keys and those beside "
+    "`each`; `where` may be given in both"
+)
 
 
 class Panel(Model):
@@ -23,8 +42,16 @@ class Panel(Model):
     published_drawn: ClassVar[bool] = False
     rerun: ClassVar[bool] = False
 
-    kind: Line = Field(description="the name of a file in `src/bezierplan/figures`")
+    kind: Line = Field(description="the name of a file in `src/bezierplan/figures/panels`")
     title: Line = Field(None, description="one line above the panel")
+    each: list[dict[str, Any]] = Field(None, min_length=2, description=EACH)
+
+    _place: str = PrivateAttr("")
+
+    @property
+    def place(self) -> str:
+        """Where it stands in the list of panels in the file: the keys that lead to it."""
+        return self._place
 
 
 class RunsPanel(Panel):
@@ -43,6 +70,7 @@ class TablePanel(Panel):
     )
     published: Flag = Field(False, description="whether the function is called with the published tables, true or false")
     workspace: Workspace = Field(None, description="the name of a workspace")
+    arguments: Arguments = Field({}, description=ARGUMENTS)
     where: Where = Field({}, description="column of the table → value or list of values: the rows that are shown")
 
 

@@ -128,7 +128,7 @@ class Options(RunsPanel):
         "all",
         description="whether control points are drawn with their polygon and hull (all; left out: this), alone (points), or not (none)",
     )
-    measure: Metric = Field("length", description="with hue, the metric that is given of each path; left out: length")
+    measure: Metric = Field("length", description="with hue, the metric whose value is written for each path; left out: length")
     bare: Flag = Field(False, description="whether only the workspace with start and target is drawn, true or false")
     letters: list[Line] = Field(None, description="what is written beside start and target: a list of two", min_length=2, max_length=2)
     changed_from: Line = Field(

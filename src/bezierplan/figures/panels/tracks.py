@@ -94,7 +94,7 @@ def _tracked(run: pd.Series, job: dict, problem: Problem) -> list[Path]:
     rng = execution.generator(job, condition, int(run["repeat"]))
     track = planner_module(job["planner"]).track(problem, rng, **execution.settings_in(job, condition))
     if not np.array_equal(track[-1], path_of(run).points):
-        raise ValueError(f"run {run['id']}: made again it ends in another path; its runs table is of another version")
+        raise ValueError(f"run {run['id']}: its rerun ends in another path; the runs table comes from another version of the code")
     return [Path(run["path_curve"], points) for points in track]
 
 

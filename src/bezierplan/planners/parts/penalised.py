@@ -1,9 +1,20 @@
-"""The length of a particle's curve among circles, and the penalty for the circles it meets; a particle holds the free control points."""
+"""The length of a particle's curve, and the penalty for the circles and polygons it meets; a particle holds the free control points.
 
-from typing import Literal, NamedTuple
+tharwat2018 has circles only. Its measure, depth as a share of the circle's radius, is read as depth below the obstacle's edge as a share of
+the largest such depth, which for a circle is the same; so it applies to a polygon too, whose largest depth is the radius of its largest
+inscribed circle. The border is no obstacle: the swarm's own bounds keep the control points inside.
+"""
+
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
 from numba import njit
+
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.polygons import Polygons
+
+if TYPE_CHECKING:
+    from shapely import LinearRing
 
 Penalty = Literal["multiply", "add", "death"]
 _MULTIPLY, _ADD, _DEATH = range(3)
@@ -12,16 +23,30 @@ _MULTIPLY, _ADD, _DEATH = range(3)
 FEASIBLE = 1e-9
 
 
+class Polygonal(NamedTuple):
+    """Polygonal obstacles, for the kernels, in units.
+
+    edges: (edges, 4), x and y of both ends of the edges of all polygons and their holes, polygon by polygon. first: (obstacles + 1,), where
+    each polygon's edges begin. boxes: (obstacles, 4), left, right, bottom and top. deepest: (obstacles,), the largest depth in it.
+    """
+
+    edges: np.ndarray
+    first: np.ndarray
+    boxes: np.ndarray
+    deepest: np.ndarray
+
+
 class Objective(NamedTuple):
     """The fitness of a path, for the kernels.
 
     ends: (2, samples), x and y contributions of start and target to the samples. free: (n, samples), the weights of the free control
-    points. circles: (obstacles, 3), x, y and radius, in units. penalty: the rule's number. beta: its factor.
+    points. circles: (obstacles, 3), x, y and radius, in units. polygons: the other obstacles. penalty: the rule's number. beta: its factor.
     """
 
     ends: np.ndarray
     free: np.ndarray
     circles: np.ndarray
+    polygons: Polygonal
     penalty: int
     beta: float
 
@@ -81,15 +106,88 @@ def length(z: np.ndarray, objective: Objective, x: np.ndarray, y: np.ndarray, ch
     return (a + b) + (c + d)
 
 
+def round_obstacles(workspace: Circles | Polygons, d_min: float) -> np.ndarray:
+    """The circles of a workspace, grown by a distance in units: (obstacles, 3), x, y and radius; none among polygons."""
+    if not isinstance(workspace, Circles):
+        return np.empty((0, 3))
+    circles = np.empty((len(workspace.radii), 3))
+    circles[:, :2], circles[:, 2] = workspace.centres, workspace.radii + d_min
+    return circles
+
+
+def polygonal_obstacles(workspace: Circles | Polygons, d_min: float) -> Polygonal:
+    """The polygons of a workspace, grown by a distance in units; none among circles."""
+    if not isinstance(workspace, Polygons) or not workspace.obstacles:
+        return Polygonal(np.empty((0, 4)), np.zeros(1, dtype=np.int64), np.empty((0, 4)), np.empty(0))
+    import shapely
+
+    shapes = [shapely.Polygon(outer, holes).buffer(d_min) for outer, *holes in workspace.obstacles]
+    edges = [np.concatenate([_sides(ring) for ring in (shape.exterior, *shape.interiors)]) for shape in shapes]
+    return Polygonal(
+        edges=np.concatenate(edges),
+        first=np.concatenate([[0], np.cumsum([len(each) for each in edges])]),
+        boxes=np.array([shape.bounds for shape in shapes])[:, [0, 2, 1, 3]],
+        deepest=np.array([shapely.maximum_inscribed_circle(shape).length for shape in shapes]),
+    )
+
+
+def _sides(ring: "LinearRing") -> np.ndarray:
+    """The sides (n, 4) of a ring."""
+    corners = np.array(ring.coords)
+    return np.hstack([corners[:-1], corners[1:]])
+
+
 @njit(cache=True)
-def violation(x: np.ndarray, y: np.ndarray, circles: np.ndarray, squares: np.ndarray) -> tuple[float, int]:
-    """Violation of a path, and its number of samples in circles, both summed over the circles.
+def violation(x: np.ndarray, y: np.ndarray, objective: Objective, scratch: np.ndarray) -> tuple[float, int]:
+    """Violation of a path, and its number of samples in obstacles, both summed over the obstacles.
 
-    The violation of a circle is the mean over the samples of their depth below its edge, as a share of its radius (tharwat2018, eqs. 20 and
-    21; the paper prints control points where only points of the path make sense).
+    The violation of an obstacle is the mean over the samples of their depth below its edge, as a share of the largest depth (tharwat2018,
+    eqs. 20 and 21; the paper prints control points where only points of the path make sense).
 
-    x, y: (samples,). circles: (obstacles, 3). squares: (samples,) scratch.
+    x, y: (samples,). scratch: (samples,).
     """
+    of_circles, in_circles = _among_circles(x, y, objective.circles, scratch)
+    of_polygons, in_polygons = _among_polygons(x, y, objective.polygons)
+    return of_circles + of_polygons, in_circles + in_polygons
+
+
+@njit(cache=True)
+def _among_polygons(x, y, polygons):
+    samples = len(x)
+    total, colliding = 0.0, 0
+    for o in range(len(polygons.deepest)):
+        left, right, bottom, top = polygons.boxes[o]
+        edges = polygons.edges[polygons.first[o] : polygons.first[o + 1]]
+        depths = 0.0
+        for s in range(samples):
+            if left < x[s] < right and bottom < y[s] < top:
+                depth = _depth(x[s], y[s], edges)
+                depths += depth / polygons.deepest[o]
+                colliding += depth > 0.0
+        total += depths / samples
+    return total, colliding
+
+
+@njit(cache=True)
+def _depth(x, y, edges):
+    """Distance of a point to the nearest edge (n, 4) of a polygon; 0 outside of it, where a ray to the right crosses an even number of
+    edges.
+    """
+    inside = False
+    nearest = np.inf
+    for e in range(len(edges)):
+        x1, y1, x2, y2 = edges[e]
+        dx, dy = x2 - x1, y2 - y1
+        if (y1 > y) != (y2 > y) and x < x1 + (y - y1) / dy * dx:
+            inside = not inside
+        along = min(max(((x - x1) * dx + (y - y1) * dy) / (dx * dx + dy * dy), 0.0), 1.0)
+        nearest = min(nearest, (x1 + along * dx - x) ** 2 + (y1 + along * dy - y) ** 2)
+    return np.sqrt(nearest) if inside else 0.0
+
+
+@njit(cache=True)
+def _among_circles(x, y, circles, squares):
+    """The parts of `violation` for circles (obstacles, 3)."""
     samples = len(x)
     total, colliding = 0.0, 0
     for o in range(len(circles)):

@@ -54,7 +54,7 @@ class PublishedMargin(Model):
 Margin = Annotated[Any, mapping_or(PublishedMargin, Positive)]
 
 # Descriptions of keys shared by several kinds of check.
-SECONDARY = "true: shown, does not decide; left out otherwise"
+SECONDARY = "true: shown, but not counted for the verdict; left out otherwise"
 EXPERIMENT = "the name of an experiment, or a list of at least two"
 PAIRED = "whether equal units are compared with each other, true or false; left out: as the experiment is drawn"
 SCALE = "absolute (left out: this), or relative to the value of the other group"
@@ -62,12 +62,12 @@ MARGIN = (
     "the smallest effect that matters: a number above 0, or {published: share}, that share of the other group's value, or the printed "
     "difference of the same cells if it is smaller"
 )
-WORK = "the metric of counted work that decides in the place of seconds, which differ from machine to machine and are reported"
+WORK = "the metric of counted work that is judged instead of seconds, which differ from machine to machine and are only reported"
 POOL = "a list of columns whose values are averaged with equal weight"
 GROUPS = "a list of values of the column `across`, or rest: the artefact's groups that are not named"
 THAN = "likewise: what the groups are compared with, each with each"
 SIDE = "lower or higher: how the groups, or the first tier, compare with the others"
-STATISTIC = "of what: rank (left out: this), mean, median, iqr, range, min or max"
+STATISTIC = "the statistic that is compared: rank (left out: this), mean, median, iqr, range, min or max"
 FAILURES = (
     "what a run without a feasible path counts: drop (left out: this), last (worse than any success; also runs that do not satisfy a "
     "condition on an outcome) or count (the event is false)"

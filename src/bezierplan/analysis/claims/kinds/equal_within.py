@@ -47,7 +47,7 @@ class Options(Comparing):
     pool: Columns = Field([], description=POOL)
     groups: Groups = Field(description=GROUPS)
     than: Groups = Field(description=THAN)
-    statistic: Literal["mean", "median", "min", "max"] = Field(description="of what: mean, median, min or max")
+    statistic: Literal["mean", "median", "min", "max"] = Field(description="the statistic that is compared: mean, median, min or max")
     target: Number = Field(0, description="the claimed difference, a number; left out: 0")
 
 

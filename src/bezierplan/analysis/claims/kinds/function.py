@@ -1,7 +1,7 @@
 """The finding of a function in the study's module, for sentences that fit no other kind.
 
-It takes the check, the results by experiment and the published numbers by file, and returns a mark, the effect, its 95 % interval or
-None, and the number of units.
+It takes the check, the results by experiment, the published numbers by file, and the arguments that the check gives. It returns a mark,
+the effect, its 95 % interval or None, and the number of units.
 """
 
 from __future__ import annotations
@@ -14,13 +14,14 @@ from bezierplan.analysis.claims.effects import Finding
 from bezierplan.analysis.claims.kinds import EXPERIMENT, Check
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.study.checked import Fault, closest
-from bezierplan.study.model import Experiment, Function, Line, Metric, Where, listed, one_or_list
+from bezierplan.study.model import ARGUMENTS, Arguments, Experiment, Function, Line, Metric, Where, listed, one_or_list
 
 
 class Options(Check):
     """Keys of a check."""
 
     name: Function = Field(description="the name of a function of `src/bezierplan/analysis/papers/<study>.py`")
+    arguments: Arguments = Field({}, description=ARGUMENTS)
     effect: Line = Field(description="what its effect measures, in words")
     effect_unit: Line = Field(description="the unit of its effect, - for a number without unit")
     experiment: listed(Experiment, least=2, single=True) = Field(None, description=EXPERIMENT)
@@ -35,6 +36,6 @@ def findings(check: dict, claim: dict, material: Material) -> list[tuple[str, st
             raise Untestable(f"the experiment {experiment} was not run")
     if check["name"] not in material.functions:
         raise Fault(f"claim {claim['id']}: function {check['name']}: unknown{closest(check['name'], material.functions)}")
-    mark, effect, interval, n = material.functions[check["name"]](check, material.results, material.published)
+    mark, effect, interval, n = material.functions[check["name"]](check, material.results, material.published, **check.get("arguments", {}))
     low, high = interval or (math.nan, math.nan)
     return [("", check["name"], Finding(effect, check["effect"], effect, low, high, n, mark=mark))]

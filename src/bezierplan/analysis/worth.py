@@ -1,0 +1,137 @@
+"""What each method is worth beside a baseline that anyone could use: the exact shortest path with rounded corners.
+
+A method is measured under the conditions of some experiments, a condition being a problem with the values of the varied settings. Under
+each, the median of its runs is divided by the median of the baseline's runs; the table has the median of these ratios over the conditions.
+
+| column | meaning |
+| --- | --- |
+| study, method, baseline | what is measured, and against what |
+| conditions | conditions under which both have runs |
+| feasible, feasible_baseline | share of their runs whose path the certified checker accepts |
+| compared | conditions under which both have a feasible run |
+| length | length over the baseline's, feasible runs only |
+| bent | those of the compared conditions under which the baseline's path bends and has no corners |
+| curvature | largest curvature over the baseline's under these conditions, feasible runs only; infinite for paths with corners |
+| cpu | CPU time over the baseline's, all runs |
+"""
+
+import numpy as np
+import pandas as pd
+
+from bezierplan.analysis import metrics
+from bezierplan.analysis.results import Results
+
+COLUMNS = (
+    *("study", "method", "baseline", "conditions", "feasible", "feasible_baseline"),
+    *("compared", "length", "bent", "curvature", "cpu"),
+)
+
+# A path whose largest curvature times its length is below this, in radians, is straight.
+_STRAIGHT = 1e-6
+
+# In the sentence, ratios closer to 1 than this are equal to it.
+_EQUAL = 1e-3
+
+
+def measured(found: dict[str, Results], baseline: str) -> pd.DataFrame:
+    """One row for each method of some experiments, in all of which the baseline runs; `COLUMNS` but for the study."""
+    medians = pd.concat([_medians(results).assign(experiment=name) for name, results in found.items()], ignore_index=True)
+    of_baseline = medians["method"] == baseline
+    pairs = medians[~of_baseline].merge(medians[of_baseline], on=["experiment", "condition"], suffixes=("", "_baseline"))
+    bent = np.isfinite(pairs["curvature_baseline"]) & (pairs["curvature_baseline"] * pairs["length_baseline"] > _STRAIGHT)
+    pairs["curvature_baseline"] = pairs["curvature_baseline"].where(bent)
+    for name in ("length", "curvature", "cpu"):
+        pairs[name] /= pairs[f"{name}_baseline"]
+    return pd.DataFrame([_row(method, pair, baseline) for method, pair in pairs.groupby("method", sort=False)], columns=COLUMNS[1:])
+
+
+def _medians(results: Results) -> pd.DataFrame:
+    """One row for each condition and method: medians of length, curvature and CPU time, and the numbers of runs and of feasible ones."""
+    runs, problems = results.runs, results.problems
+    cornered = metrics.values(runs, "corners", problems) > 0
+    values = runs[["condition", "method"]].assign(
+        length=metrics.values(runs, "length", problems),
+        curvature=metrics.values(runs, "max_curvature", problems).mask(cornered, np.inf),
+        cpu=runs["cpu_s"],
+        free=runs["feasible"].astype(bool),
+    )
+    groups = values.groupby(["condition", "method"], sort=False)
+    return groups[["length", "curvature", "cpu"]].median().join(groups["free"].agg(free="sum", runs="count")).reset_index()
+
+
+def _row(method: str, pair: pd.DataFrame, baseline: str) -> dict:
+    return {
+        "method": method,
+        "baseline": baseline,
+        "conditions": len(pair),
+        "feasible": pair["free"].sum() / pair["runs"].sum(),
+        "feasible_baseline": pair["free_baseline"].sum() / pair["runs_baseline"].sum(),
+        "compared": pair["length"].count(),
+        "length": pair["length"].median(),
+        "bent": pair["curvature"].count(),
+        "curvature": pair["curvature"].median(),
+        "cpu": pair["cpu"].median(),
+    }
+
+
+def section(rows: pd.DataFrame, titles: dict[str, str]) -> list[str]:
+    """Paragraphs of the summary: a heading, what is compared, and a sentence for each study; none without rows.
+
+    rows: those of all studies, with the columns `COLUMNS`. titles: of the studies, by name.
+    """
+    if rows.empty:
+        return []
+    return [
+        "## Beside the exact shortest path with rounded corners",
+        "The baseline is what a practitioner could drive without any of these planners. `worth.csv` has the numbers: medians over "
+        "conditions of a method's median over the baseline's.",
+        *(f"**{titles[study]}** {sentence(own)}" for study, own in rows.groupby("study", sort=False)),
+    ]
+
+
+def sentence(own: pd.DataFrame) -> str:
+    """What follows from the rows of one study."""
+    count = len(own)
+    parts = [
+        f"{_counted(count, 'method')}: feasible in {_span(100 * own['feasible'])} % of the runs (baseline: "
+        f"{_number(100 * own['feasible_baseline'].min())} %), at {_span(own['cpu'])} times the baseline's CPU time."
+    ]
+    if own["length"].notna().any():
+        cornered, less = np.isinf(own["curvature"]).sum(), (own["curvature"] < 1 - _EQUAL).sum()
+        parts.append(
+            f"Feasible paths are {_span(own['length'])} times as long; those of {less} of {_counted(count, 'method')} curve less, those of "
+            f"{cornered} have corners."
+        )
+    return " ".join([*parts, _verdict(own)])
+
+
+def _verdict(own: pd.DataFrame) -> str:
+    """Whether a method that is feasible as often as the baseline is shorter or curves less."""
+    reliable = own[own["feasible"] >= own["feasible_baseline"]]
+    better = reliable[(reliable["length"] < 1 - _EQUAL) | (reliable["curvature"] < 1 - _EQUAL)]
+    if reliable.empty:
+        return "No method is feasible as often as the baseline."
+    if better.empty:
+        return f"Of the {len(reliable)} feasible as often as the baseline, none is shorter or curves less."
+    best = better.sort_values(["curvature", "length"], kind="stable").iloc[0]
+    found = "is shorter or curves less" if len(better) == 1 else "are shorter or curve less"
+    return (
+        f"Of the {len(reliable)} feasible as often as the baseline, {len(better)} {found}; the least curved, {best['method']}, has "
+        f"{_number(best['curvature'])} times the curvature, {_number(best['length'])} times the length and {_number(best['cpu'])} times "
+        "the CPU time."
+    )
+
+
+def _counted(count: int, noun: str) -> str:
+    return f"{count} {noun}" + ("s" if count != 1 else "")
+
+
+def _span(values: pd.Series) -> str:
+    """The least and the largest of some numbers, once if they print alike."""
+    low, high = _number(values.min()), _number(values.max())
+    return low if low == high else f"{low} to {high}"
+
+
+def _number(value: float) -> str:
+    """Three digits, without an exponent."""
+    return f"{float(f'{value:.3g}'):,.10g}"

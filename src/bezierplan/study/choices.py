@@ -1,0 +1,68 @@
+"""The grid of readings of a paper: every choice that it leaves open and that governs its published numbers.
+
+A choice is a mapping of plain values: id; detail; values, the one in force first (None, as methods may differ in it); and what it governs:
+
+    setting, methods, along   a setting of some methods, and further settings that go with it, method -> settings
+    column                    the column of the tables whose value is the paper's world
+    metric                    the metric with which a printed word is compared
+"""
+
+from typing import Any
+
+from bezierplan.analysis.metrics import METRICS
+from bezierplan.study import alternatives, jobs
+from bezierplan.study.artefacts import Pivot
+from bezierplan.study.definition import Study
+from bezierplan.study.model import one_or_list
+
+
+def printed_tables(study: Study) -> dict[str, Pivot]:
+    """The tables of runs that have published numbers."""
+    return {name: table for name, table in study.compared().items() if table.published}
+
+
+def choices(study: Study) -> list[dict[str, Any]]:
+    """All choices: settings that assumptions govern, and worlds between which the tables leave the choice."""
+    printed = {method for name, table in printed_tables(study).items() for method in _methods(study, name, table)}
+    found = []
+    for assumption in study.assumptions:
+        metrics = {assumption.default, *assumption.alternatives} if isinstance(assumption.default, str) else set()
+        if metrics and metrics <= METRICS.keys():
+            found.append(
+                {"id": assumption.id, "detail": assumption.detail, "values": [None, *assumption.alternatives], "metric": assumption.default}
+            )
+        if assumption.setting and assumption.alternatives:
+            methods = [method for method in alternatives.concerned(study, assumption) if method in printed]
+            if methods:
+                described = {"id": assumption.id, "detail": assumption.detail, "values": [None, *assumption.alternatives]}
+                along = {method: assumption.along[method] for method in methods if method in assumption.along}
+                found.append(described | {"setting": assumption.setting, "methods": methods, "along": along})
+    worlds: dict[str, list] = {}
+    for table in printed_tables(study).values():
+        for column, value in table.primary.items():
+            values = worlds.setdefault(column, [value])
+            values += [other for other in one_or_list(table.where.get(column, [])) if other not in values]
+    for column, values in worlds.items():
+        found.append({"id": column, "detail": f"Which {column} the tables show", "values": [None, *values[1:]], "column": column})
+    return found
+
+
+def _methods(study: Study, name: str, table: Pivot) -> list[str]:
+    """Methods of a table that are the paper's own: no baselines and no variants."""
+    methods = one_or_list(table.where.get("method", study.experiments[table.experiment].methods))
+    return [method for method in methods if method not in study.baselines and not study.methods[method].variant_of]
+
+
+def readings_job(study: Study, scale: str) -> dict[str, Any]:
+    """What the search for a reading depends on, in addition to problems, bounds and the files of published numbers."""
+    tables = {}
+    for name, table in printed_tables(study).items():
+        content = study.experiments[table.experiment]
+        methods = _methods(study, name, table)
+        chunk_jobs = {method: jobs.job(study, table.experiment, method, scale, 0) for method in methods}
+        for job in chunk_jobs.values():
+            job["repeats"] = [0, content.repeats[scale]]
+        spec = table.plain() | {"where": table.where | {"method": methods}}
+        tables[name] = {"experiment": table.experiment, "spec": spec, "jobs": chunk_jobs}
+    experiments = list(dict.fromkeys(table["experiment"] for table in tables.values()))
+    return {"study": study.key, "tables": tables, "choices": choices(study), "experiments": experiments}

@@ -1,0 +1,33 @@
+"""The studies of the project, read once per process. `test_studies.py` checks that each of them is free of faults."""
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from bezierplan.study import reading
+from bezierplan.study.definition import Study
+
+FOLDER = Path(__file__).parents[1] / "config" / "studies"
+KEYS = ("song2016", "elhoseny2017", "tharwat2018", "ma2020", "meledje")
+
+
+@cache
+def study(key: str) -> Study:
+    """A study, without the checks across its files, which take seconds. Tests share it, so none may change it."""
+    return reading.read_study(FOLDER / key)
+
+
+def studies() -> dict[str, Study]:
+    """All of them, by name."""
+    return {key: study(key) for key in KEYS}
+
+
+def arguments(key: str, function: str) -> dict[str, Any]:
+    """The arguments that a study gives a function of its module, in the first place that names it."""
+    own = study(key)
+    panels = [panel for figure in own.figures.values() for panel in figure.panels]
+    checks = [check for claim in own.claims for check in claim.checks]
+    for each in (*own.tables.values(), *panels, *checks):
+        if function in (getattr(each, key, None) for key in ("function", "data", "name")):
+            return each.arguments
+    raise KeyError(function)
