@@ -103,6 +103,10 @@ def test_the_text_swaps_two_counts_and_has_eta_end_at_0(rows):
     assert last["limit"] == pytest.approx(0.358, abs=5e-4)
 
 
+def test_the_title_has_a_dynamic_field_and_no_table_obstacles_that_move(rows):
+    assert broken(rows, "dynamic field") == {"title"}
+
+
 # The claim on printed lengths over the bounds.
 
 

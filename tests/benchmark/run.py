@@ -16,6 +16,7 @@ from elhoseny2017 import benchmark_fields
 from geometry import benchmark_geometry
 from meledje import benchmark_node_genetic
 from runs import benchmark_runs
+from simulation import benchmark_simulation
 from song2016 import benchmark_binary_genetic
 from tharwat2018 import benchmark_chaotic_pso
 from timing import ROUNDS
@@ -45,6 +46,7 @@ PARTS = {
     "meledje": benchmark_node_genetic,
     "elhoseny2017": benchmark_fields,
     "runs": benchmark_runs,
+    "simulation": benchmark_simulation,
     "geometry": benchmark_geometry,
     "start": benchmark_start,
 }

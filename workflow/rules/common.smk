@@ -48,6 +48,13 @@ def studies_with(tables):
     return "|".join(f"{re.escape(key)}(?=/tables/(?:{one_of(names)})[.])" for key, names in tables.items()) or "(?!)"
 
 
+def studies_of(experiments):
+    """Pattern of the names of studies in paths of experiments: runs of one experiment may be simulated drives, those of another not."""
+    places = {key: rf"(?=/(?:problems|runs)/(?:{one_of(names)})(?:[.]|/))" for key, names in experiments.items()}
+    return "|".join(re.escape(key) + place for key, place in places.items()) or "(?!)"
+
+
+STILL, MOVING = targets.moving(STUDIES, False), targets.moving(STUDIES, True)
 COMPARED = {key: study.compared().keys() for key, study in STUDIES.items()}
 LISTED = {key: study.tables.keys() - study.compared().keys() for key, study in STUDIES.items()}
 

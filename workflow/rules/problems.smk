@@ -8,6 +8,8 @@ rule problems:
         f"{RESULTS}/problems/{{experiment}}.parquet",
     log:
         f"{RESULTS}/logs/problems/{{experiment}}.log",
+    wildcard_constraints:
+        study=studies_of(STILL),
     params:
         **params(targets.problems_params, "job", "folder", "maps", "code"),
     script:
@@ -21,7 +23,9 @@ rule bounds:
         f"{RESULTS}/problems/{{experiment}}.bounds.parquet",
     log:
         f"{RESULTS}/logs/bounds/{{experiment}}.log",
+    wildcard_constraints:
+        study=studies_of(STILL),
     params:
-        **targets.bounds_params(),
+        **targets.bounds_params("bounds"),
     script:
         "../scripts/bounds.py"

@@ -9,6 +9,8 @@ rule runs:
         times=f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.times.parquet",
     log:
         f"{RESULTS}/logs/runs/{{experiment}}/{{method}}/{{chunk}}.log",
+    wildcard_constraints:
+        study=studies_of(STILL),
     params:
         **params(targets.run_params, "job", "code"),
     script:

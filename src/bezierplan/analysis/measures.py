@@ -115,6 +115,16 @@ def gap(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
     return runs["length"] / runs["bound"] - 1
 
 
+def collided(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Whether (n,) a drive collides at any time."""
+    return runs["collision_at"].notna()
+
+
+def gap_arrival(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Time of arrival over the earliest one found with the future known, minus 1 (n,)."""
+    return runs["arrival"] / runs["clairvoyant_arrival"] - 1
+
+
 def gap_best(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
     """Length over that of the best run of the same method and condition, minus 1 (n,)."""
     best = runs.groupby(["experiment", "condition", "method"])["length"].transform("min")

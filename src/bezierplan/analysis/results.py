@@ -8,8 +8,10 @@ import pandas as pd
 import pyarrow.parquet as parquet
 
 from bezierplan.running import problems as problem_files
+from bezierplan.running import worlds
 from bezierplan.study.model import one_or_list
 from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.workspaces.worlds import World
 
 
 class Results(NamedTuple):
@@ -17,7 +19,7 @@ class Results(NamedTuple):
 
     runs: one row per run, columns as in `running.run_chunk`, with the bounds of its problem. problems: by name.
     bounds: one row per problem, indexed by name, columns as in `problems.bounds_of`. published: the study's published numbers, if
-    requested. jobs: method -> the job of its runs (`study.job`), if runs are reproduced.
+    requested. jobs: method -> the job of its runs (`study.job`), if runs are reproduced. worlds: by problem, where a world moves.
     """
 
     runs: pd.DataFrame
@@ -25,6 +27,7 @@ class Results(NamedTuple):
     bounds: pd.DataFrame
     published: pd.DataFrame | None = None
     jobs: dict[str, dict] | None = None
+    worlds: dict[str, World] | None = None
 
 
 def read(runs: list[str], repeats: int, problems: str, bounds: str) -> Results:
@@ -35,7 +38,8 @@ def read(runs: list[str], repeats: int, problems: str, bounds: str) -> Results:
     """
     table = pd.concat([_with_times(file) for file in runs], ignore_index=True)
     table = table[table["repeat"] < repeats].reset_index(drop=True)
-    return joined(table, problem_files.read(problems), parquet.read_table(bounds).to_pandas())
+    found = joined(table, problem_files.read(problems), parquet.read_table(bounds).to_pandas())
+    return found._replace(worlds=worlds.read(problems))
 
 
 def _with_times(file: str) -> pd.DataFrame:

@@ -21,7 +21,7 @@ def run_tables(folder: Path) -> dict[str, list[Path]]:
     """The chunk files of each run table below a folder, by `study/experiment/method`. Raises FileNotFoundError if there is none."""
     tables: dict[str, list[Path]] = {}
     for file in sorted(folder.rglob("runs/*/*/*.parquet")):
-        if not file.name.endswith(".times.parquet"):
+        if file.stem.isdecimal():  # not the times and traces next to it
             study, _, experiment, method, _ = file.parts[-5:]
             tables.setdefault(f"{study}/{experiment}/{method}", []).append(file)
     if not tables:

@@ -9,9 +9,9 @@ import pandas as pd
 from bezierplan.analysis import results
 from bezierplan.commands import add_studies
 from bezierplan.commands.digest import read_rows, row_text
-from bezierplan.figures import sheet
+from bezierplan.figures import animation, sheet
 from bezierplan.geometry.region import region
-from bezierplan.running import execution, problems
+from bezierplan.running import execution, problems, rides, worlds
 from bezierplan.study import reading
 from bezierplan.study.checked import Fault, closest
 from bezierplan.study.definition import Study
@@ -35,6 +35,9 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     picture = Path("results/replay") / f"{given.run}.svg"
     draw(found, studies[run["study"]], picture)
     print(f"{'picture':18}{picture}")
+    if found.worlds:
+        animate(found, picture.with_suffix(".gif"))
+        print(f"{'animation':18}{picture.with_suffix('.gif')}")
 
 
 def replay(name: str, studies: dict[str, Study]) -> results.Results:
@@ -56,6 +59,8 @@ def replay(name: str, studies: dict[str, Study]) -> results.Results:
     if not repeat.isdecimal():
         raise Fault(f"{name}: repeat: {repeat}; expected a whole number")
 
+    if study.moves(experiment):
+        return _redriven(described, condition, int(repeat), study)
     made, _ = problems.build_all(problems_job(study, experiment, "full"), study.folder)
     problem = {condition.problem: made[condition.problem]}
     plan = execution.run(described, condition, int(repeat), made[condition.problem])
@@ -64,6 +69,16 @@ def replay(name: str, studies: dict[str, Study]) -> results.Results:
     except RuntimeError as error:
         raise Fault(str(error)) from None
     return results.joined(pd.DataFrame([row]), problem, problems.bounds_of(problem).to_pandas())
+
+
+def _redriven(described: dict, condition: execution.Condition, repeat: int, study: Study) -> results.Results:
+    """A run in a world that moves."""
+    made, _, found = worlds.build_all(problems_job(study, described["experiment"], "full"), study.folder)
+    name = condition.problem
+    problem, world = {name: made[name]}, {name: found[name]}
+    row, _ = rides.row(described, condition, repeat, rides.run(described, condition, repeat, made[name], found[name]), found[name])
+    joined = results.joined(pd.DataFrame([row]), problem, rides.bounds_of(problem, world).to_pandas())
+    return joined._replace(worlds=world, jobs={described["method"]: described})
 
 
 def _named(name: str, known: dict[str, Any], place: str) -> Any:
@@ -77,7 +92,7 @@ def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:
     study, experiment, _, method, _ = name.split("/")
     found = {}
     for file in sorted(folder.glob(f"*/{study}/runs/{experiment}/{method}/*.parquet")):
-        if not file.name.endswith(".times.parquet"):
+        if file.stem.isdecimal():  # not the times and traces next to it
             for row in read_rows(file, name):
                 found[file] = row
     return found
@@ -89,9 +104,13 @@ def equal(run: pd.Series, stored: dict[str, Any]) -> bool:
 
 
 def draw(made: results.Results, study: Study, file: Path) -> None:
-    """Save the picture of a reproduced run: its path, control points, first collision, if any, and the shortest path; svg, png and csv."""
+    """Save the picture of a reproduced run: its path, control points, first collision, if any, and the shortest path; of a drive, its end
+    with the plans; svg, png and csv.
+    """
     run = made.runs.iloc[0]
     panel = {"kind": "paths", "experiment": run["experiment"], "pick": {"repeat": int(run["repeat"])}}
+    if made.worlds:
+        panel |= {"kind": "snapshot", "at": 1}
     unit = made.problems[run["problem"]].workspace.unit
     scene = sheet.Scene({run["experiment"]: made.problems}, {}, study.labels, unit)
     file.parent.mkdir(parents=True, exist_ok=True)
@@ -99,3 +118,11 @@ def draw(made: results.Results, study: Study, file: Path) -> None:
     sheet.write_data(frame, str(file.with_suffix(".csv")))
     figure = sheet.draw([panel], sheet.read_data(str(file.with_suffix(".csv"))), scene, 1)
     sheet.save(figure, str(file.with_suffix(".svg")), str(file.with_suffix(".png")))
+
+
+def animate(made: results.Results, file: Path) -> None:
+    """Save a reproduced drive as an animated gif."""
+    run = made.runs.iloc[0]
+    name = run["problem"]
+    ride, verdict = rides.rerun(made.jobs[run["method"]], run["condition"], int(run["repeat"]), made.problems[name], made.worlds[name])
+    animation.save(made.worlds[name], made.problems[name], ride, verdict, file)

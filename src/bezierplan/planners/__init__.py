@@ -10,7 +10,8 @@ test is meant to agree with the certified check; `keeps_best = False`, if its re
 `deterministic = True`, if it uses no random numbers; `check(settings)`, which raises ValueError for incompatible settings;
 `serves(problem)`, which raises ValueError for a problem that the planner cannot solve; `track(problem, rng, **settings)`, the control
 points (iterations + 1, n, 2) of the best path after each iteration of the run that `plan` makes with the same arguments, for figures that
-show how a run arrived at its path.
+show how a run arrived at its path; `resume(problem, rng, last, **settings)`, a `Plan` and what the next call gets as `last`, None at first:
+a plan that starts from an earlier one, for robots whose world changes.
 """
 
 import importlib

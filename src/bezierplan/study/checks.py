@@ -13,7 +13,7 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.claims.kinds import Check
 from bezierplan.planners import planner_module
-from bezierplan.running import problems
+from bezierplan.running import problems, worlds
 from bezierplan.running.execution import conditions, settings_in
 from bezierplan.study import published
 from bezierplan.study.alternatives import alternatives, concerned, methods_changed, with_alternative
@@ -84,6 +84,10 @@ def _check_experiments(study: Study, place: str) -> None:
             _known(method.variant_of, study.methods, f"{where}: variant_of")
         for setting in method.settings:
             _known(setting, study.accepted(name), f"{where}: settings")
+        if method.policy:
+            _known(method.policy, study.policies, f"{where}: policy")
+            if study.policies[method.policy].warm and not hasattr(planner_module(study.planner(name)), "resume"):
+                raise Fault(f"{where}: policy: {method.policy}: warm, but planner {method.planner} has no function resume")
     used = {setting for name in study.methods for setting in study.accepted(name)}
     _check_shared_settings(study, used, place)
     check_complete(study, place)
@@ -125,7 +129,7 @@ def _check_workspace(study: Study, name: str, place: str) -> None:
     workspace = study.workspaces[name]
     for key, file in files_of(workspace).items():
         inside(study.folder, file, f"{place}: {key}: {file}")
-    if not workspace.drawn:
+    if not workspace.drawn and not workspace.moves:
         try:
             files.load(workspace.plain(), study.folder)
         except ValueError as error:
@@ -147,7 +151,7 @@ def _check_problem(study: Study, built: Callable[[str], Problem], name: str, pla
         with_side = [kind for kind, model in WORKSPACES.items() if model.with_side]
         needed = "side is needed" if home.with_side else f"side needs a workspace of kind {' or '.join(with_side)}"
         raise Fault(f"{place}: workspace: {problem.workspace}: {needed}")
-    if home.kind == "random_circles" and max(problem.obstacles) > home.circles:
+    if home.kind in ("random_circles", "random_moving_circles") and max(problem.obstacles) > home.circles:
         raise Fault(f"{place}: obstacles: {max(problem.obstacles)}; expected at most {home.circles}, the circles of the workspace")
     try:
         built(name)
@@ -160,9 +164,8 @@ def _built(study: Study, name: str) -> Problem:
     problem, home = study.problems[name], study.workspace_of(name)
     drawn = {"layout": 0, "obstacles": max(problem.obstacles)} if home.drawn else {}
     described = {name: problem.plain("settings", "layouts") | drawn}
-    return problems.build_all({"study": study.key, "problems": described, "workspaces": {problem.workspace: home.plain()}}, study.folder)[
-        0
-    ][name]
+    build_all = worlds.build_all if home.moves else problems.build_all
+    return build_all({"study": study.key, "problems": described, "workspaces": {problem.workspace: home.plain()}}, study.folder)[0][name]
 
 
 def _check_experiment(study: Study, built: Callable[[str], Problem], name: str, place: str) -> None:
@@ -173,6 +176,13 @@ def _check_experiment(study: Study, built: Callable[[str], Problem], name: str, 
         if method in study.baselines:
             raise Fault(f"{place}: methods: {method}: a baseline; it joins by itself")
         _known(method, study.methods.keys() - study.baselines, f"{place}: methods")
+    still = [problem for problem in experiment.problems if not study.workspace_of(problem).moves]
+    if study.moves(name) and still:
+        raise Fault(f"{place}: problems: {still[0]}: its workspace does not move; expected problems that all move, or none")
+    for method in experiment.methods:
+        if study.moves(name) != bool(study.methods[method].policy):
+            wrong = "has no policy, which a world that moves needs" if study.moves(name) else "has a policy, but nothing moves here"
+            raise Fault(f"{place}: methods: {method}: {wrong}")
     accepted = {setting for method in experiment.methods for setting in study.accepted(method)}
     for setting, values in experiment.vary.items():
         _known(setting, accepted | set(study.presets), f"{place}: vary")
@@ -299,6 +309,10 @@ def check_assumption(study: Study, assumption: Assumption, place: str) -> None:
     """An assumption's claims belong to the study, its default is in force, and every alternative is a valid value of its setting."""
     for identity in assumption.claims:
         _known(identity, [claim.id for claim in study.claims], f"{place}: claims")
+        claim = next(each for each in study.claims if each.id == identity)
+        drives = [name for each in claim.checks for name in each.experiments if study.moves(name)]
+        if drives:
+            raise Fault(f"{place}: claims: {identity}: is about drives ({drives[0]}), which alternatives do not repeat")
     if not assumption.setting:
         return
     if isinstance(assumption.default, dict):

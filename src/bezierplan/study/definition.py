@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.planners import planner_module, planner_settings
+from bezierplan.running import worlds
 from bezierplan.study.artefacts import Figure, Pivot, Table
 from bezierplan.study.claims import Assumption, Claim
-from bezierplan.study.experiments import Experiment, Method, Problem, Workspace, Worth
+from bezierplan.study.experiments import Experiment, Method, Policy, Problem, Workspace, Worth
 from bezierplan.workspaces import files
 
 
@@ -31,6 +32,7 @@ class Study:
     settings: dict[str, Any]
     planner_settings: dict[str, dict[str, Any]]
     presets: dict[str, dict[str, dict[str, Any]]]
+    policies: dict[str, Policy]
     workspaces: dict[str, Workspace]
     problems: dict[str, Problem]
     experiments: dict[str, Experiment]
@@ -66,11 +68,18 @@ class Study:
         """Whether a baseline can join: its planner supports these kinds of workspace, and has no setting that the experiment varies."""
         module = planner_module(self.planner(baseline))
         varied = set(experiment.vary) & set(planner_settings(module))
+        drives = any(self.workspace_of(problem).moves for problem in experiment.problems)
+        if drives != bool(self.methods[baseline].policy):
+            return False
         return kinds <= set(getattr(module, "workspaces", kinds)) and not varied
 
     def workspace_of(self, problem: str) -> Workspace:
         """The workspace of a problem."""
         return self.workspaces[self.problems[problem].workspace]
+
+    def moves(self, experiment: str) -> bool:
+        """Whether the runs of an experiment are simulated drives."""
+        return any(self.workspace_of(problem).moves for problem in self.experiments[experiment].problems)
 
     def kind_of(self, problem: str) -> str:
         """The kind of workspace that planners see in a problem."""
@@ -94,8 +103,9 @@ class Study:
 
     def maps(self, workspaces: Iterable[str]) -> list[str]:
         """Map files of workspaces relative to the working folder, each once."""
-        described = [self.workspaces[name].plain() for name in workspaces]
-        return sorted({relative(file) for each in described for file in files.sources(each, self.folder)})
+        described = {name: self.workspaces[name].plain() for name in workspaces}
+        named = {name: (worlds if self.workspaces[name].moves else files).sources(each, self.folder) for name, each in described.items()}
+        return sorted({relative(file) for each in named.values() for file in each})
 
     def compared(self) -> dict[str, Pivot]:
         """The tables of runs, which are compared with published numbers; for the others see `listing_job`."""
@@ -122,7 +132,8 @@ class Study:
 
 def files_of(workspace: Workspace) -> dict[str, str]:
     """Files that a workspace is read from, by key."""
-    return {key: getattr(workspace, key) for key in ("file", "heights", "scenarios") if getattr(workspace, key, None)}
+    changes = {f"changes: {number}: file": change.file for number, change in enumerate(getattr(workspace, "changes", []))}
+    return {key: getattr(workspace, key) for key in ("file", "heights", "scenarios") if getattr(workspace, key, None)} | changes
 
 
 def relative(path: Path) -> str:

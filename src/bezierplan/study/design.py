@@ -7,6 +7,7 @@ from bezierplan.analysis.claims.kinds import Check
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.planners import PLACE
 from bezierplan.running.execution import RUN_COLUMNS, conditions, settings_in
+from bezierplan.running.rides import OUTCOMES
 from bezierplan.study.checked import Fault, closest
 from bezierplan.study.claims import Claim
 from bezierplan.study.definition import Study
@@ -58,6 +59,7 @@ class Design:
                 "study",
                 "experiment",
                 *RUN_COLUMNS,
+                *(OUTCOMES if self.study.moves(experiment) else ()),
                 *places,
                 *settings,
                 *self.study.experiments[experiment].vary,

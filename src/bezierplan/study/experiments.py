@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 
 from bezierplan.study.model import (
     Count,
+    Flag,
     Line,
     Model,
     Name,
@@ -62,17 +63,60 @@ class Method(Model):
 
     planner: File = Field(description="the name of a file in `src/bezierplan/planners`, or of a file `.py` in the study's folder")
     settings: Settings = Field({}, description="settings of this method alone, by name; the strongest")
+    policy: Name = Field(None, description="the name of a policy, in experiments in worlds that move and only there")
     variant_of: Name = Field(None, description="the method whose published numbers this one is compared with")
+
+
+Margins = Annotated[
+    list[float],
+    value(lambda given: isinstance(given, list) and len(given) > 0 and all(is_number(each) and each >= 0 for each in given), ""),
+]
+
+
+class Policy(Model):
+    """What a robot does when its world changes."""
+
+    replan: Literal["never", "every_step", "when_blocked"] = Field(
+        description="when the robot plans again: never, at every `every`-th step, or when_blocked, that is when the rest of its way is"
+    )
+    every: Count = Field(1, description="of every_step: after how many steps, a whole number of at least 1; left out: 1")
+    warm: Flag = Field(
+        False,
+        description="whether a plan starts from the last one, for planners with a function `resume`; left out: false",
+    )
+    waits: Flag = Field(True, description="whether the robot stops in front of what is in its way, true or false; left out: true")
+    sees: Literal["before", "after"] = Field(
+        "before", description="whether it sees circles as they are before or after they move in a step; left out: before"
+    )
+    knows: Literal["positions", "velocities"] = Field(
+        "positions", description="whether it knows positions alone or also velocities, and looks ahead; left out: positions"
+    )
+    check_margin: NotNegative = Field(0.0, description="how far circles must stay away from the rest of its way, in units; left out: 0")
+    plan_margins: Margins = Field(
+        [0.0],
+        description="by how much circles grow for a plan: a list of numbers, tried in this order until there is a plan; left out: [0]",
+    )
+    brake: NotNegative = Field(0.0, description="how far ahead its way must be clear for it to move, in units; left out: 0")
+    spacing: Positive = Field(0.5, description="mean length of the chords that it drives along a curve, in units; left out: 0.5")
+    start: Literal["position", "centre"] = Field(
+        "position",
+        description="whether a plan begins at the robot's position, or at the centre of its cell, to which it drives first",
+    )
+    step_seconds: Positive = Field(
+        0.05, description="how long a step lasts, in seconds: metric `replans_late` counts the plans that take longer; left out: 0.05"
+    )
 
 
 class Workspace(Model):
     """Keys common to all workspaces. drawn: for a random workspace, the kind that planners see; made: for one converted from files of
-    another format, the kind that planners see; with_side: whether its problems have a `side`.
+    another format, the kind that planners see; with_side: whether its problems have a `side`; moves: whether it is a world, in which runs
+    are simulated drives.
     """
 
     drawn: ClassVar[str | None] = None
     made: ClassVar[str | None] = None
     with_side: ClassVar[bool] = False
+    moves: ClassVar[bool] = False
 
     unit: Line = Field(description="the name of the unit of length")
 
@@ -174,6 +218,103 @@ class RandomBlocks(Workspace):
     lattice_length: Positive = Field(None, description="the length that the shortest lattice path must have, a number above 0")
 
 
+PACE = "how far a robot drives in a step, in units, a number above 0"
+STEPS = "when a world ends and with it every drive, in steps, a whole number from 1 to 10000"
+SPEED = "how far every circle moves in a step, in units, a number of at least 0; their directions are random"
+Steps = Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")]
+MovingCircle = Annotated[list[Number], after(lambda given: _of_length(given, 5, "[x, y, radius, x velocity, y velocity]"))]
+
+
+class MovingCircleMap(Workspace):
+    """Circles that move."""
+
+    made: ClassVar[str] = "circles"
+    moves: ClassVar[bool] = True
+
+    kind: Literal["moving_circles"] = Field(description="moving_circles")
+    bounds: Bounds = Field(description="[x low, x high, y low, y high]; centres of circles that move are reflected there")
+    circles: list[MovingCircle] = Field(description="a list of [x, y, radius, x velocity, y velocity], velocities in units per step")
+    pace: Positive = Field(description=PACE)
+    steps: Steps = Field(description=STEPS)
+
+
+class RandomMovingCircles(Workspace):
+    """Layouts of circles that move from random places in random directions."""
+
+    drawn: ClassVar[str] = "circles"
+    moves: ClassVar[bool] = True
+
+    kind: Literal["random_moving_circles"] = Field(description="random_moving_circles")
+    bounds: Bounds = Field(description="[x low, x high, y low, y high]; centres of circles that move are reflected there")
+    radius: Positive = Field(description="the radius of every circle, a number above 0")
+    circles: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")] = Field(
+        description="how many circles a layout has, a whole number from 1 to 10000"
+    )
+    clear_ends: NotNegative = Field(description="how far start and target are from a circle at first, at least 0")
+    speed: NotNegative = Field(description=SPEED)
+    pace: Positive = Field(description=PACE)
+    steps: Steps = Field(description=STEPS)
+
+
+class RandomMovingField(Workspace):
+    """Fields of cells with circles that move from random places in random directions."""
+
+    drawn: ClassVar[str] = "grid"
+    with_side: ClassVar[bool] = True
+    moves: ClassVar[bool] = True
+
+    kind: Literal["random_moving_field"] = Field(description="random_moving_field")
+    radius: Positive = Field(description="the radius of every circle as a share of the field's side, a number above 0")
+    clear_ends: NotNegative = Field(description="how far start and target are from a circle at first, at least 0")
+    speed: NotNegative = Field(description=SPEED)
+    pace: Positive = Field(description=PACE)
+    steps: Steps = Field(description=STEPS)
+
+
+class Change(Model):
+    """A moment at which the cells of a map change."""
+
+    file: File = Field(description="the map file that is in force from then on")
+    after: Positive = Field(
+        None, description="when: the share of its way that a robot on the shortest path from cell to cell has then covered, above 0"
+    )
+    at: Positive = Field(None, description="or when: a step, a number above 0")
+
+    @model_validator(mode="after")
+    def _check_moment(self) -> "Change":
+        if len(self.model_fields_set & {"after", "at"}) != 1:
+            raise wrong("expected either after or at")
+        return self
+
+
+class ChangingCellMap(Workspace):
+    """A map whose cells change."""
+
+    made: ClassVar[str] = "grid"
+    moves: ClassVar[bool] = True
+
+    kind: Literal["changing_cells"] = Field(description="changing_cells")
+    file: File = Field(description="a map file in the study's folder")
+    cell: Positive = Field(description="the side of a cell, a number above 0")
+    changes: list[Change] = Field(description="a list of {file, after} or {file, at}, in order of time", min_length=1)
+    pace: Positive = Field(description=PACE)
+    steps: Steps = Field(description=STEPS)
+
+
+class RandomChangingCells(Workspace):
+    """A map whose cells change at random; `obstacles` of a problem says how many at a time."""
+
+    drawn: ClassVar[str] = "grid"
+    moves: ClassVar[bool] = True
+
+    kind: Literal["random_changing_cells"] = Field(description="random_changing_cells")
+    file: File = Field(description="a map file in the study's folder")
+    cell: Positive = Field(description="the side of a cell, a number above 0")
+    every: Count = Field(description="after how many steps as many cells change as a problem has obstacles, a whole number of at least 1")
+    pace: Positive = Field(description=PACE)
+    steps: Steps = Field(description=STEPS)
+
+
 WORKSPACES = {model.model_fields["kind"].annotation.__args__[0]: model for model in Workspace.__subclasses__()}
 """Kind -> its model."""
 
@@ -201,7 +342,8 @@ class Problem(Model):
     ) = Field(
         None,
         description="in a workspace drawn at random, a list of whole numbers: how many circles (of `random_circles` the first so many of a "
-        "layout), or how many occupied cells (`random_blocks`); one problem for each of them and each layout; column `obstacles`",
+        "layout), or how many occupied cells (`random_blocks`), or how many cells change at a time (`random_changing_cells`); one problem "
+        "for each of them and each layout; column `obstacles`",
     )
     side: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 5000, "")] = Field(
         None, description="the side of a random field or of a map of blocks in cells, a whole number from 1 to 5000"
@@ -277,6 +419,7 @@ class ExperimentsFile(Model):
         description="name → value → settings that go with it: a bundle that an experiment can vary like a setting, such as "
         "`profile: {default: {}, tuned: {...}}`",
     )
+    policies: dict[Name, Policy] = Field({}, description="name → what a robot does in a world that moves")
     workspaces: dict[Name, Annotated[Workspace, one_of("kind", WORKSPACES)]] = Field(
         description="name → kind, unit, and the keys of the kind"
     )

@@ -40,7 +40,7 @@ def job(study: Study, experiment: str, method: str, scale: str, chunk: int) -> d
         "seeds": content.seeds,
         "time_limit": content.time_limit,
         "repeats": [chunk * size, (chunk + 1) * size],
-    }
+    } | ({"policy": study.policies[study.methods[method].policy].model_dump()} if study.moves(experiment) else {})
 
 
 def _problems_met(study: Study, experiment: str, method: str, scale: str) -> dict[str, dict]:
@@ -191,7 +191,8 @@ def caption(study: Study, artefact: str, scale: str) -> str:
         shared = {name: value for name, value in first.items() if all(own.get(name) == value for own in settings.values())}
         for method, own in settings.items():
             apart = {name: value for name, value in own.items() if name not in shared and name not in content.vary}
-            sentences.append(f"{study.labels.get(method, method)}: {study.planner(method)}{_listed(apart, ' with ')}")
+            driven = f", policy {study.methods[method].policy}" if study.methods[method].policy else ""
+            sentences.append(f"{study.labels.get(method, method)}: {study.planner(method)}{_listed(apart, ' with ')}{driven}")
         if shared:
             sentences.append(f"All:{_listed(shared, ' ')}" if len(methods) > 1 else f"Settings:{_listed(shared, ' ')}")
         for problem in content.problems:

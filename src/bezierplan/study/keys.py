@@ -19,7 +19,9 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
     "experiments": [
         ("The file", experiments.ExperimentsFile),
         ("A method or baseline", experiments.Method),
+        ("A policy, for experiments in worlds that move", experiments.Policy),
         ("A workspace has `kind`, and by kind", experiments.WORKSPACES),
+        ("A change of `changing_cells`", experiments.Change),
         ("A problem", experiments.Problem),
         ("An experiment", experiments.Experiment),
         ("`worth`", experiments.Worth),

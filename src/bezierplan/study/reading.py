@@ -71,6 +71,7 @@ def read_study(folder: Path) -> Study:
         settings={name: value for name, value in experiments.settings.items() if not isinstance(value, dict)},
         planner_settings={name: value for name, value in experiments.settings.items() if isinstance(value, dict)},
         presets=experiments.presets,
+        policies=experiments.policies,
         workspaces=experiments.workspaces,
         problems=experiments.problems,
         experiments=experiments.experiments,

@@ -62,7 +62,7 @@ def problems_params(given: Studies, scale: str, study: str, experiment: str) -> 
         "job": jobs.problems_job(given[study], experiment, scale),
         "folder": definition.relative(given[study].folder),
         "maps": content_digest(*problem_maps(given, scale, study, experiment)),
-        "code": _code("problems"),
+        "code": _code("worlds" if given[study].moves(experiment) else "problems"),
     }
 
 
@@ -71,17 +71,22 @@ def problem_maps(given: Studies, scale: str, study: str, experiment: str) -> lis
     return given[study].maps(jobs.problems_job(given[study], experiment, scale)["workspaces"])
 
 
-def bounds_params() -> dict:
-    """Params of the job that computes the bounds of problems."""
-    return {"code": _code("bounds")}
+def bounds_params(script: str) -> dict:
+    """Params of the job that computes the bounds of problems, by its script."""
+    return {"code": _code(script)}
 
 
 def run_params(given: Studies, scale: str, study: str, experiment: str, method: str, chunk: str) -> dict:
     """Params of a chunk of runs."""
     return {
         "job": jobs.job(given[study], experiment, method, scale, int(chunk)),
-        "code": _code("runs", _planner(given[study].planner(method))),
+        "code": _code("drives" if given[study].moves(experiment) else "runs", _planner(given[study].planner(method))),
     }
+
+
+def moving(given: Studies, moves: bool) -> dict[str, list[str]]:
+    """The experiments whose runs are simulated drives, or the others, by study."""
+    return {key: [name for name in study.experiments if study.moves(name) == moves] for key, study in given.items()}
 
 
 # ---------------------------------------------------------------------------------------------------------------------

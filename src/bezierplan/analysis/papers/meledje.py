@@ -190,6 +190,10 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
         agree = sum(np.sign(ranks[name][i] - ranks[name][j]) == np.sign(ranks["table2"][i] - ranks["table2"][j]) for i, j in pairs)
         rule = "pairs of operators that rank by optima as in Table 2 (Section 4): all"
         rows.append(_row(name, "metric=optimal", rule, agree, len(pairs), agree == len(pairs)))
+    # A table of drives would say when the environment changes.
+    drives = sum(not {"after", "moment"}.isdisjoint(table) for table in published.values())
+    rule = "the title speaks of dynamic environments: some table has drives during which the environment changes"
+    rows.append(_row("text", "title", rule, drives, 1, drives >= 1))
     return rows
 
 

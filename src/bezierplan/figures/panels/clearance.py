@@ -1,0 +1,62 @@
+"""How near obstacles come to a robot in a world that moves: the least distance in each step of a drive, a line for each method."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.figures import style
+from bezierplan.figures.panels import RunsPanel
+from bezierplan.running import rides
+from bezierplan.study.model import Whole
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
+
+class Options(RunsPanel):
+    """Keys of a panel."""
+
+    rerun: ClassVar[bool] = True
+
+    repeat: Whole = Field(0, description="which run of each method is shown, a whole number; left out: 0")
+
+
+def data(results: Results, *, repeat: int = 0) -> pd.DataFrame:
+    """One row per step; columns: problem, method, run (its id), step (its end), clearance (least distance to an obstacle in it, in units,
+    negative inside a circle), arrived. Raises ValueError for runs of several problems.
+    """
+    import pandas as pd
+
+    if results.runs["problem"].nunique() != 1:
+        raise ValueError(
+            f"clearance over time needs runs of one problem, not of {results.runs['problem'].nunique()}; see the panel's `where`"
+        )
+    parts = []
+    for _, run in results.runs[results.runs["repeat"] == repeat].iterrows():
+        given = (results.problems[run["problem"]], results.worlds[run["problem"]])
+        ride, verdict = rides.rerun(results.jobs[run["method"]], run["condition"], repeat, *given)
+        names = {"problem": run["problem"], "method": run["method"], "run": run["id"]}
+        steps = np.arange(1, len(verdict.clearance) + 1)
+        parts.append(pd.DataFrame({**names, "step": steps, "clearance": verdict.clearance, "arrived": ride.arrived}))
+    return pd.concat(parts, ignore_index=True)
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data`; returns the note below the panel's title."""
+    methods = style.in_order(frame["method"], panel)
+    for method, look in zip(methods, style.lines(methods)):
+        own = frame[frame["method"] == method]
+        axes.plot(
+            own["step"], own["clearance"], label=style.printed(method, "method", scene.labels), **look | {"marker": "", "linewidth": 1.0}
+        )
+    axes.axhline(0.0, label="obstacle", **style.BOUND)
+    axes.set_xlabel("step")
+    axes.set_ylabel(f"least distance to an obstacle ({scene.unit})")
+    axes.grid(visible=True)
+    return ""

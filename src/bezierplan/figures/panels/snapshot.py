@@ -1,0 +1,132 @@
+"""A drive in a world that moves, at one moment: what is there and where it goes, the way so far, the current plan, dropped plans."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.figures import style
+from bezierplan.figures.panels import PICK, Pick, RunsPanel
+from bezierplan.figures.panels import workspace as workspaces
+from bezierplan.running import rides
+from bezierplan.running.simulation.motion_check import Verdict, between
+from bezierplan.running.simulation.robot import Ride
+from bezierplan.running.simulation.ways import polyline
+from bezierplan.study.model import is_number, value
+from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.worlds import MovingCircles, World
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
+# The arrow of a circle shows where it will be after this many steps; a longer way is cut off at this share of the field's width.
+_ARROW_STEPS = 20
+_LONGEST_ARROW = 0.1
+
+# Chords of a drawn plan, as a share of the field's width.
+_FINE = 0.005
+
+
+class Options(RunsPanel):
+    """Keys of a panel."""
+
+    rerun: ClassVar[bool] = True
+
+    pick: Pick = Field(description=PICK)
+    at: Annotated[float, value(lambda given: is_number(given) and 0 <= given <= 1, "")] = Field(
+        description="the moment, as a share of the time of the drive, a number from 0 to 1"
+    )
+
+
+def data(results: Results, *, pick: dict, at: float) -> pd.DataFrame:
+    """What is drawn, one row per place; columns: problem, method, run (its id), time (of the moment, in steps), part, number, x, y, size,
+    x_velocity, y_velocity (units per step).
+
+    Parts: those of `workspace.data`; start, target; way (driven so far); robot; plan (in force); dropped (earlier plans, by number);
+    collision (places of first collisions up to the moment). pick: which run. at: the moment. Raises ValueError for runs of several problems
+    or methods, and if no run is found.
+    """
+    from bezierplan.analysis.results import pick as picked
+
+    for column in ("problem", "method"):
+        if results.runs[column].nunique() != 1:
+            raise ValueError(f"a snapshot needs runs of one {column}, not of {results.runs[column].nunique()}; see the panel's `where`")
+    run = picked(results.runs, pick)
+    if run is None:
+        raise ValueError("no run to show; see the panel's `where` and `pick`")
+    world, problem = results.worlds[run["problem"]], results.problems[run["problem"]]
+    ride, verdict = rides.rerun(results.jobs[run["method"]], run["condition"], int(run["repeat"]), problem, world)
+    frame = moment(world, problem, ride, verdict, at)
+    return frame.assign(problem=run["problem"], method=run["method"], run=run["id"], time=at * ride.motion.times[-1])
+
+
+def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: float) -> pd.DataFrame:
+    """Rows of a moment, a share of the time of a drive."""
+    import pandas as pd
+
+    time = at * ride.motion.times[-1]
+    if isinstance(world, MovingCircles):
+        step = int(time)
+        now, after = world.at(step), world.at(step + 1)
+        circles = {"x": now[:, 0] + (time - step) * (after - now)[:, 0], "y": now[:, 1] + (time - step) * (after - now)[:, 1]}
+        velocities = {"x_velocity": (after - now)[:, 0], "y_velocity": (after - now)[:, 1]}
+        corners = pd.DataFrame({"part": "corner", "x": world.bounds[:2], "y": world.bounds[2:]})
+        parts = [corners, pd.DataFrame({"part": "circle", **circles, "size": world.radii, "obstacle": range(len(now)), **velocities})]
+        width = world.bounds[1] - world.bounds[0]
+    else:
+        grid = world.workspace(time)
+        parts, width = [workspaces.parts(grid)], grid.bounds[1] - grid.bounds[0]
+    driven = between(ride.motion, 0.0, time).points if time > 0 else ride.motion.points[:1]
+    parts.append(pd.DataFrame(driven, columns=["x", "y"]).assign(part="way"))
+    parts.append(pd.DataFrame(driven[-1:], columns=["x", "y"]).assign(part="robot"))
+    made = [plan for plan in ride.plans if plan.time <= time and plan.path]
+    for number, plan in enumerate(made):
+        points = pd.DataFrame(polyline(plan.path, _FINE * width), columns=["x", "y"])
+        parts.append(points.assign(part="plan" if number == len(made) - 1 else "dropped", number=number))
+    if verdict.collision_at <= time:
+        hit = between(ride.motion, 0.0, max(verdict.collision_at, 1e-9)).points[-1:]
+        parts.append(pd.DataFrame(hit, columns=["x", "y"]).assign(part="collision"))
+    parts.append(pd.DataFrame([("start", *problem.start), ("target", *problem.target)], columns=["part", "x", "y"]))
+    return pd.concat(parts, ignore_index=True)
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data`; returns the note below the panel's title."""
+    problem = scene.problems[panel["experiment"]][frame["problem"].iloc[0]]
+    workspaces.shade(axes, frame)
+    workspaces.scale(axes, problem.workspace.unit)
+    show(axes, frame)
+    dropped = frame.loc[frame["part"] == "dropped", "number"].nunique()
+    plans = "no plan dropped" if dropped == 0 else f"{dropped} plan{'s' if dropped > 1 else ''} dropped"
+    return f"step {frame['time'].iloc[0]:.0f}, {plans}"
+
+
+def show(axes: Axes, frame: pd.DataFrame) -> None:
+    """Draw the rows of a moment over its obstacles."""
+    circles = frame[frame["part"] == "circle"]
+    if len(circles):
+        arrows = _ARROW_STEPS * circles[["x_velocity", "y_velocity"]].to_numpy()
+        longest = np.hypot(*arrows.T).max()
+        reach = _LONGEST_ARROW * np.diff(axes.get_xlim())[0]
+        arrows *= min(1.0, reach / longest) if longest > 0 else 1.0
+        look = {"angles": "xy", "scale_units": "xy", "scale": 1, "color": style.BLACK, "width": 0.005, "zorder": 2}
+        axes.quiver(circles["x"], circles["y"], *arrows.T, label="velocity", **look)
+    for _, own in frame[frame["part"] == "dropped"].groupby("number"):
+        axes.plot(own["x"], own["y"], color="0.55", linewidth=0.8, linestyle=(0, (3, 1.5)), zorder=2.5, label="dropped plan")
+    looks = {
+        "plan": {"color": style.BLUE, "linewidth": 1.2, "linestyle": (0, (5, 1.5)), "zorder": 3, "label": "current plan"},
+        "way": {"color": style.RED, "linewidth": 1.8, "zorder": 3.5, "label": "way driven"},
+        "start": workspaces.START,
+        "target": workspaces.TARGET,
+        "robot": {"color": style.RED, "linestyle": "", "marker": "o", "markersize": 5, "zorder": 5, "label": "robot"},
+        "collision": {"color": style.BLACK, "linestyle": "", "marker": "x", "markersize": 8, "zorder": 6, "label": "first collision"},
+    }
+    for part, look in looks.items():
+        own = frame[frame["part"] == part]
+        if len(own):
+            axes.plot(own["x"], own["y"], **look)

@@ -1,0 +1,199 @@
+"""One chunk of runs in moving worlds: like `execution`, of which it keeps names, seeds and columns, but a run is a simulated drive.
+
+A job is as in `execution`, with one more key: policy, the values of a `simulation.policy.Policy` by name.
+
+Columns of the runs table: those of `execution.RUN_COLUMNS`, of which path_curve and path_points hold the way driven; feasible, whether the
+robot arrived without a collision (`simulation.motion_check`); collision_at, when it first collided, in steps; claimed_feasible, whether it
+arrived; objective, the time of arrival times the pace, in units; history, the way driven until each plan plus the length of that plan. And:
+
+    arrival          time of arrival, in steps; nan if it did not arrive
+    steps            time until the end of the drive, in steps
+    travelled        length of the way driven, in units
+    first_plan       length of the first plan, in units; last_plan: of the last one
+    replans          plans after the first; waits: time spent waiting, in steps
+    collision_steps  steps in which it was in an obstacle; hit_waiting: whether it was waiting when it first collided
+    clearance_least  least distance to an obstacle, in units, negative inside a circle
+
+Times, which never repeat, have a table of their own: id, cpu_s, wall_s, and CPU seconds of the plans after the first: replan_mean_s,
+replan_95_s, replan_max_s; and replans_late, how many of them took longer than a step.
+"""
+
+import math
+import time as clock
+from typing import Any
+
+import numpy as np
+import pyarrow as pa
+
+from bezierplan.planners import planner_module
+from bezierplan.running import execution, watchdog
+from bezierplan.running.execution import Condition
+from bezierplan.running.simulation import motion_check
+from bezierplan.running.simulation.clairvoyant import earliest, least_way
+from bezierplan.running.simulation.policy import Policy
+from bezierplan.running.simulation.robot import Ride, drive
+from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.workspaces.worlds import World
+
+OUTCOMES = (
+    *("arrival", "steps", "travelled", "first_plan", "last_plan", "replans", "waits"),
+    *("collision_steps", "hit_waiting", "clearance_least"),
+)
+"""Columns of a runs table that only drives have."""
+
+
+def run(job: dict, condition: Condition, repeat: int, problem: Problem, world: World) -> Ride:
+    """The drive of one run."""
+    module, rng = planner_module(job["planner"]), execution.generator(job, condition, repeat)
+    settings = execution.settings_in(job, condition)
+    policy = Policy(**job["policy"] | {"plan_margins": tuple(job["policy"]["plan_margins"])})
+
+    def planner(seen: Problem, state: Any) -> tuple:
+        if policy.warm:
+            return module.resume(seen, rng, state, **settings)
+        return module.plan(seen, rng, **settings), None
+
+    return drive(world, problem, policy, planner)
+
+
+def row(job: dict, condition: Condition, repeat: int, ride: Ride, world: World) -> tuple[dict[str, Any], dict[str, Any]]:
+    """One row of the runs table, and one of the table of traces: id; x and y at step 0, 1, ... and at the end of the drive, and clearance
+    in each step, all in single precision; and the plans, by the time, curve and control points of each.
+    """
+    verdict = motion_check.check(ride.motion, world)
+    points, times = ride.motion
+    moved = np.concatenate([[True], np.any(points[1:] != points[:-1], axis=1)])
+    path = Path("polyline", points[moved] if moved.sum() > 1 else np.repeat(points[:1], 2, axis=0))
+    done = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    travelled, collided = float(done[-1]), not math.isnan(verdict.collision_at)
+    least = float(verdict.clearance.min())
+    lengths = [plan.length for plan in ride.plans]
+    driven = [float(np.interp(plan.time, times, done)) for plan in ride.plans]
+    leg = int(np.clip(np.searchsorted(times, verdict.collision_at, side="right"), 1, len(times) - 1)) if collided else 0
+    moments = np.append(np.arange(0, math.ceil(times[-1])), times[-1])
+    identity = execution.run_id(job, condition, repeat)
+    found = {
+        "id": identity,
+        "study": job["study"],
+        "experiment": job["experiment"],
+        "condition": condition.name,
+        "problem": condition.problem,
+        **{key: value for key, value in job["problems"][condition.problem].items() if key != "settings"},
+        "method": job["method"],
+        "repeat": repeat,
+        "planner": job["planner"],
+        **execution.settings_in(job, condition),
+        **condition.values,
+        "objective": float(times[-1]) * world.pace if ride.arrived else math.inf,
+        "length": travelled,
+        "claimed_feasible": ride.arrived,
+        "feasible": ride.arrived and not collided,
+        "collision_at": verdict.collision_at,
+        "collision_depth": verdict.depth,
+        "clearance": max(least, 0.0),
+        "clearance_error": verdict.tolerance,
+        "evaluations": sum(plan.evaluations for plan in ride.plans),
+        "generations": ride.replans,
+        "stop": "arrived" if ride.arrived else "time",
+        "history": [way + length for way, length in zip(driven, lengths)],
+        "path_curve": path.curve,
+        "path_points": path.points.ravel().tolist(),
+        "arrival": float(times[-1]) if ride.arrived else math.nan,
+        "steps": float(times[-1]),
+        "travelled": travelled,
+        "first_plan": lengths[0],
+        "last_plan": lengths[-1],
+        "replans": ride.replans,
+        "waits": float(ride.waited),
+        "collision_steps": int((verdict.clearance < -verdict.tolerance).sum()) if least < 0 else int(collided),
+        "hit_waiting": collided and bool(np.array_equal(points[leg], points[leg - 1])),
+        "clearance_least": least,
+    }
+    trace = {
+        "id": identity,
+        "x": np.interp(moments, times, points[:, 0]).astype(np.float32),
+        "y": np.interp(moments, times, points[:, 1]).astype(np.float32),
+        "clearance": verdict.clearance.astype(np.float32),
+        "plan_time": [plan.time for plan in ride.plans],
+        "plan_curve": [plan.path.curve if plan.path else "" for plan in ride.plans],
+        "plan_points": [plan.path.points.ravel().tolist() if plan.path else [] for plan in ride.plans],
+    }
+    return found, trace
+
+
+def run_chunk(problems: dict[str, Problem], worlds: dict[str, World], job: dict) -> tuple[pa.Table, pa.Table, pa.Table]:
+    """The runs of a job, their times, and their traces (`row`). Raises RuntimeError, naming the run, if a planner fails."""
+    rows, times, traces = [], [], []
+    with watchdog.watching(job.get("time_limit")) as watch:
+        for condition in execution.conditions(list(job["problems"]), job["vary"]):
+            for repeat in range(*job["repeats"]):
+                given = (job, condition, repeat, problems[condition.problem], worlds[condition.problem])
+                if not rows:
+                    _guarded(*given, watch)  # compiles and loads
+                ride, cpu, wall = _guarded(*given, watch)
+                found, trace = row(job, condition, repeat, ride, worlds[condition.problem])
+                rows.append(found)
+                traces.append(trace)
+                times.append({"id": found["id"], "cpu_s": cpu, "wall_s": wall} | _replan_times(ride, job["policy"]["step_seconds"]))
+    columns = dict.fromkeys(column for each in rows for column in each)
+    return (
+        pa.table({column: [each.get(column) for each in rows] for column in columns}),
+        pa.Table.from_pylist(times),
+        pa.Table.from_pylist(traces),
+    )
+
+
+def rerun(job: dict, condition: str, repeat: int, problem: Problem, world: World) -> tuple[Ride, motion_check.Verdict]:
+    """The drive of a run, by the name of its condition, and the verdict on it: for what no table keeps."""
+    named = {each.name: each for each in execution.conditions(list(job["problems"]), job["vary"])}
+    ride = run(job, named[condition], repeat, problem, world)
+    return ride, motion_check.check(ride.motion, world)
+
+
+def _replan_times(ride: Ride, step_seconds: float) -> dict[str, float]:
+    seconds = np.array([plan.seconds for plan in ride.plans[1:]])
+    late = int((seconds > step_seconds).sum())
+    if not len(seconds):
+        return dict.fromkeys(("replan_mean_s", "replan_95_s", "replan_max_s"), math.nan) | {"replans_late": late}
+    quantile = float(np.quantile(seconds, 0.95))
+    return {"replan_mean_s": seconds.mean(), "replan_95_s": quantile, "replan_max_s": seconds.max(), "replans_late": late}
+
+
+def _guarded(job: dict, condition: Condition, repeat: int, problem: Problem, world: World, watch: Any) -> tuple[Ride, float, float]:
+    """The drive of one run, its CPU seconds and its wall-clock seconds. Raises RuntimeError, naming the run, if the planner fails."""
+    name = execution.run_id(job, condition, repeat)
+    watch(f"run {name}: planner {job['planner']}")
+    try:
+        cpu, wall = clock.process_time(), clock.perf_counter()
+        ride = run(job, condition, repeat, problem, world)
+        return ride, clock.process_time() - cpu, clock.perf_counter() - wall
+    except Exception as error:
+        told = " ".join(f"{type(error).__name__}: {error}".split())
+        raise RuntimeError(f"run {name}: {told}") from error
+    finally:
+        watch("")
+
+
+def bounds_of(problems: dict[str, Problem], worlds: dict[str, World]) -> pa.Table:
+    """One row per problem: straight_line; bound, the length of the shortest way through places that are free at some time, with
+    least_length and bound_path (`problems.bounds_of`); octile_bound, nan; clairvoyant_arrival, in steps, and clairvoyant_length, in units,
+    of the earliest schedule found by a search that knows the future.
+    """
+    from bezierplan.geometry import shortest_paths
+
+    rows = []
+    for name, problem in problems.items():
+        bound, schedule = least_way(worlds[name], problem), earliest(worlds[name], problem)
+        rows.append(
+            {
+                "problem": name,
+                "straight_line": math.dist(problem.start, problem.target),
+                "bound": bound.length,
+                "least_length": shortest_paths.least_length(bound),
+                "bound_path": bound.points.ravel().tolist(),
+                "octile_bound": math.nan,
+                "clairvoyant_arrival": schedule.arrival,
+                "clairvoyant_length": schedule.length,
+            }
+        )
+    return pa.Table.from_pylist(rows)

@@ -1,0 +1,110 @@
+"""A robot among moving circles: step by step along a way, until there is something to decide."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from bezierplan.running.simulation.policy import Policy
+from bezierplan.running.simulation.ways import Way
+from bezierplan.workspaces.worlds import MovingCircles, positions
+
+ARRIVED, BLOCKED, DUE, STOPPED, ENDED = range(5)
+"""Why a robot stops following its way: it is there; the rest of the way is blocked; another plan is due; something is right in front of it;
+the world's time is over."""
+
+
+class _Rules(NamedTuple):
+    """A policy for the kernels."""
+
+    every: int
+    checks: bool
+    brakes: bool
+    looks_after: bool
+    foresees: bool
+    check_margin: float
+    brake: float
+
+
+def follow(world: MovingCircles, way: Way, step: int, policy: Policy) -> tuple[int, np.ndarray]:
+    """Follow a way from its beginning, which has just been planned, from a step on.
+
+    Returns why it ends, and the lengths of way (steps + 1,) at this and every following step; the last one may be reached before its step.
+    """
+    rules = _Rules(
+        every=policy.every if policy.replan == "every_step" else 0,
+        checks=policy.replan == "when_blocked",
+        brakes=policy.waits,
+        looks_after=policy.sees == "after",
+        foresees=policy.knows == "velocities",
+        check_margin=float(policy.check_margin),
+        brake=float(policy.brake),
+    )
+    circles = (world.centres, world.velocities, np.array(world.walls, dtype=float), world.radii)
+    return _follow(way.points, way.at, step, circles, float(world.pace), world.end, rules)
+
+
+@njit(cache=True)
+def _follow(points, at, step, circles, pace, end, rules):
+    """The loop of `follow`."""
+    centres, velocities, walls, radii = circles
+    reached = np.empty(end - step + 1)
+    n, s, total = 0, 0.0, at[-1]
+    reached[0] = s
+    while step + n < end:
+        seen = positions(centres, velocities, walls, step + n + rules.looks_after)
+        drift = positions(centres, velocities, walls, step + n + rules.looks_after + 1) - seen if rules.foresees else np.zeros_like(seen)
+        if n > 0:
+            if rules.every > 0 and (step + n) % rules.every == 0:
+                return DUE, reached[: n + 1]
+            if rules.checks and comes_near(points, at, s, total, seen, drift, radii, rules.check_margin, pace):
+                return BLOCKED, reached[: n + 1]
+        if rules.brakes and comes_near(points, at, s, min(s + rules.brake, total), seen, drift, radii, 0.0, pace):
+            if rules.checks or rules.every > 0:
+                return STOPPED, reached[: n + 1]
+        else:
+            s = min(s + pace, total)
+        n += 1
+        reached[n] = s
+        if s >= total:
+            return ARRIVED, reached[: n + 1]
+    return ENDED, reached[: n + 1]
+
+
+@njit(cache=True)
+def comes_near(points, at, begin, end, centres, drift, radii, margin, pace):
+    """Whether the part of a way between two lengths comes nearer to a circle than its radius plus a margin, if circles drift by that much a
+    step while the robot drives at its pace.
+    """
+    i = min(np.searchsorted(at, begin, side="right"), len(at) - 1)
+    x, y = _place(points, at, begin)
+    s = begin
+    while True:
+        following = min(at[i], end)
+        next_x, next_y = (points[i, 0], points[i, 1]) if at[i] <= end else _place(points, at, end)
+        step_x, step_y = next_x - x, next_y - y
+        for k in range(len(centres)):
+            reach = radii[k] + margin
+            early, late = (s - begin) / pace, (following - begin) / pace
+            dx, dy = x - centres[k, 0] - drift[k, 0] * early, y - centres[k, 1] - drift[k, 1] * early
+            ex, ey = step_x - drift[k, 0] * (late - early), step_y - drift[k, 1] * (late - early)
+            along, size = -(dx * ex + dy * ey), ex * ex + ey * ey
+            if along > 0.0 and size > 0.0:
+                share = min(along / size, 1.0)
+                dx, dy = dx + share * ex, dy + share * ey
+            if dx * dx + dy * dy < reach * reach:
+                return True
+        if following >= end or i + 1 >= len(at):
+            return False
+        x, y, s = next_x, next_y, following
+        i += 1
+
+
+@njit(cache=True)
+def _place(points, at, s):
+    """The point after a length of way."""
+    i = min(max(np.searchsorted(at, s, side="right"), 1), len(at) - 1)
+    if i == 0 or at[i] == at[i - 1]:
+        return points[i, 0], points[i, 1]
+    share = min(max((s - at[i - 1]) / (at[i] - at[i - 1]), 0.0), 1.0)
+    return points[i - 1, 0] + share * (points[i, 0] - points[i - 1, 0]), points[i - 1, 1] + share * (points[i, 1] - points[i - 1, 1])

@@ -1,0 +1,326 @@
+"""What a robot could reach that knew the future of its world: the earliest arrival found by a search over safe intervals.
+
+A place has safe intervals, during which nothing is there; a robot that reaches it in one of them can stay until it ends. So the earliest
+arrival in each interval of each place is all that a search must keep (Phillips and Likhachev, SIPP, ICRA 2011).
+
+Among circles the places are the points of a lattice, and a straight drive after a wait is tried as well; every schedule found is exactly
+free, but a robot that is not bound to the lattice may be earlier. Among cells the places are start, target and the corners of all maps, and
+drives lead in any direction: where a map only gains obstacles, and once, no robot of any kind is earlier.
+"""
+
+import heapq
+import math
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from bezierplan.geometry import shortest_paths
+from bezierplan.running.simulation.motion_check import Motion, check
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World, positions
+
+
+class Schedule(NamedTuple):
+    """arrival: in steps, infinite if none was found before the world's end. length: of the way, in units."""
+
+    arrival: float
+    length: float
+
+
+def least_way(world: World, problem: Problem) -> shortest_paths.Bound:
+    """The shortest way through places that are free at some time: no robot's way is shorter."""
+    if isinstance(world, ChangingCells):
+        always = np.all([each.occupied for each in world.maps], axis=0)
+        return shortest_paths.shortest_path(problem._replace(workspace=replace(world.maps[0], occupied=always)))
+    # A circle that moves lets a robot pass that waits.
+    still = ~world.velocities.any(axis=1)
+    stays = Circles(world.bounds, world.centres[still], world.radii[still], world.unit)
+    return shortest_paths.shortest_path(problem._replace(workspace=stays))
+
+
+def earliest(world: World, problem: Problem) -> Schedule:
+    """The earliest arrival found."""
+    return _among_cells(world, problem) if isinstance(world, ChangingCells) else _among_circles(world, problem)
+
+
+# Circles
+
+
+# A drive that would collide is tried again this much later, in steps, at most so often.
+_LATER = 0.5
+_MOST_TRIES = 12
+
+
+def _among_circles(world: MovingCircles, problem: Problem) -> Schedule:
+    straight = math.dist(problem.start, problem.target)
+    if straight == 0:
+        return Schedule(0.0, 0.0)
+    found = Schedule(*_on_lattice(*_lattice(world, problem), np.array(problem.start), np.array(problem.target), world.pace, world.end))
+    for wait in range(world.end):
+        arrival = wait + straight / world.pace
+        if arrival >= found.arrival:
+            break
+        ends = np.array([problem.start, problem.target])
+        points, times = (ends[[0, 0, 1]], [0.0, float(wait), arrival]) if wait else (ends, [0.0, arrival])
+        if math.isnan(check(Motion(points, np.array(times)), world).collision_at):
+            return Schedule(arrival, straight)
+    return found
+
+
+def _lattice(world: MovingCircles, problem: Problem) -> tuple:
+    """Origin (2,), counts (2,), centres (steps + 1, n, 2) and radii of a lattice through the start whose straight moves take one step."""
+    x_low, x_high, y_low, y_high = world.bounds
+    pace = world.pace
+    before = np.floor((np.array(problem.start) - [x_low, y_low]) / pace + 1e-9)
+    after = np.floor(([x_high, y_high] - np.array(problem.start)) / pace + 1e-9)
+    walls = np.array(world.walls, dtype=float)
+    centres = np.array([positions(world.centres, world.velocities, walls, step) for step in range(world.end + 2)])
+    return np.array(problem.start) - before * pace, (before + after + 1).astype(np.int64), centres, world.radii
+
+
+@njit(cache=True)
+def _on_lattice(origin, counts, centres, radii, start, target, pace, end):
+    """Arrival and length of the earliest schedule on the lattice."""
+    columns, rows = counts
+    begins = _safe_intervals(origin, columns, rows, centres, radii, pace, end)
+    best = np.full(begins.shape, np.inf)
+    lengths = np.full(begins.shape, np.inf)
+    node = round((start[1] - origin[1]) / pace) * columns + round((start[0] - origin[0]) / pace)
+    if begins[node, 0] < 0:
+        return np.inf, np.inf
+    best[node, 0], lengths[node, 0] = 0.0, 0.0
+    heap = [(math.hypot(target[0] - start[0], target[1] - start[1]) / pace, 0.0, node, 0)]
+    while len(heap) > 0:
+        _, time, node, interval = heapq.heappop(heap)
+        if node < 0:
+            node = -1 - node
+            last_x, last_y = origin[0] + node % columns * pace, origin[1] + node // columns * pace
+            return time, lengths[node, interval] + math.hypot(target[0] - last_x, target[1] - last_y)
+        if time > best[node, interval]:
+            continue
+        leave = interval
+        while leave < end and begins[node, leave] == interval:
+            leave += 1
+        x, y = origin[0] + node % columns * pace, origin[1] + node // columns * pace
+        home = math.hypot(target[0] - x, target[1] - y)
+        if home < 1.5 * pace:
+            depart = _departure(x, y, target[0], target[1], time, leave, home / pace, centres, radii)
+            if depart < np.inf:
+                heapq.heappush(heap, (depart + home / pace, depart + home / pace, -1 - node, interval))
+        for dx in range(-1, 2):
+            for dy in range(-1, 2):
+                column, row = node % columns + dx, node // columns + dy
+                if (dx == 0 and dy == 0) or not (0 <= column < columns and 0 <= row < rows):
+                    continue
+                other = row * columns + column
+                duration = math.hypot(dx, dy)
+                # Each safe interval of the other place that this one can reach.
+                step = int(time + duration)
+                while step < end and step <= leave + duration:
+                    if begins[other, step] < 0:
+                        step += 1
+                        continue
+                    into = np.int64(begins[other, step])
+                    until = step
+                    while until < end and begins[other, until] == into:
+                        until += 1
+                    other_x, other_y = origin[0] + column * pace, origin[1] + row * pace
+                    last = min(leave, until - duration)
+                    depart = _departure(x, y, other_x, other_y, max(time, into - duration), last, duration, centres, radii)
+                    if depart + duration < best[other, into]:
+                        best[other, into] = depart + duration
+                        lengths[other, into] = lengths[node, interval] + duration * pace
+                        rest = math.hypot(target[0] - other_x, target[1] - other_y) / pace
+                        heapq.heappush(heap, (depart + duration + rest, depart + duration, other, into))
+                    step = until
+    return np.inf, np.inf
+
+
+@njit(cache=True)
+def _safe_intervals(origin, columns, rows, centres, radii, pace, end):
+    """For each place and step, the first step of the safe interval that holds it, or -1 if some circle comes there during the step."""
+    begins = np.zeros((columns * rows, end), dtype=np.int16)
+    for step in range(end):
+        for k in range(len(radii)):
+            reach = radii[k]
+            low_x, high_x = min(centres[step, k, 0], centres[step + 1, k, 0]), max(centres[step, k, 0], centres[step + 1, k, 0])
+            low_y, high_y = min(centres[step, k, 1], centres[step + 1, k, 1]), max(centres[step, k, 1], centres[step + 1, k, 1])
+            first, last = math.ceil((low_x - reach - origin[0]) / pace), math.floor((high_x + reach - origin[0]) / pace)
+            bottom, top = math.ceil((low_y - reach - origin[1]) / pace), math.floor((high_y + reach - origin[1]) / pace)
+            for row in range(max(bottom, 0), min(top, rows - 1) + 1):
+                for column in range(max(first, 0), min(last, columns - 1) + 1):
+                    x, y = origin[0] + column * pace, origin[1] + row * pace
+                    if _meets(x, y, x, y, step, step + 1.0, centres[step : step + 2, k], reach, step):
+                        begins[row * columns + column, step] = -1
+    for node in range(columns * rows):
+        for step in range(1, end):
+            if begins[node, step] == 0:
+                begins[node, step] = step if begins[node, step - 1] < 0 else begins[node, step - 1]
+    return begins
+
+
+@njit(cache=True)
+def _meets(x, y, to_x, to_y, begin, end, centres, radius, step):
+    """Whether a robot that moves from one point at `begin` to another at `end`, both within a step, enters a circle that moves from the
+    first to the second of two centres (2, 2) during the step."""
+    early, late = begin - step, end - step
+    dx = x - centres[0, 0] - early * (centres[1, 0] - centres[0, 0])
+    dy = y - centres[0, 1] - early * (centres[1, 1] - centres[0, 1])
+    ex = to_x - centres[0, 0] - late * (centres[1, 0] - centres[0, 0]) - dx
+    ey = to_y - centres[0, 1] - late * (centres[1, 1] - centres[0, 1]) - dy
+    size = ex * ex + ey * ey
+    share = min(max(-(dx * ex + dy * ey) / size, 0.0), 1.0) if size > 0.0 else 0.0
+    return (dx + share * ex) ** 2 + (dy + share * ey) ** 2 < radius * radius
+
+
+@njit(cache=True)
+def _departure(x, y, to_x, to_y, earliest, latest, duration, centres, radii):
+    """The first of some departures between two times, in steps, after which a drive collides with nothing; infinite without one."""
+    depart = earliest
+    for _ in range(_MOST_TRIES):
+        if depart > latest or depart + duration >= len(centres) - 1:
+            return np.inf
+        if _is_free(x, y, to_x, to_y, depart, duration, centres, radii):
+            return depart
+        depart += _LATER
+    return np.inf
+
+
+@njit(cache=True)
+def _is_free(x, y, to_x, to_y, depart, duration, centres, radii):
+    begin = depart
+    while begin < depart + duration:
+        step = int(begin)
+        end = min(step + 1.0, depart + duration)
+        one, other = (begin - depart) / duration, (end - depart) / duration
+        for k in range(len(radii)):
+            here_x, here_y = x + one * (to_x - x), y + one * (to_y - y)
+            there_x, there_y = x + other * (to_x - x), y + other * (to_y - y)
+            if _meets(here_x, here_y, there_x, there_y, begin, end, centres[step : step + 2, k], radii[k], step):
+                return False
+        begin = end
+    return True
+
+
+# Cells
+
+
+def _among_cells(world: ChangingCells, problem: Problem) -> Schedule:
+    grid = world.maps[0]
+    occupied = np.array([np.pad(each.occupied, 1, constant_values=True) for each in world.maps])
+    # In cells from the lower left corner of the ring of occupied cells around the map.
+    ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float)) + 1.0
+    around = occupied[:, :-1, :-1] * 1 + occupied[:, :-1, 1:] + occupied[:, 1:, :-1] + occupied[:, 1:, 1:]
+    diagonal = (around == 2) & (occupied[:, :-1, :-1] == occupied[:, 1:, 1:])
+    rows, columns = np.nonzero(((around == 1) | diagonal).any(axis=0))
+    places = np.concatenate([ends, np.column_stack([columns, rows]) + 1.0])
+    begins = np.concatenate([[0.0], world.moments])
+    arrival, length = _between_corners(places, occupied, begins, world.pace / grid.cell)
+    return Schedule(arrival if arrival <= world.end else math.inf, length * grid.cell)
+
+
+@njit(cache=True)
+def _between_corners(places, occupied, begins, pace):
+    """Arrival, in steps, and length, in cells, of the earliest schedule from the first place (n, 2) to the second.
+
+    occupied: (maps, rows, columns). begins: (maps,) when each map begins. pace: in cells per step.
+    """
+    n, maps = len(places), len(occupied)
+    # The first map of the safe interval that holds a map, or -1 if the place is blocked.
+    since = np.zeros((n, maps), dtype=np.int64)
+    for i in range(n):
+        for f in range(maps):
+            if _inside(places[i, 0], places[i, 1], occupied[f]):
+                since[i, f] = -1
+            else:
+                since[i, f] = since[i, f - 1] if f > 0 and since[i, f - 1] >= 0 else f
+    best, lengths = np.full((n, maps), np.inf), np.full((n, maps), np.inf)
+    done = np.zeros((n, maps), dtype=np.bool_)
+    if since[0, 0] < 0:
+        return np.inf, np.inf
+    best[0, 0], lengths[0, 0] = 0.0, 0.0
+    while True:
+        i, f, time = -1, -1, np.inf
+        for each in range(n):
+            for other in range(maps):
+                if not done[each, other] and best[each, other] < time:
+                    i, f, time = each, other, best[each, other]
+        if i < 0:
+            return np.inf, np.inf
+        if i == 1:
+            return time, lengths[1, f]
+        done[i, f] = True
+        leave = _end_of(since[i], f, begins)
+        for j in range(n):
+            size = math.hypot(places[j, 0] - places[i, 0], places[j, 1] - places[i, 1])
+            if size == 0.0:
+                continue
+            for into in range(maps):
+                if since[j, into] != into or done[j, into]:
+                    continue
+                until = _end_of(since[j], into, begins)
+                earliest = max(time, begins[into] - size / pace) if into > 0 else time
+                if earliest + size / pace >= min(until, best[j, into]):
+                    continue
+                depart = _free_departure(places[i], places[j], size, earliest, min(leave, until - size / pace), occupied, begins, pace)
+                if depart + size / pace < best[j, into]:
+                    best[j, into] = depart + size / pace
+                    lengths[j, into] = lengths[i, f] + size
+
+
+@njit(cache=True)
+def _end_of(since, first, begins):
+    """When the safe interval that begins with a map ends."""
+    f = first
+    while f < len(begins) and since[f] == first:
+        f += 1
+    return begins[f] if f < len(begins) else np.inf
+
+
+@njit(cache=True)
+def _free_departure(one, other, size, depart, latest, occupied, begins, pace):
+    """The first departure from a time on, in steps, after which the straight drive meets no occupied cell; infinite after the latest."""
+    cuts = _crossings(one, other)
+    while depart <= latest:
+        delayed = depart
+        for k in range(len(cuts) - 1):
+            middle = (cuts[k] + cuts[k + 1]) / 2.0
+            x, y = one[0] + middle * (other[0] - one[0]), one[1] + middle * (other[1] - one[1])
+            enters, leaves = depart + cuts[k] * size / pace, depart + cuts[k + 1] * size / pace
+            for f in range(np.searchsorted(begins, enters, side="right") - 1, len(begins)):
+                ends = begins[f + 1] if f + 1 < len(begins) else np.inf
+                if leaves <= begins[f] + 1e-12:
+                    break
+                if enters < ends - 1e-12 and _inside(x, y, occupied[f]):
+                    # It may enter this cell only when this map is over.
+                    delayed = max(delayed, ends - cuts[k] * size / pace)
+        if delayed == depart:
+            return depart
+        depart = delayed
+    return np.inf
+
+
+@njit(cache=True)
+def _crossings(one, other):
+    """Ascending parameters from 0 to 1 at which a segment crosses a grid line."""
+    cuts = [0.0, 1.0]
+    for axis in range(2):
+        low, high = min(one[axis], other[axis]), max(one[axis], other[axis])
+        for line in range(math.floor(low) + 1, math.ceil(high)):
+            cuts.append((line - one[axis]) / (other[axis] - one[axis]))
+    return np.unique(np.array(cuts))
+
+
+# A coordinate this close to a grid line, in cells, lies on it.
+_ON_LINE = 1e-9
+
+
+@njit(cache=True)
+def _inside(x, y, occupied):
+    """Whether a point lies in the interior of the occupied cells."""
+    left, right = math.floor(x - _ON_LINE), math.floor(x + _ON_LINE)
+    bottom, top = math.floor(y - _ON_LINE), math.floor(y + _ON_LINE)
+    return occupied[bottom, left] and occupied[bottom, right] and occupied[top, left] and occupied[top, right]

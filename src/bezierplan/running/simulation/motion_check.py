@@ -1,0 +1,132 @@
+"""Whether a robot collided: exact between steps, and without regard to what the robot saw or planned.
+
+Between two vertices of its way the robot moves uniformly, and so does a circle between two steps; the squared distance is a quadratic in
+time. On cells, the part driven between two changes is judged by the certified check. Touching is allowed.
+"""
+
+import itertools
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from bezierplan.geometry import checker
+from bezierplan.geometry.region import region
+from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World, positions
+
+
+class Motion(NamedTuple):
+    """A timed polyline. points: (n, 2), in units. times: (n,) ascending, in steps."""
+
+    points: np.ndarray
+    times: np.ndarray
+
+
+class Verdict(NamedTuple):
+    """collision_at: time of the first collision, in steps; nan without one. clearance: (steps,) least distance to an obstacle in each step,
+    in units, negative inside a circle; in changing cells 0 when colliding, and the border counts. depth: largest depth in an obstacle.
+    tolerance: error of depth and clearance, in units.
+    """
+
+    collision_at: float
+    clearance: np.ndarray
+    depth: float
+    tolerance: float
+
+
+def check(motion: Motion, world: World) -> Verdict:
+    """The verdict on a motion."""
+    if isinstance(world, ChangingCells):
+        return _among_cells(motion, world)
+    return _among_circles(motion, world)
+
+
+def _among_circles(motion: Motion, world: MovingCircles) -> Verdict:
+    walls = np.array(world.walls, dtype=float)
+    found, clearance = _approach(motion.points, motion.times, world.centres, world.velocities, walls, world.radii, checker.TOLERANCE)
+    x_low, x_high, y_low, y_high = world.bounds
+    x, y = motion.points.T
+    outside = np.max([x_low - x, x - x_high, y_low - y, y - y_high], axis=0)
+    # The field is convex, so a way leaves it only at a vertex.
+    left = motion.times[outside > checker.TOLERANCE].min(initial=math.inf)
+    collision_at = min(found, left)
+    depth = max(-clearance.min(initial=math.inf), outside.max(), 0.0)
+    return Verdict(
+        collision_at if math.isfinite(collision_at) else math.nan,
+        clearance,
+        float(depth) if math.isfinite(collision_at) else 0.0,
+        checker.TOLERANCE,
+    )
+
+
+@njit(cache=True)
+def _approach(points, times, centres, velocities, walls, radii, tolerance):
+    """Time of the first collision, infinite without one, and least clearance (steps,) in each step."""
+    first_step, last_step = int(np.floor(times[0])), int(np.ceil(times[-1]))
+    clearance = np.full(max(last_step - first_step, 1), np.inf)
+    collision_at = np.inf
+    step = first_step
+    before, after = positions(centres, velocities, walls, step), positions(centres, velocities, walls, step + 1)
+    for i in range(len(times) - 1):
+        begin = times[i]
+        while True:
+            while begin >= step + 1:
+                step += 1
+                before, after = after, positions(centres, velocities, walls, step + 1)
+            end = min(times[i + 1], step + 1.0)
+            duration = times[i + 1] - times[i]
+            one = (begin - times[i]) / duration if duration > 0.0 else 0.0
+            other = (end - times[i]) / duration if duration > 0.0 else 1.0
+            for k in range(len(centres)):
+                # The robot relative to the circle, at the beginning and at the end.
+                dx, dy = _relative(points, i, one, before[k], after[k], begin - step)
+                end_x, end_y = _relative(points, i, other, before[k], after[k], end - step)
+                ex, ey = end_x - dx, end_y - dy
+                size, along, apart = ex * ex + ey * ey, dx * ex + dy * ey, dx * dx + dy * dy
+                share = min(max(-along / size, 0.0), 1.0) if size > 0.0 else 0.0
+                nearest = math.hypot(dx + share * ex, dy + share * ey) - radii[k]
+                place = min(step - first_step, len(clearance) - 1)
+                clearance[place] = min(clearance[place], nearest)
+                if nearest < -tolerance:
+                    excess = apart - radii[k] * radii[k]
+                    entry = 0.0 if excess <= 0.0 else (-along - math.sqrt(max(along * along - size * excess, 0.0))) / size
+                    collision_at = min(collision_at, begin + entry * (end - begin))
+            if end >= times[i + 1]:
+                break
+            begin = end
+    return collision_at, clearance
+
+
+@njit(cache=True)
+def _relative(points, i, share, before, after, moved):
+    """The robot's place on leg i, relative to a circle that has made a share of its step."""
+    x = points[i, 0] + share * (points[i + 1, 0] - points[i, 0])
+    y = points[i, 1] + share * (points[i + 1, 1] - points[i, 1])
+    return x - before[0] - moved * (after[0] - before[0]), y - before[1] - moved * (after[1] - before[1])
+
+
+def _among_cells(motion: Motion, world: ChangingCells) -> Verdict:
+    first, last = math.floor(motion.times[0]), math.ceil(motion.times[-1])
+    regions = [region(each) for each in world.maps]
+    clearance, collision_at, depth, tolerance = np.full(max(last - first, 1), np.inf), math.nan, 0.0, 0.0
+    inner = world.moments[(world.moments > motion.times[0]) & (world.moments < motion.times[-1])]
+    cuts = np.unique(np.concatenate([[motion.times[0], motion.times[-1]], np.arange(first + 1, last), inner]))
+    for begin, end in itertools.pairwise(cuts):
+        points, times = between(motion, begin, end)
+        found = checker.check(np.stack([points[:-1], points[1:]], axis=1), regions[world.index(begin)])
+        step = math.floor(begin) - first
+        clearance[step] = min(clearance[step], found.clearance)
+        depth, tolerance = max(depth, found.depth), max(tolerance, found.tolerance)
+        if not found.feasible and math.isnan(collision_at):
+            leg = min(int(found.collision_at), len(points) - 2)
+            collision_at = float(times[leg] + (found.collision_at - leg) * (times[leg + 1] - times[leg]))
+    return Verdict(collision_at, clearance, depth, tolerance)
+
+
+def between(motion: Motion, begin: float, end: float) -> Motion:
+    """The part of a motion between two times, of at least two vertices."""
+    inside = (motion.times > begin) & (motion.times < end)
+    times = np.concatenate([[begin], motion.times[inside], [end]])
+    ends = np.column_stack([np.interp([begin, end], motion.times, motion.points[:, axis]) for axis in range(2)])
+    return Motion(np.concatenate([ends[:1], motion.points[inside], ends[1:]]), times)

@@ -1,0 +1,149 @@
+"""The simulation: plans, drives, and records."""
+
+import itertools
+import math
+import time as clock
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from bezierplan.geometry.region import blocks, region
+from bezierplan.planners import Plan
+from bezierplan.running.simulation import cells, circles
+from bezierplan.running.simulation.circles import ARRIVED, STOPPED
+from bezierplan.running.simulation.motion_check import Motion
+from bezierplan.running.simulation.policy import Policy
+from bezierplan.running.simulation.ways import Way, polyline, way
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.workspaces.worlds import ChangingCells, World
+
+Planner = Callable[[Problem, Any], tuple[Plan, Any]]
+"""A planner with its settings and random numbers: of a problem and, for a warm start, what it returned second with its last plan."""
+
+
+class Planned(NamedTuple):
+    """A plan that the robot made. time: in steps. path: the planner's, or None. length: of the way to it and along it, in units. margin: by
+    which circles were grown, in units. seconds: CPU time. evaluations: as in `Plan`.
+    """
+
+    time: float
+    path: Path | None
+    length: float
+    margin: float
+    seconds: float
+    evaluations: int
+
+
+class Ride(NamedTuple):
+    """A robot's way through a world. arrived: whether it reached the target. waited: time spent waiting, in steps."""
+
+    motion: Motion
+    arrived: bool
+    waited: float
+    plans: list[Planned]
+
+    @property
+    def replans(self) -> int:
+        """Plans after the first."""
+        return len(self.plans) - 1
+
+
+class _Log:
+    """The motion so far."""
+
+    def __init__(self, place: tuple[float, float]) -> None:
+        self.points, self.times, self.waited = [np.array([place], dtype=float)], [np.zeros(1)], 0.0
+
+    def motion(self) -> Motion:
+        """The motion so far, with at least two vertices."""
+        points, times = np.concatenate(self.points), np.concatenate(self.times)
+        return Motion(points, times) if len(times) > 1 else Motion(np.repeat(points, 2, axis=0), np.array([0.0, 0.0]))
+
+    def follow(self, along: Way, times: np.ndarray, reached: np.ndarray, pace: float) -> None:
+        """Add a drive along a way: the lengths of it reached at some times, between which the robot waits or drives at its pace. It may
+        reach the last one before its time.
+        """
+        for k, (begin, end) in enumerate(itertools.pairwise(reached)):
+            if end == begin:
+                self.wait(times[k + 1])
+                continue
+            inside = along.at[(along.at > begin) & (along.at < end)]
+            lengths = np.append(inside, end)
+            self.points.append(along.place(lengths))
+            self.times.append(times[k] + (lengths - begin) / pace)
+
+    def wait(self, until: float) -> None:
+        """Add a wait."""
+        self.waited += until - self.times[-1][-1]
+        self.points.append(self.points[-1][-1:])
+        self.times.append(np.array([until]))
+
+
+def drive(world: World, problem: Problem, policy: Policy, planner: Planner) -> Ride:
+    """A robot's way from start to target, until it arrives or the world's time is over."""
+    log, plans, state = _Log(problem.start), [], None
+    time = 0.0
+    while time < world.end:
+        made, along, state = _plan(world, problem, policy, planner, log, time, state if policy.warm else None)
+        plans.append(made)
+        event = STOPPED
+        if along is not None:
+            event, times, reached = _follow(world, along, time, policy)
+            log.follow(along, times, reached, world.pace)
+            time = float(times[-1])
+        if event == ARRIVED:
+            return Ride(log.motion(), True, log.waited, plans)
+        if event == STOPPED:
+            time = _after_wait(world, time)
+            log.wait(time)
+    return Ride(log.motion(), False, log.waited, plans)
+
+
+def _follow(world: World, along: Way, time: float, policy: Policy) -> tuple[int, np.ndarray, np.ndarray]:
+    """`follow` of the world's kind."""
+    if isinstance(world, ChangingCells):
+        return cells.follow(world, along, time, policy)
+    event, reached = circles.follow(world, along, round(time), policy)
+    return event, time + np.arange(len(reached)), reached
+
+
+def _after_wait(world: World, time: float) -> float:
+    """When a robot without a way looks again: after a step, or as soon as a cell changes."""
+    changes = world.moments[world.moments > time] if isinstance(world, ChangingCells) else np.empty(0)
+    return float(min(math.floor(time) + 1, changes.min(initial=math.inf), world.end))
+
+
+def _plan(
+    world: World, problem: Problem, policy: Policy, planner: Planner, log: _Log, time: float, state: Any
+) -> tuple[Planned, Way | None, Any]:
+    """A plan from where the robot is, and the way that it follows then; None if it found none."""
+    motion = log.motion()
+    approach, evaluations, began = motion.points[-1:], 0, clock.process_time()
+    looked = time if isinstance(world, ChangingCells) else round(time) + (policy.sees == "after")
+    if policy.start == "centre":
+        approach = cells.way_to_centre(motion, world.workspace(time))
+    margins = policy.plan_margins if not isinstance(world, ChangingCells) else (0.0,)
+    for margin in margins:
+        place = tuple(map(float, approach[-1]))
+        seen = Problem(problem.name, world.workspace(looked, margin), place, problem.target)
+        if place == problem.target:
+            return Planned(time, None, 0.0, margin, clock.process_time() - began, 0), way(approach), state
+        if not (_is_free(seen, place) and _is_free(seen, problem.target)):
+            continue
+        plan, found = planner(seen, state)
+        evaluations += plan.evaluations
+        if plan.path is not None and plan.claimed_feasible:
+            along = way(np.concatenate([approach, polyline(plan.path, policy.spacing)]))
+            return Planned(time, plan.path, along.length, margin, clock.process_time() - began, evaluations), along, found
+    return Planned(time, None, math.inf, math.nan, clock.process_time() - began, evaluations), None, state
+
+
+def _is_free(problem: Problem, place: tuple[float, float]) -> bool:
+    """Whether a place is free in the workspace that a planner sees."""
+    grid = problem.workspace
+    if isinstance(grid, Grid):
+        cell = grid.cell_of(*place)
+        return cell is not None and not grid.occupied[cell]
+    return not blocks(region(grid), place)

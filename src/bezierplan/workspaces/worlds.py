@@ -1,0 +1,120 @@
+"""Worlds that change while a robot drives: circles that move, and grids whose cells change. They never react to the robot.
+
+Time is counted in steps. A world has a pace, the way that a robot covers in a step, and an end, after which a robot has failed.
+"""
+
+import json
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numba import njit
+
+from bezierplan.workspaces import files, random_field
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import Grid
+
+
+@dataclass(frozen=True)
+class MovingCircles:
+    """Circles that move in straight lines and are reflected where their centres meet a wall.
+
+    bounds: lowest and highest x, lowest and highest y of the robot's field; walls: likewise, of the centres; in units. centres: (n, 2) at
+    step 0, in units; velocities: (n, 2), in units per step; radii: (n,), in units. seen: what planners see, the field's cells, of side 1
+    (`random_field`), or the circles. pace: in units per step. end: in steps.
+
+    At whole steps the reflected positions are exact. From one step to the next each circle moves uniformly along a straight line.
+    """
+
+    bounds: tuple[float, float, float, float]
+    walls: tuple[float, float, float, float]
+    centres: np.ndarray
+    velocities: np.ndarray
+    radii: np.ndarray
+    seen: Literal["cells", "circles"]
+    pace: float
+    end: int
+    unit: str
+
+    def at(self, step: int) -> np.ndarray:
+        """Centres (n, 2) at a whole step, in units."""
+        return positions(self.centres, self.velocities, np.array(self.walls), step)
+
+    def workspace(self, step: int, margin: float = 0.0) -> Grid | Circles:
+        """What planners see at a step: the circles, grown by a margin in units, or the cells that they occupy."""
+        circles = Circles(self.bounds, self.at(step), self.radii + margin, self.unit)
+        if self.seen == "circles":
+            return circles
+        field = Circles(self.walls, circles.centres, circles.radii, self.unit)
+        return random_field.from_circles(field)
+
+
+@dataclass(frozen=True)
+class ChangingCells:
+    """Grids that follow each other. maps: the first one, and the one that begins at each moment. moments: (changes,) ascending, in steps.
+    pace: in units per step. end: in steps.
+    """
+
+    maps: tuple[Grid, ...]
+    moments: np.ndarray
+    pace: float
+    end: int
+
+    @property
+    def unit(self) -> str:
+        """The name of the unit of length."""
+        return self.maps[0].unit
+
+    def index(self, time: float) -> int:
+        """The number of the map in force at a time; at a moment of change, of the new one."""
+        return int(np.searchsorted(self.moments, time, side="right"))
+
+    def workspace(self, time: float, margin: float = 0.0) -> Grid:
+        """What planners see at a time. Cells have no margin."""
+        return self.maps[self.index(time)]
+
+
+World = MovingCircles | ChangingCells
+
+
+@njit(cache=True)
+def positions(centres, velocities, walls, step):
+    """Centres (n, 2) after some steps of uniform motion with reflection at walls (4,): lowest and highest x, lowest and highest y."""
+    moved = np.empty_like(centres)
+    for axis in range(2):
+        low, width = walls[2 * axis], walls[2 * axis + 1] - walls[2 * axis]
+        for i in range(len(centres)):
+            # Unfolded, the motion is uniform; every other image of the field is mirrored.
+            along = (centres[i, axis] + velocities[i, axis] * step - low) % (2.0 * width)
+            moved[i, axis] = low + min(along, 2.0 * width - along)
+    return moved
+
+
+def to_json(world: World) -> str:
+    """A world as text; `from_json` restores it bit by bit."""
+    if isinstance(world, ChangingCells):
+        content = {"maps": [files.to_json(each) for each in world.maps], "moments": world.moments.tolist()}
+    else:
+        table = np.column_stack([world.centres, world.velocities, world.radii]).tolist()
+        content = {"bounds": world.bounds, "walls": world.walls, "circles": table, "seen": world.seen, "unit": world.unit}
+    return json.dumps(content | {"pace": world.pace, "end": world.end})
+
+
+def from_json(text: str) -> World:
+    """The world that `to_json` wrote."""
+    content = json.loads(text)
+    if "maps" in content:
+        maps = tuple(map(files.from_json, content["maps"]))
+        return ChangingCells(maps, np.array(content["moments"]), content["pace"], content["end"])
+    table = np.array(content["circles"], dtype=float).reshape(-1, 5)
+    return MovingCircles(
+        bounds=tuple(content["bounds"]),
+        walls=tuple(content["walls"]),
+        centres=table[:, :2].copy(),
+        velocities=table[:, 2:4].copy(),
+        radii=table[:, 4].copy(),
+        seen=content["seen"],
+        pace=content["pace"],
+        end=content["end"],
+        unit=content["unit"],
+    )

@@ -1,0 +1,217 @@
+"""Robots in worlds that change: motion, the exact check between steps, policies, and what a clairvoyant robot could reach."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from bezierplan.planners import Plan
+from bezierplan.running.simulation import cells, clairvoyant, motion_check
+from bezierplan.running.simulation.motion_check import Motion
+from bezierplan.running.simulation.policy import Policy
+from bezierplan.running.simulation.robot import drive
+from bezierplan.running.simulation.ways import way
+from bezierplan.workspaces import worlds
+from bezierplan.workspaces.grid import from_lines
+from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.workspaces.worlds import ChangingCells, MovingCircles
+
+BLIND = Policy("never", 1, False, False, "before", "positions", 0.0, (0.0,), 0.0, 0.5, "position", 0.05)
+WAITS = BLIND._replace(waits=True, sees="after", brake=1.0)
+REPLANS = WAITS._replace(replan="when_blocked", check_margin=0.2, plan_margins=(0.5, 0.0))
+
+
+def circles(*rows, pace=1.0, end=100):
+    """A field of 20 x 20 with circles (x, y, radius, x velocity, y velocity)."""
+    table = np.array(rows, dtype=float).reshape(-1, 5)
+    square = (0.0, 20.0, 0.0, 20.0)
+    return MovingCircles(square, square, table[:, :2].copy(), table[:, 3:].copy(), table[:, 2].copy(), "circles", pace, end, "m")
+
+
+def across(world, start=(0.0, 10.0), target=(20.0, 10.0)):
+    return Problem("across", world.workspace(0), start, target)
+
+
+def straight(problem, state):
+    """A planner that always goes straight."""
+    points = np.array([problem.start, problem.target])
+    length = math.dist(*points)
+    return Plan(Path("polyline", points), length, True, 1, np.array([length]), "exact", {}), state
+
+
+def round_about(problem, state):
+    """A planner that goes straight or, where a circle is in the way, through one of two points beside it."""
+    for middle in (10.0, 16.0, 4.0):
+        points = np.array([problem.start, ((problem.start[0] + problem.target[0]) / 2, middle), problem.target])
+        bare = MovingCircles(
+            problem.workspace.bounds,
+            problem.workspace.bounds,
+            problem.workspace.centres,
+            np.zeros_like(problem.workspace.centres),
+            problem.workspace.radii,
+            "circles",
+            1.0,
+            1,
+            "m",
+        )
+        if math.isnan(motion_check.check(Motion(points, np.array([0.0, 0.5, 1.0])), bare).collision_at):
+            return Plan(Path("polyline", points), 0.0, True, 1, np.zeros(1), "exact", {}), state
+    return Plan(None, math.inf, False, 1, np.zeros(1), "none", {}), state
+
+
+# Worlds
+
+
+@given(st.floats(0, 10), st.floats(-3, 3), st.integers(0, 200))
+def test_a_circle_is_where_step_by_step_reflection_takes_it(x, velocity, steps):
+    position, speed = x, velocity
+    for _ in range(steps):
+        position += speed
+        while not 0 <= position <= 10:
+            position, speed = (-position, -speed) if position < 0 else (20 - position, -speed)
+    found = worlds.positions(np.array([[x, 5.0]]), np.array([[velocity, 0.0]]), np.array([0.0, 10.0, 0.0, 10.0]), steps)
+    assert found[0, 0] == pytest.approx(position, abs=1e-9)
+    assert found[0, 1] == 5.0
+
+
+def test_worlds_survive_their_files():
+    world = circles((3, 4, 1, 0.1, -0.2), pace=0.5)
+    again = worlds.from_json(worlds.to_json(world))
+    assert np.array_equal(again.at(7), world.at(7))
+    assert (again.pace, again.end, again.bounds) == (0.5, 100, world.bounds)
+    maps = tuple(from_lines(lines, 1.0, "m") for lines in (["..", ".."], ["#.", ".."]))
+    changing = ChangingCells(maps, np.array([2.5]), 1.0, 9)
+    assert [worlds.from_json(worlds.to_json(changing)).workspace(time).occupied.sum() for time in (2.4, 2.5)] == [0, 1]
+
+
+# The exact check
+
+
+@pytest.mark.parametrize(("excess", "hits"), [(-1e-6, True), (1e-6, False)])
+@pytest.mark.parametrize("at", [3.25, 3.5, 3.9])
+def test_grazing_collisions_between_steps_are_found(excess, hits, at):
+    """The robot drives to the right, and the circle to the left and upwards; they are closest at a time between two steps."""
+    velocity, circle = np.array([1.0, 0.0]), np.array([-0.5, 0.8])
+    relative = velocity - circle
+    normal = np.array([-relative[1], relative[0]]) / np.hypot(*relative)
+    robot = np.array([5.0, 10.0])
+    meeting = robot + at * velocity + (1.0 + excess) * normal
+    world = circles((*(meeting - at * circle), 1.0, *circle))
+    points = robot + np.array([[0.0], [7.0]]) * velocity
+    found = motion_check.check(Motion(points, np.array([0.0, 7.0])), world)
+    assert math.isnan(found.collision_at) != hits
+    assert found.clearance[3] == pytest.approx(excess, abs=1e-9)
+    if hits:
+        # Where the quadratic first falls to the radius: half a chord before the closest approach.
+        assert found.collision_at == pytest.approx(at - math.sqrt(1 - (1 + excess) ** 2) / np.hypot(*relative), abs=1e-5)
+
+
+def test_a_waiting_robot_can_be_hit():
+    world = circles((10, 2, 1, 0, 0.5))
+    place = np.array([[10.0, 10.0], [10.0, 10.0]])
+    found = motion_check.check(Motion(place, np.array([0.0, 30.0])), world)
+    assert found.collision_at == pytest.approx(14.0)
+
+
+def test_a_way_out_of_the_field_is_a_collision():
+    world = circles()
+    found = motion_check.check(Motion(np.array([[1.0, 1.0], [1.0, 21.0], [1.0, 5.0]]), np.array([0.0, 4.0, 8.0])), world)
+    assert found.collision_at == 4.0
+    assert found.depth == 1.0
+
+
+def test_cells_collide_only_while_they_are_occupied():
+    maps = tuple(from_lines(lines, 1.0, "m") for lines in (["....", "....", "...."], ["....", ".##.", "...."]))
+    world = ChangingCells(maps, np.array([2.0]), 1.0, 9)
+    line = np.array([[0.5, 1.5], [3.5, 1.5]])
+    early, late = (Motion(line, np.array(times)) for times in ([0.0, 2.0], [1.5, 3.0]))
+    assert math.isnan(motion_check.check(early, world).collision_at)
+    # At the change it stands at x = 1.5, in a cell that becomes occupied.
+    assert motion_check.check(late, world).collision_at == pytest.approx(2.0)
+    # One cell is occupied when it comes.
+    assert motion_check.check(Motion(line, np.array([1.8, 4.8])), world).collision_at == pytest.approx(2.3)
+
+
+# Policies
+
+
+def test_a_blind_robot_drives_on_and_a_waiting_one_lets_the_circle_pass():
+    world = circles((10, 4, 2, 0, 0.5))
+    blind, waiting = (drive(world, across(world), policy, straight) for policy in (BLIND, WAITS))
+    assert blind.arrived
+    assert not math.isnan(motion_check.check(blind.motion, world).collision_at)
+    assert (blind.waited, blind.replans) == (0.0, 0)
+    assert waiting.arrived
+    assert waiting.waited > 0
+    assert waiting.motion.times[-1] == pytest.approx(20 + waiting.waited)
+    assert waiting.replans == 0
+
+
+def test_a_robot_that_plans_again_drives_round_a_circle_that_comes_into_its_way():
+    world = circles((10, 2, 2, 0, 0.4))
+    ride = drive(world, across(world), REPLANS, round_about)
+    assert ride.arrived
+    assert ride.replans >= 1
+    assert math.isnan(motion_check.check(ride.motion, world).collision_at)
+    lengths = np.hypot(*np.diff(ride.motion.points, axis=0).T)
+    assert (lengths <= np.diff(ride.motion.times) + 1e-9).all()  # never faster than the pace
+
+
+def test_a_robot_without_a_plan_waits_until_the_world_ends():
+    world = circles(end=7)
+    ride = drive(world, across(world), REPLANS, lambda problem, state: (straight(problem, state)[0]._replace(path=None), state))
+    assert not ride.arrived
+    assert (ride.waited, ride.motion.times[-1]) == (7.0, 7.0)
+
+
+def test_a_robot_that_looks_ahead_ignores_a_circle_that_will_have_passed():
+    world = circles((15, 5, 1, 0, 0.9))  # on the way at step 5, and far above it when the robot comes at step 15
+    near, ahead = (drive(world, across(world), REPLANS._replace(knows=knows), round_about) for knows in ("positions", "velocities"))
+    assert (near.replans > 0, ahead.replans) == (True, 0)
+
+
+def test_a_robot_in_a_cell_that_becomes_occupied_drives_back():
+    maps = tuple(from_lines(lines, 1.0, "m") for lines in (["....", "....", "...."], ["....", "..#.", "...."]))
+    motion = Motion(np.array([[0.5, 1.5], [2.5, 1.5]]), np.array([0.0, 2.0]))
+    back = cells.way_to_centre(motion, maps[1])
+    assert back[0].tolist() == [2.5, 1.5]
+    assert back[-1].tolist() == [1.5, 1.5]
+    assert cells.way_to_centre(motion, maps[0]).tolist() == [[2.5, 1.5], [2.5, 1.5]]
+
+
+def test_the_free_length_of_a_way_ends_at_an_occupied_cell():
+    grid = from_lines(["....", "..#.", "...."], 1.0, "m")
+    along = way(np.array([[0.5, 1.5], [3.5, 1.5]]))
+    assert cells.free_length(grid, along, 0.25) == pytest.approx(1.5)
+    assert cells.free_length(grid, along, 2.5) == math.inf
+
+
+# What a clairvoyant robot could reach
+
+
+def test_without_obstacles_it_arrives_as_soon_as_the_straight_line_allows():
+    world = circles(pace=0.5)
+    found = clairvoyant.earliest(world, across(world, target=(3.0, 14.0)))
+    assert found == (pytest.approx(10.0), pytest.approx(5.0))
+
+
+def test_it_waits_or_drives_round_whichever_is_earlier():
+    world = circles((10, 10, 3, 0, 0.25))
+    found = clairvoyant.earliest(world, across(world))
+    assert 20 < found.arrival < 26
+    assert found.length >= clairvoyant.least_way(world, across(world)).length == 20.0
+
+
+def test_a_wall_that_opens_makes_it_wait_and_one_that_closes_makes_it_hurry():
+    open_, shut = (from_lines(lines, 1.0, "m") for lines in (["....", "....", "...."], [".#..", ".#..", ".#.."]))
+    start, target = (0.5, 1.5), (3.5, 1.5)
+    opens = ChangingCells((shut, open_), np.array([5.0]), 1.0, 20)
+    problem = Problem("gate", shut, start, target)
+    assert clairvoyant.earliest(opens, problem).arrival == pytest.approx(5.0 + 2.5, abs=0.2)
+    assert clairvoyant.least_way(opens, problem).length == 3.0
+    closes = ChangingCells((open_, shut), np.array([1.5]), 1.0, 20)
+    assert clairvoyant.earliest(closes, problem._replace(workspace=open_)) == (3.0, 3.0)
+    late = ChangingCells((open_, shut), np.array([1.4]), 1.0, 20)
+    assert clairvoyant.earliest(late, problem._replace(workspace=open_)).arrival == math.inf

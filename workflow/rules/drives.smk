@@ -1,0 +1,48 @@
+# Experiments in worlds that move: the same files as those of the others, and the trace of every drive.
+
+
+rule worlds:
+    input:
+        lambda wildcards: targets.problem_maps(STUDIES, **wildcards),
+    output:
+        f"{RESULTS}/problems/{{experiment}}.parquet",
+    log:
+        f"{RESULTS}/logs/problems/{{experiment}}.log",
+    wildcard_constraints:
+        study=studies_of(MOVING),
+    params:
+        **params(targets.problems_params, "job", "folder", "maps", "code"),
+    script:
+        "../scripts/worlds.py"
+
+
+rule clairvoyant:
+    input:
+        rules.worlds.output,
+    output:
+        f"{RESULTS}/problems/{{experiment}}.bounds.parquet",
+    log:
+        f"{RESULTS}/logs/bounds/{{experiment}}.log",
+    wildcard_constraints:
+        study=studies_of(MOVING),
+    params:
+        **targets.bounds_params("clairvoyant"),
+    script:
+        "../scripts/clairvoyant.py"
+
+
+rule drives:
+    input:
+        problems=f"{RESULTS}/problems/{{experiment}}.parquet",
+    output:
+        runs=f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.parquet",
+        times=f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.times.parquet",
+        traces=f"{RESULTS}/runs/{{experiment}}/{{method}}/{{chunk}}.traces.parquet",
+    log:
+        f"{RESULTS}/logs/runs/{{experiment}}/{{method}}/{{chunk}}.log",
+    wildcard_constraints:
+        study=studies_of(MOVING),
+    params:
+        **params(targets.run_params, "job", "code"),
+    script:
+        "../scripts/drives.py"
