@@ -73,23 +73,20 @@ def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
     return table.join(_stable(deciding)) if "readings" in deciding else table
 
 
-def with_readings(claims: pd.DataFrame, papers_size: pd.DataFrame, tried: pd.DataFrame) -> pd.DataFrame:
-    """Claims with two more columns after the verdict: `verdict_at_papers_size`, and `readings`, how many readings agree with the latter,
-    such as `9 of 12`: the one in force and each alternative that was tried; empty for a claim on which none was.
+def with_readings(claims: pd.DataFrame, tried: pd.DataFrame) -> pd.DataFrame:
+    """Claims with one more column after the verdict: `readings`, how many readings agree with it, such as `9 of 12`: the one in force and
+    each alternative that was tried; empty for a claim on which none was.
 
-    papers_size: as from `claims.judge`, on experiments of the paper's size. tried: as from `sensitivity.sensitivity`, of all studies.
+    tried: as from `sensitivity.sensitivity`, of all studies.
     """
-    claim = ["study", "id", "variant"]
-    place = claims.columns.get_loc("verdict") + 1
-    claims = claims.merge(papers_size[[*claim, "verdict"]].rename(columns={"verdict": "verdict_at_papers_size"}), how="left", on=claim)
     unchanged = (~tried["changed"]).groupby([tried["study"], tried["claim"]]).agg(["sum", "size"]) + 1
     words = {key: f"{agree} of {total}" for key, agree, total in unchanged.itertuples()}
     readings = [
         words.get((study, identity), "") if primary else "" for study, identity, primary in claims[["study", "id", "primary"]].to_numpy()
     ]
-    ordered = [name for name in claims if name != "verdict_at_papers_size"]
-    ordered[place:place] = ["verdict_at_papers_size", "readings"]
-    return claims.assign(readings=readings)[ordered]
+    columns = list(claims)
+    columns.insert(columns.index("verdict") + 1, "readings")
+    return claims.assign(readings=readings)[columns]
 
 
 def _stable(claims: pd.DataFrame) -> pd.Series:
@@ -137,7 +134,7 @@ def report(numbers: pd.DataFrame, claims: pd.DataFrame, measured: pd.DataFrame, 
 
 def _listed(claims: pd.DataFrame) -> str:
     """Claims with their verdicts, as markdown."""
-    columns = ["statement", "verdict", "verdict_at_papers_size", "readings", "holds", "where_it_holds", "units_to_decide", "published"]
+    columns = ["statement", "verdict", "readings", "holds", "where_it_holds", "units_to_decide", "published"]
     shown = claims[[*(name for name in columns if name in claims), "effect", "n"]].astype(object).fillna("")
     shown["effect"] = [f"{value:.3g}" if isinstance(value, float) else value for value in shown["effect"]]
     return markdown(shown)

@@ -1,7 +1,6 @@
-"""The outcome kept in the repository: docs/outcome and the README's table.
+"""The outcome kept in the repository: docs/outcome and the README's table, both from results at scale full.
 
-Verdicts and numbers are those of scale extended, for they concern the methods and not the size of a paper's sample; next to each verdict
-stand that at the paper's size (scale full) and how many readings of what the paper leaves open agree with it.
+Next to each verdict stands how many readings of what the paper leaves open agree with it.
 """
 
 import shutil
@@ -13,8 +12,7 @@ import pandas as pd
 from bezierplan.analysis import summary
 from bezierplan.study import reading
 
-DECIDING, PAPERS_SIZE = Path("results/extended"), Path("results/full")
-KEPT, README = Path("docs/outcome"), Path("README.md")
+RESULTS, KEPT, README = Path("results/full"), Path("docs/outcome"), Path("README.md")
 PICTURE = "song2016/figures/figure3.png"
 BLOCK = "outcome"
 SENSITIVITY = "sensitivity.csv"
@@ -22,7 +20,7 @@ WORTH = "worth.csv"
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Write docs/outcome and the README's table from results/extended and results/full. Raises FileNotFoundError."""
+    """Write docs/outcome and the README's table from results/full. Raises FileNotFoundError."""
     parser.parse_args(words)
     write()
 
@@ -30,18 +28,18 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
 def write() -> None:
     """Copy the outcome, and insert its table into the README. Raises FileNotFoundError if results are missing."""
     KEPT.mkdir(parents=True, exist_ok=True)
-    tried = [pd.read_csv(file) for file in sorted(PAPERS_SIZE.glob(f"*/{SENSITIVITY}"))]
-    claims = summary.with_readings(pd.read_csv(DECIDING / "claims.csv"), pd.read_csv(PAPERS_SIZE / "claims.csv"), pd.concat(tried))
-    numbers = pd.read_csv(DECIDING / "numbers.csv")
+    tried = [pd.read_csv(file) for file in sorted(RESULTS.glob(f"*/{SENSITIVITY}"))]
+    claims = summary.with_readings(pd.read_csv(RESULTS / "claims.csv"), pd.concat(tried))
+    numbers = pd.read_csv(RESULTS / "numbers.csv")
     titles = {key: study.title for key, study in reading.load(reading.read_config({})).items()}
-    measured = pd.read_csv(DECIDING / WORTH)
+    measured = pd.read_csv(RESULTS / WORTH)
     numbers.to_csv(KEPT / "numbers.csv", index=False)
     claims.to_csv(KEPT / "claims.csv", index=False)
-    (KEPT / "summary.md").write_text(summary.report(numbers, claims, measured, titles, DECIDING.name), encoding="utf-8")
+    (KEPT / "summary.md").write_text(summary.report(numbers, claims, measured, titles, RESULTS.name), encoding="utf-8")
     for frame in tried:
         frame.to_csv(KEPT / f"{frame['study'].iloc[0]}_{SENSITIVITY}", index=False)
-    shutil.copyfile(DECIDING / WORTH, KEPT / WORTH)
-    shutil.copyfile(PAPERS_SIZE / PICTURE, KEPT / PICTURE.replace("/figures/", "_"))
+    shutil.copyfile(RESULTS / WORTH, KEPT / WORTH)
+    shutil.copyfile(RESULTS / PICTURE, KEPT / PICTURE.replace("/figures/", "_"))
     README.write_text(summary.with_block(README.read_text(encoding="utf-8"), BLOCK, table(KEPT)), encoding="utf-8")
 
 
