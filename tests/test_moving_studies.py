@@ -2,6 +2,7 @@
 
 import math
 
+import pandas as pd
 import pytest
 
 from bezierplan.commands import replay
@@ -95,8 +96,8 @@ def test_a_reader_s_planner_drives_by_one_line_of_config(tmp_path):
 def test_equal_seeds_give_equal_drives(tmp_path):
     study = reading.load([written(tmp_path)])["mystudy"]
     one, other = chunk(study), chunk(study)
-    assert one[0].equals(other[0])
-    assert one[2].equals(other[2])
+    for number in (0, 2):
+        pd.testing.assert_frame_equal(one[number].to_pandas(), other[number].to_pandas())
     stored = one[0].to_pylist()[1]
     found = replay.replay(stored["id"], {"mystudy": study})
     assert replay.equal(found.runs.iloc[0], stored)

@@ -13,6 +13,7 @@ from bezierplan.__main__ import main
 from bezierplan.commands.plan import EXAMPLES
 
 GAPS = str(BENCHMARK_MAPS / "gaps.geojson")
+CELLS = str(BENCHMARK_MAPS.parents[1] / "song2016" / "workspaces" / "figure2.txt")
 ENDS = ["--start", "2,10", "--target", "18,10"]
 SHORTEST = 29.565803670
 
@@ -110,7 +111,10 @@ FAULTS = {
     "no map": (["nowhere.geojson", *ENDS], "nowhere.geojson: cannot be read"),
     "kind of map": (["room.dwg", *ENDS], "room.dwg: unknown kind of map; expected a file that ends in .geojson"),
     "planner": ([GAPS, *ENDS, "--planner", "pmr"], "--planner: pmr: unknown; did you mean prm"),
-    "planner of circles": ([GAPS, *ENDS, "--planner", "chaotic_pso"], "serves workspaces of kind circles, and a map is"),
+    "planner of circles": (
+        [CELLS, "--start", "0.5,0.5", "--target", "15.5,0.5", "--planner", "chaotic_pso"],
+        "serves workspaces of kind circles, polygons, and a map is grid",
+    ),
     "setting": ([GAPS, *ENDS, "--settings", "{radius: 1}"], "--settings: radius: no setting of rounded_shortest_path"),
     "value": ([GAPS, *ENDS, "--settings", "{turning_radius: -1}"], "--settings: turning_radius: -1; expected a number at least 0"),
     "settings": ([GAPS, *ENDS, "--settings", "fast"], "--settings: fast: expected '{name: value, ...}'"),

@@ -22,7 +22,7 @@ SMALL = {
     "population: 200": "population: 10",
     "generations: 100": "generations: 5",
     "population: 20200": "population: 60",
-    "repeats: {smoke: 2, full: 100, extended: 1000}": "repeats: {smoke: 2, full: 4, extended: 8}",
+    "repeats: {smoke: 2, full: 100, extended: 250}": "repeats: {smoke: 2, full: 4, extended: 8}",
     "chunk: {smoke: 2, full: 50, extended: 250}": "chunk: {smoke: 2, full: 2, extended: 4}",
 }
 

@@ -37,7 +37,8 @@ rule page:
     input:
         inputs(page.inputs),
     output:
-        page=report("results/{scale}/index.html", category="summary", labels={"item": "page", "shows": "everything, on one page"}),
+        # Not part of the report, which prints the params of what it shows without escaping the titles in them.
+        page="results/{scale}/index.html",
     log:
         "results/{scale}/page.log",
     params:
