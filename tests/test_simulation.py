@@ -150,7 +150,7 @@ def test_a_blind_robot_drives_on_and_a_waiting_one_lets_the_circle_pass():
 
 
 def test_a_robot_that_plans_again_drives_round_a_circle_that_comes_into_its_way():
-    world = circles((10, 2, 2, 0, 0.7))
+    world = circles((15, 5, 2, 0, 0.4))
     ride = drive(world, across(world), REPLANS, round_about)
     assert ride.arrived
     assert ride.replans >= 1
