@@ -137,6 +137,9 @@ def _listed(claims: pd.DataFrame) -> str:
     columns = ["statement", "verdict", "readings", "holds", "where_it_holds", "units_to_decide", "published"]
     shown = claims[[*(name for name in columns if name in claims), "effect", "n"]].astype(object).fillna("")
     shown["effect"] = [f"{value:.3g}" if isinstance(value, float) else value for value in shown["effect"]]
+    # Read from a file with gaps, whole numbers are floats.
+    for column in shown.columns.intersection(["units_to_decide", "n"]):
+        shown[column] = [f"{value:.0f}" if isinstance(value, float) else value for value in shown[column]]
     return markdown(shown)
 
 
