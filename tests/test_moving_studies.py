@@ -2,11 +2,15 @@
 
 import math
 
+import numpy as np
 import pandas as pd
 import pytest
 
 from bezierplan.commands import replay
 from bezierplan.running import problems, rides, worlds
+from bezierplan.running.execution import Condition
+from bezierplan.running.simulation.motion_check import Motion
+from bezierplan.running.simulation.robot import Planned, Ride
 from bezierplan.study import reading
 from bezierplan.study.checked import Fault
 from bezierplan.study.jobs import job, problems_job
@@ -135,3 +139,16 @@ def test_a_fault_is_told_in_one_line(old, new, told, tmp_path):
         reading.load([written(tmp_path, old, new)])
     assert told in str(fault.value)
     assert "\n" not in str(fault.value)
+
+
+@pytest.mark.parametrize(("end", "feasible"), [((6.5, 2.5), True), ((6.0, 2.5), False)])
+def test_a_robot_that_believes_to_have_arrived_elsewhere_is_not_feasible(tmp_path, end, feasible):
+    study = reading.load([written(tmp_path)])["mystudy"]
+    made, _, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
+    around = np.array([(0.5, 2.5), (0.5, 4.5), (6.5, 4.5), end])
+    times = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(around, axis=0).T))])
+    plan = Planned(0.0, None, float(times[-1]), 0.0, 0.0, 1)
+    ride = Ride(Motion(around, times), True, 0.0, [plan])
+    described = job(study, "drives", "mine", "smoke", 0)
+    row, _ = rides.row(described, Condition("across", {}), 0, ride, made["across"], found["across"])
+    assert (row["claimed_feasible"], row["feasible"]) == (True, feasible)

@@ -44,15 +44,28 @@ TOLD = {
 RUN = "run liars/roads/across/{method}/0: "
 LOOPS = RUN.format(method="loops") + "planner {folder}/loops.py: not done within the time limit of 20 s; the job is ended"
 
+# The same lies told to a robot that drives.
+DRIVEN = {name: TOLD[name] for name in ("ends_short", "says_nothing")}
+DRIVE = "run liars/drives/through/{method}_drives/0: "
+
 EXPERIMENTS = """
 title: Planners that lie
 methods: {{{methods}}}
 settings: {{}}
+policies:
+  blind: {{replan: never, waits: false}}
 workspaces:
   disc: {{kind: circles, unit: m, bounds: [-5, 5, -5, 5], circles: [[0, 0, 1]]}}
+  moving: {{kind: moving_circles, unit: m, bounds: [-5, 5, -5, 5], circles: [[0, 0, 1, 0.1, 0]], pace: 1, steps: 20}}
 problems:
   across: {{workspace: disc, start: [-4, 4], target: [4, 4]}}
+  through: {{workspace: moving, start: [-4, 4], target: [4, 4]}}
 experiments:
+  drives:
+    problems: [through]
+    methods: [{drives}]
+    repeats: {{smoke: 1, full: 1, extended: 1}}
+    chunk: {{smoke: 1, full: 1, extended: 1}}
   roads:
     problems: [across]
     methods: [{names}]
@@ -62,8 +75,9 @@ experiments:
 """
 ARTEFACTS = """
 tables:
-  all: {title: All, kind: pivot, experiment: roads, index: [method], columns: [value], values: [
+  all: {title: All, kind: pivot, experiment: roads, index: [method], columns: [value], values: &length [
     {metric: length, statistic: mean, label: length, decimals: 2}]}
+  driven: {title: Driven, kind: pivot, experiment: drives, index: [method], columns: [value], values: *length}
 """
 
 
@@ -76,11 +90,20 @@ def ended(tmp_path_factory):
     answers = {"honest": "answer", "loops": "never_ends(1)"} | {name: answer for name, (answer, _) in TOLD.items()}
     for name, answer in answers.items():
         (study / f"{name}.py").write_text(PLANNER.replace("ANSWER", answer))
-    methods = ", ".join(f"{name}: {{planner: {name}.py}}" for name in answers)
-    (study / "experiments.yaml").write_text(EXPERIMENTS.format(methods=methods, names=", ".join(answers)))
+    methods = [f"{name}: {{planner: {name}.py}}" for name in answers]
+    drives = {f"{name}_drives": f"{{planner: {name}.py, policy: blind}}" for name in ("honest", *DRIVEN)}
+    methods += [f"{name}: {method}" for name, method in drives.items()]
+    words = {"methods": ", ".join(methods), "names": ", ".join(answers), "drives": ", ".join(drives)}
+    (study / "experiments.yaml").write_text(EXPERIMENTS.format(**words))
     (study / "artefacts.yaml").write_text(ARTEFACTS)
     command = [sys.executable, "-m", "snakemake", "-s", str(ROOT / "Snakefile"), "--workflow-profile", "none", "--cores", "2"]
-    target = ["results/smoke/liars/tables/all.csv", "--keep-going", "--config", f"studies=[{study}]"]
+    target = [
+        "results/smoke/liars/tables/all.csv",
+        "results/smoke/liars/tables/driven.csv",
+        "--keep-going",
+        "--config",
+        f"studies=[{study}]",
+    ]
     done = subprocess.run([*command, *target], cwd=folder, capture_output=True, text=True, check=False, timeout=300)
     return folder, done
 
@@ -91,6 +114,14 @@ def test_liar_is_refused_by_name_in_one_line(ended, method):
     told = f"{RUN.format(method=method)}the answer of planner liars/{method}.py: {TOLD[method][1]}"
     assert sum(told in line for line in done.stderr.splitlines()) == 1
     assert told in (folder / f"results/smoke/liars/logs/runs/roads/{method}/0.log").read_text()
+
+
+@pytest.mark.parametrize("method", DRIVEN)
+def test_liar_that_drives_is_refused_by_name_in_one_line(ended, method):
+    folder, done = ended
+    told = f"{DRIVE.format(method=method)}the answer of planner liars/{method}.py: {DRIVEN[method][1]}"
+    assert sum(told in line for line in done.stderr.splitlines()) == 1
+    assert told in (folder / f"results/smoke/liars/logs/runs/drives/{method}_drives/0.log").read_text()
 
 
 def test_kernel_that_never_ends_is_ended_by_name(ended):
@@ -104,5 +135,6 @@ def test_no_table_shows_them_and_the_honest_one_ran(ended):
     folder, done = ended
     assert done.returncode != 0
     assert [file.parent.name for file in folder.glob("results/**/runs/roads/*/0.parquet")] == ["honest"]
+    assert [file.parent.name for file in folder.glob("results/**/runs/drives/*/0.parquet")] == ["honest_drives"]
     assert not list(folder.glob("results/**/tables/*"))
     assert "Traceback" not in done.stderr

@@ -59,26 +59,32 @@ def replay(name: str, studies: dict[str, Study]) -> results.Results:
     if not repeat.isdecimal():
         raise Fault(f"{name}: repeat: {repeat}; expected a whole number")
 
-    if study.moves(experiment):
-        return _redriven(described, condition, int(repeat), study)
-    made, _ = problems.build_all(problems_job(study, experiment, "full"), study.folder)
-    problem = {condition.problem: made[condition.problem]}
-    plan = execution.run(described, condition, int(repeat), made[condition.problem])
+    again = _redriven if study.moves(experiment) else _rerun
     try:
-        row = execution.row(described, condition, int(repeat), plan, made[condition.problem], region(made[condition.problem].workspace))
-    except RuntimeError as error:
+        return again(described, condition, int(repeat), study)
+    except execution.UnfitAnswer as error:
         raise Fault(str(error)) from None
-    return results.joined(pd.DataFrame([row]), problem, problems.bounds_of(problem).to_pandas())
+
+
+def _rerun(described: dict, condition: execution.Condition, repeat: int, study: Study) -> results.Results:
+    """A run where nothing moves."""
+    made, _ = problems.build_all(problems_job(study, described["experiment"], "full"), study.folder)
+    problem = made[condition.problem]
+    plan = execution.run(described, condition, repeat, problem)
+    row = execution.row(described, condition, repeat, plan, problem, region(problem.workspace))
+    named = {condition.problem: problem}
+    return results.joined(pd.DataFrame([row]), named, problems.bounds_of(named).to_pandas())
 
 
 def _redriven(described: dict, condition: execution.Condition, repeat: int, study: Study) -> results.Results:
     """A run in a world that moves."""
     made, _, found = worlds.build_all(problems_job(study, described["experiment"], "full"), study.folder)
-    name = condition.problem
-    problem, world = {name: made[name]}, {name: found[name]}
-    row, _ = rides.row(described, condition, repeat, rides.run(described, condition, repeat, made[name], found[name]), found[name])
-    joined = results.joined(pd.DataFrame([row]), problem, rides.bounds_of(problem, world).to_pandas())
-    return joined._replace(worlds=world, jobs={described["method"]: described})
+    problem, world = made[condition.problem], found[condition.problem]
+    ride = rides.run(described, condition, repeat, problem, world)
+    row, _ = rides.row(described, condition, repeat, ride, problem, world)
+    named, moving = {condition.problem: problem}, {condition.problem: world}
+    joined = results.joined(pd.DataFrame([row]), named, rides.bounds_of(named, moving).to_pandas())
+    return joined._replace(worlds=moving, jobs={described["method"]: described})
 
 
 def _named(name: str, known: dict[str, Any], place: str) -> Any:

@@ -18,7 +18,8 @@ import logging
 import math
 import time
 from collections.abc import Callable, Iterator
-from typing import Any, NamedTuple
+from functools import partial
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 import pyarrow as pa
@@ -31,6 +32,8 @@ from bezierplan.workspaces import seeds
 from bezierplan.workspaces.problem import Problem
 
 logger = logging.getLogger(__name__)
+
+T = TypeVar("T")
 
 RUN_COLUMNS = (
     *("id", "study", "experiment", "condition", "problem", "workspace", "method", "repeat", "planner"),
@@ -117,18 +120,19 @@ def run(job: dict, condition: Condition, repeat: int, problem: Problem) -> Plan:
     return plan(problem, generator(job, condition, repeat), **settings_in(job, condition))
 
 
-def row(job: dict, condition: Condition, repeat: int, plan: Plan, problem: Problem, blocked: Region) -> dict[str, Any]:
-    """One row of the runs table; `blocked` is the region of the problem's workspace.
+class UnfitAnswer(RuntimeError):
+    """A planner's answer that no row may show; the message names run, planner and field."""
 
-    Raises RuntimeError, naming the run and the field, if the plan is not valid for this problem (`answer.fault`): for example, if its path
-    begins or ends elsewhere, or a column would overwrite another.
-    """
-    settings = settings_in(job, condition)
-    fault = answer.fault(plan, problem, {*TAKEN, *settings, *condition.values})
+
+def refuse_unfit(plan: Any, problem: Problem, job: dict, condition: Condition, repeat: int) -> None:
+    """Raise UnfitAnswer if a planner's answer is not valid for a problem (`answer.fault`)."""
+    fault = answer.fault(plan, problem, {*TAKEN, *settings_in(job, condition), *condition.values})
     if fault:
-        raise RuntimeError(f"run {run_id(job, condition, repeat)}: the answer of planner {job['planner']}: {fault}")
-    path = plan.path
-    check = NO_PATH if path is None else checker.check(curves.bezier_pieces(path), blocked)
+        raise UnfitAnswer(f"run {run_id(job, condition, repeat)}: the answer of planner {job['planner']}: {fault}")
+
+
+def identity(job: dict, condition: Condition, repeat: int) -> dict[str, Any]:
+    """The first columns of a row: the run's id and its parts, its place, and all settings in force."""
     return {
         "id": run_id(job, condition, repeat),
         "study": job["study"],
@@ -139,8 +143,22 @@ def row(job: dict, condition: Condition, repeat: int, plan: Plan, problem: Probl
         "method": job["method"],
         "repeat": repeat,
         "planner": job["planner"],
-        **settings,
+        **settings_in(job, condition),
         **condition.values,
+    }
+
+
+def row(job: dict, condition: Condition, repeat: int, plan: Plan, problem: Problem, blocked: Region) -> dict[str, Any]:
+    """One row of the runs table; `blocked` is the region of the problem's workspace.
+
+    Raises UnfitAnswer if the plan is not valid for this problem: for example, if its path begins or ends elsewhere, or a column would
+    overwrite another.
+    """
+    refuse_unfit(plan, problem, job, condition, repeat)
+    path = plan.path
+    check = NO_PATH if path is None else checker.check(curves.bezier_pieces(path), blocked)
+    return {
+        **identity(job, condition, repeat),
         "objective": float(plan.objective),
         "length": math.nan if path is None else curves.length(path),
         "claimed_feasible": bool(plan.claimed_feasible),
@@ -172,9 +190,10 @@ def run_chunk(problems: dict[str, Problem], job: dict) -> tuple[pa.Table, pa.Tab
     with watchdog.watching(job.get("time_limit")) as watch:
         for n, (k, repeat) in enumerate(_order(job, len(given), range(first, first + 1 if deterministic else last))):
             condition, problem = given[k], problems[given[k].problem]
+            once = partial(run, job, condition, repeat, problem)
             if not rows:
-                _warm_up(lambda: _guarded_run(job, condition, repeat, problem, watch))  # noqa: B023
-            plan, cpu, wall = _guarded_run(job, condition, repeat, problem, watch)
+                _warm_up(partial(timed, once, job, condition, repeat, watch))
+            plan, cpu, wall = timed(once, job, condition, repeat, watch)
             rows[k, repeat] = row(job, condition, repeat, plan, problem, blocked[condition.problem])
             times[k, repeat] = {"id": rows[k, repeat]["id"], "cpu_s": cpu, "wall_s": wall}
             if (n + 1) % _LOGGED == 0:
@@ -184,10 +203,10 @@ def run_chunk(problems: dict[str, Problem], job: dict) -> tuple[pa.Table, pa.Tab
             rows[k, repeat] = rows[k, first] | {"id": run_id(job, given[k], repeat), "repeat": repeat}
             times[k, repeat] = times[k, first] | {"id": rows[k, repeat]["id"]}
     logger.info("all %d runs done", len(rows))
-    return _table([rows[key] for key in sorted(rows)]), pa.Table.from_pylist([times[key] for key in sorted(times)])
+    return table([rows[key] for key in sorted(rows)]), pa.Table.from_pylist([times[key] for key in sorted(times)])
 
 
-def _table(rows: list[dict[str, Any]]) -> pa.Table:
+def table(rows: list[dict[str, Any]]) -> pa.Table:
     """Rows as a table. Conditions may differ in their columns, so columns are collected over all rows."""
     columns = dict.fromkeys(column for each in rows for column in each)
     return pa.table({column: [each.get(column) for each in rows] for column in columns})
@@ -214,13 +233,18 @@ def _warm_up(once: Callable[[], tuple[Plan, float, float]]) -> None:
             return
 
 
-def _guarded_run(job: dict, condition: Condition, repeat: int, problem: Problem, watch: Callable[[str], None]) -> tuple[Plan, float, float]:
-    """The plan of one run, its CPU seconds and its wall-clock seconds. Raises RuntimeError, naming the run, if the planner fails."""
+def timed(once: Callable[[], T], job: dict, condition: Condition, repeat: int, watch: Callable[[str], None]) -> tuple[T, float, float]:
+    """What one run returns, its CPU seconds and its wall-clock seconds. Raises RuntimeError, naming the run, if the planner fails.
+
+    watch: told what is under way, and with an empty text that it is over (`watchdog.watching`).
+    """
     watch(f"run {run_id(job, condition, repeat)}: planner {job['planner']}")
     try:
         cpu, wall = time.process_time(), time.perf_counter()
-        plan = run(job, condition, repeat, problem)
-        return plan, time.process_time() - cpu, time.perf_counter() - wall
+        found = once()
+        return found, time.process_time() - cpu, time.perf_counter() - wall
+    except UnfitAnswer:
+        raise
     except Exception as error:
         told = " ".join(f"{type(error).__name__}: {error}".split())
         raise RuntimeError(f"run {run_id(job, condition, repeat)}: {told}") from error

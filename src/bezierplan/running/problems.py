@@ -8,6 +8,7 @@ octile_bound (the least of all lengths counted in cells, `cell_length`, in units
 
 import math
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import pyarrow as pa
 import pyarrow.parquet as parquet
@@ -18,6 +19,9 @@ from bezierplan.workspaces import files, lattice, random_blocks, random_circles,
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem, Workspace
+
+if TYPE_CHECKING:
+    from bezierplan.geometry.shortest_paths import Bound
 
 
 def build(name: str, description: dict, workspace: Workspace) -> Problem:
@@ -150,20 +154,22 @@ def bounds_of(problems: dict[str, Problem]) -> pa.Table:
     """The straight line and the exact shortest path of each problem, one row each."""
     from bezierplan.geometry import shortest_paths
 
-    rows = []
-    for name, problem in problems.items():
-        bound = shortest_paths.shortest_path(problem)
-        rows.append(
-            {
-                "problem": name,
-                "straight_line": math.dist(problem.start, problem.target),
-                "bound": bound.length,
-                "least_length": shortest_paths.least_length(bound),
-                "bound_path": bound.points.ravel().tolist(),
-                "octile_bound": _cell_bound(problem),
-            }
-        )
+    rows = [bound_row(name, problem, shortest_paths.shortest_path(problem), _cell_bound(problem)) for name, problem in problems.items()]
     return pa.Table.from_pylist(rows)
+
+
+def bound_row(name: str, problem: Problem, bound: "Bound", octile_bound: float) -> dict[str, Any]:
+    """A row of a file of bounds. bound: the shortest path, in units; octile_bound: in units, NaN where there is none."""
+    from bezierplan.geometry import shortest_paths
+
+    return {
+        "problem": name,
+        "straight_line": math.dist(problem.start, problem.target),
+        "bound": bound.length,
+        "least_length": shortest_paths.least_length(bound),
+        "bound_path": bound.points.ravel().tolist(),
+        "octile_bound": octile_bound,
+    }
 
 
 def _cell_bound(problem: Problem) -> float:

@@ -3,8 +3,9 @@
 A job is as in `execution`, with one more key: policy, the values of a `simulation.policy.Policy` by name.
 
 Columns of the runs table: those of `execution.RUN_COLUMNS`, of which path_curve and path_points hold the way driven; feasible, whether the
-robot arrived without a collision (`simulation.motion_check`); collision_at, when it first collided, in steps; claimed_feasible, whether it
-arrived; objective, the time of arrival times the pace, in units; history, the way driven until each plan plus the length of that plan. And:
+robot arrived without a collision (`simulation.motion_check`) by a motion from start to target; collision_at, when it first collided, in
+steps; claimed_feasible, whether it arrived; objective, the time of arrival times the pace, in units; history, the way driven until each
+plan plus the length of that plan. And:
 
     arrival          time of arrival, in steps; nan if it did not arrive
     steps            time until the end of the drive, in steps
@@ -19,7 +20,7 @@ replan_95_s, replan_max_s; and replans_late, how many of them took longer than a
 """
 
 import math
-import time as clock
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -27,6 +28,7 @@ import pyarrow as pa
 
 from bezierplan.planners import planner_module
 from bezierplan.running import execution, watchdog
+from bezierplan.running import problems as problem_files
 from bezierplan.running.execution import Condition
 from bezierplan.running.simulation import motion_check
 from bezierplan.running.simulation.clairvoyant import earliest, least_way
@@ -43,20 +45,20 @@ OUTCOMES = (
 
 
 def run(job: dict, condition: Condition, repeat: int, problem: Problem, world: World) -> Ride:
-    """The drive of one run."""
+    """The drive of one run. Raises `execution.UnfitAnswer` for a plan that is not valid for the problem that the robot saw."""
     module, rng = planner_module(job["planner"]), execution.generator(job, condition, repeat)
     settings = execution.settings_in(job, condition)
     policy = Policy(**job["policy"] | {"plan_margins": tuple(job["policy"]["plan_margins"])})
 
     def planner(seen: Problem, state: Any) -> tuple:
-        if policy.warm:
-            return module.resume(seen, rng, state, **settings)
-        return module.plan(seen, rng, **settings), None
+        plan, state = module.resume(seen, rng, state, **settings) if policy.warm else (module.plan(seen, rng, **settings), None)
+        execution.refuse_unfit(plan, seen, job, condition, repeat)
+        return plan, state
 
     return drive(world, problem, policy, planner)
 
 
-def row(job: dict, condition: Condition, repeat: int, ride: Ride, world: World) -> tuple[dict[str, Any], dict[str, Any]]:
+def row(job: dict, condition: Condition, repeat: int, ride: Ride, problem: Problem, world: World) -> tuple[dict[str, Any], dict[str, Any]]:
     """One row of the runs table, and one of the table of traces: id; x and y at step 0, 1, ... and at the end of the drive, and clearance
     in each step, all in single precision; and the plans, by the time, curve and control points of each.
     """
@@ -71,23 +73,14 @@ def row(job: dict, condition: Condition, repeat: int, ride: Ride, world: World) 
     driven = [float(np.interp(plan.time, times, done)) for plan in ride.plans]
     leg = int(np.clip(np.searchsorted(times, verdict.collision_at, side="right"), 1, len(times) - 1)) if collided else 0
     moments = np.append(np.arange(0, math.ceil(times[-1])), times[-1])
-    identity = execution.run_id(job, condition, repeat)
+    # Without regard to what the robot believes: the motion itself leads from start to target.
+    joins = (tuple(points[0].tolist()), tuple(points[-1].tolist())) == (problem.start, problem.target)
     found = {
-        "id": identity,
-        "study": job["study"],
-        "experiment": job["experiment"],
-        "condition": condition.name,
-        "problem": condition.problem,
-        **{key: value for key, value in job["problems"][condition.problem].items() if key != "settings"},
-        "method": job["method"],
-        "repeat": repeat,
-        "planner": job["planner"],
-        **execution.settings_in(job, condition),
-        **condition.values,
+        **execution.identity(job, condition, repeat),
         "objective": float(times[-1]) * world.pace if ride.arrived else math.inf,
         "length": travelled,
         "claimed_feasible": ride.arrived,
-        "feasible": ride.arrived and not collided,
+        "feasible": ride.arrived and joins and not collided,
         "collision_at": verdict.collision_at,
         "collision_depth": verdict.depth,
         "clearance": max(least, 0.0),
@@ -110,7 +103,7 @@ def row(job: dict, condition: Condition, repeat: int, ride: Ride, world: World) 
         "clearance_least": least,
     }
     trace = {
-        "id": identity,
+        "id": found["id"],
         "x": np.interp(moments, times, points[:, 0]).astype(np.float32),
         "y": np.interp(moments, times, points[:, 1]).astype(np.float32),
         "clearance": verdict.clearance.astype(np.float32),
@@ -127,20 +120,16 @@ def run_chunk(problems: dict[str, Problem], worlds: dict[str, World], job: dict)
     with watchdog.watching(job.get("time_limit")) as watch:
         for condition in execution.conditions(list(job["problems"]), job["vary"]):
             for repeat in range(*job["repeats"]):
-                given = (job, condition, repeat, problems[condition.problem], worlds[condition.problem])
+                problem, world = problems[condition.problem], worlds[condition.problem]
+                once = partial(run, job, condition, repeat, problem, world)
                 if not rows:
-                    _guarded(*given, watch)  # compiles and loads
-                ride, cpu, wall = _guarded(*given, watch)
-                found, trace = row(job, condition, repeat, ride, worlds[condition.problem])
+                    execution.timed(once, job, condition, repeat, watch)  # compiles and loads
+                ride, cpu, wall = execution.timed(once, job, condition, repeat, watch)
+                found, trace = row(job, condition, repeat, ride, problem, world)
                 rows.append(found)
                 traces.append(trace)
                 times.append({"id": found["id"], "cpu_s": cpu, "wall_s": wall} | _replan_times(ride, job["policy"]["step_seconds"]))
-    columns = dict.fromkeys(column for each in rows for column in each)
-    return (
-        pa.table({column: [each.get(column) for each in rows] for column in columns}),
-        pa.Table.from_pylist(times),
-        pa.Table.from_pylist(traces),
-    )
+    return execution.table(rows), pa.Table.from_pylist(times), pa.Table.from_pylist(traces)
 
 
 def rerun(job: dict, condition: str, repeat: int, problem: Problem, world: World) -> tuple[Ride, motion_check.Verdict]:
@@ -159,41 +148,14 @@ def _replan_times(ride: Ride, step_seconds: float) -> dict[str, float]:
     return {"replan_mean_s": seconds.mean(), "replan_95_s": quantile, "replan_max_s": seconds.max(), "replans_late": late}
 
 
-def _guarded(job: dict, condition: Condition, repeat: int, problem: Problem, world: World, watch: Any) -> tuple[Ride, float, float]:
-    """The drive of one run, its CPU seconds and its wall-clock seconds. Raises RuntimeError, naming the run, if the planner fails."""
-    name = execution.run_id(job, condition, repeat)
-    watch(f"run {name}: planner {job['planner']}")
-    try:
-        cpu, wall = clock.process_time(), clock.perf_counter()
-        ride = run(job, condition, repeat, problem, world)
-        return ride, clock.process_time() - cpu, clock.perf_counter() - wall
-    except Exception as error:
-        told = " ".join(f"{type(error).__name__}: {error}".split())
-        raise RuntimeError(f"run {name}: {told}") from error
-    finally:
-        watch("")
-
-
 def bounds_of(problems: dict[str, Problem], worlds: dict[str, World]) -> pa.Table:
     """One row per problem: straight_line; bound, the length of the shortest way through places that are free at some time, with
     least_length and bound_path (`problems.bounds_of`); octile_bound, nan; clairvoyant_arrival, in steps, and clairvoyant_length, in units,
     of the earliest schedule found by a search that knows the future.
     """
-    from bezierplan.geometry import shortest_paths
-
     rows = []
     for name, problem in problems.items():
-        bound, schedule = least_way(worlds[name], problem), earliest(worlds[name], problem)
-        rows.append(
-            {
-                "problem": name,
-                "straight_line": math.dist(problem.start, problem.target),
-                "bound": bound.length,
-                "least_length": shortest_paths.least_length(bound),
-                "bound_path": bound.points.ravel().tolist(),
-                "octile_bound": math.nan,
-                "clairvoyant_arrival": schedule.arrival,
-                "clairvoyant_length": schedule.length,
-            }
-        )
+        schedule = earliest(worlds[name], problem)
+        bound = problem_files.bound_row(name, problem, least_way(worlds[name], problem), math.nan)
+        rows.append(bound | {"clairvoyant_arrival": schedule.arrival, "clairvoyant_length": schedule.length})
     return pa.Table.from_pylist(rows)
