@@ -34,30 +34,34 @@ _BINOMIAL = np.array([[math.comb(n, k) for k in range(2 * LARGEST_DEGREE + 1)] f
 
 
 # ---------------------------------------------------------------------------------------------------------------------
-# The questions. These four functions are only names for numba to attach the overloads to: compiled code never enters their bodies, and
-# plain Python must not.
+# The questions. numba attaches the overloads below to these four names, one for each kind of region, so compiled code never enters their
+# bodies. A call from plain Python would, and has no answer there.
+
+
+def _only_compiled() -> TypeError:
+    return TypeError("a question about a region that only compiled code can ask: call it from a function compiled by numba")
 
 
 def is_blocked(x, y, region):
     """Whether a point is certainly blocked: its depth is above the tolerance."""
-    raise NotImplementedError
+    raise _only_compiled()
 
 
 def is_free(points, region):
     """Whether the curve of some control points is certified free. May be false for a free curve, but not indefinitely as the curve is
     halved.
     """
-    raise NotImplementedError
+    raise _only_compiled()
 
 
 def depth_at(x, y, region):
     """Depth of a point in the blocked region, 0 outside."""
-    raise NotImplementedError
+    raise _only_compiled()
 
 
 def depth_bound(points, region):
     """Upper bound of the depth of the curve of some control points."""
-    raise NotImplementedError
+    raise _only_compiled()
 
 
 # ---------------------------------------------------------------------------------------------------------------------

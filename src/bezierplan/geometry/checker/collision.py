@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 
 from bezierplan.geometry.checker.certificates import is_blocked, is_free
-from bezierplan.geometry.checker.hulls import STACK, TOLERANCE, copy_points, halve, size
+from bezierplan.geometry.checker.hulls import STACK, TOLERANCE, copy_points, size, split_top
 from bezierplan.geometry.region import Region
 
 # A parameter interval this short that ends at a blocked point is reported as the collision.
@@ -40,10 +40,6 @@ def first_collision(pieces: np.ndarray, region: Region) -> tuple[float, int]:
             elif size(points) <= TOLERANCE:
                 top -= 1
             else:
-                halve(points, stack[top + 1])
-                width[top] *= 0.5
-                width[top + 1] = width[top]
-                begin[top + 1] = begin[top]
-                begin[top] += width[top]
+                split_top(stack, begin, width, top)
                 top += 1
     return math.inf, intervals

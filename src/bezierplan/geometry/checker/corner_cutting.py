@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numba import njit
 
-from bezierplan.geometry.checker.hulls import STACK, box, copy_points, halve, size
+from bezierplan.geometry.checker.hulls import STACK, box, copy_points, size, split_top
 
 # Radius, in cells, of the disc around a contact in which the rule examines where a path comes from and goes to.
 CONTACT_RADIUS = 1e-6
@@ -45,11 +45,7 @@ def _corner_cut_at(pieces: np.ndarray, x: float, y: float, slope: float, radius:
             left, right, bottom, upper = box(points)
             apart = left > x + radius or right < x - radius or bottom > y + radius or upper < y - radius
             if not apart and size(points) > radius / 8:
-                halve(points, stack[top + 1])
-                width[top] *= 0.5
-                width[top + 1] = width[top]
-                begin[top + 1] = begin[top]
-                begin[top] += width[top]
+                split_top(stack, begin, width, top)
                 top += 1
                 continue
             distance = math.hypot(points[-1, 0] - x, points[-1, 1] - y)

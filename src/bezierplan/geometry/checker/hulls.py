@@ -44,6 +44,19 @@ def halve(points: np.ndarray, left: np.ndarray) -> None:
 
 
 @njit(cache=True)
+def split_top(stack: np.ndarray, begin: np.ndarray, width: np.ndarray, top: int) -> None:
+    """Split the uppermost entry of a stack of parts of a piece: its right half stays, and the left half is put on it.
+
+    stack: (`STACK`, n, 2) control points of the parts. begin, width: (`STACK`,) the parameter interval of each part. All are changed.
+    """
+    halve(stack[top], stack[top + 1])
+    width[top] *= 0.5
+    width[top + 1] = width[top]
+    begin[top + 1] = begin[top]
+    begin[top] += width[top]
+
+
+@njit(cache=True)
 def size(points: np.ndarray) -> float:
     """Largest distance of a control point from the first one."""
     largest = 0.0
