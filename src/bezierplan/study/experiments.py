@@ -1,6 +1,7 @@
 """Models of `experiments.yaml`: methods, workspaces, problems, experiments."""
 
 import math
+from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field, model_validator
@@ -218,57 +219,61 @@ class RandomBlocks(Workspace):
     lattice_length: Positive = Field(None, description="the length that the shortest lattice path must have, a number above 0")
 
 
-PACE = "how far a robot drives in a step, in units, a number above 0"
-STEPS = "when a world ends and with it every drive, in steps, a whole number from 1 to 10000"
-SPEED = "how far every circle moves in a step, in units, a number of at least 0; their directions are random"
-Steps = Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")]
 MovingCircle = Annotated[list[Number], after(lambda given: _of_length(given, 5, "[x, y, radius, x velocity, y velocity]"))]
+REFLECTED = "[x low, x high, y low, y high]; centres of circles that move are reflected there"
 
 
-class MovingCircleMap(Workspace):
+class World(Workspace):
+    """Keys common to all worlds."""
+
+    moves: ClassVar[bool] = True
+
+    pace: Positive = Field(description="how far a robot drives in a step, in units, a number above 0")
+    steps: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")] = Field(
+        description="when a world ends and with it every drive, in steps, a whole number from 1 to 10000"
+    )
+
+
+class RandomMoving(World):
+    """Keys common to worlds with circles that move from random places in random directions."""
+
+    clear_ends: NotNegative = Field(description="how far start and target are from a circle at first, at least 0")
+    speed: NotNegative = Field(
+        description="how far every circle moves in a step, in units, a number of at least 0; their directions are random"
+    )
+
+
+class MovingCircleMap(World):
     """Circles that move."""
 
     made: ClassVar[str] = "circles"
-    moves: ClassVar[bool] = True
 
     kind: Literal["moving_circles"] = Field(description="moving_circles")
-    bounds: Bounds = Field(description="[x low, x high, y low, y high]; centres of circles that move are reflected there")
+    bounds: Bounds = Field(description=REFLECTED)
     circles: list[MovingCircle] = Field(description="a list of [x, y, radius, x velocity, y velocity], velocities in units per step")
-    pace: Positive = Field(description=PACE)
-    steps: Steps = Field(description=STEPS)
 
 
-class RandomMovingCircles(Workspace):
+class RandomMovingCircles(RandomMoving):
     """Layouts of circles that move from random places in random directions."""
 
     drawn: ClassVar[str] = "circles"
-    moves: ClassVar[bool] = True
 
     kind: Literal["random_moving_circles"] = Field(description="random_moving_circles")
-    bounds: Bounds = Field(description="[x low, x high, y low, y high]; centres of circles that move are reflected there")
+    bounds: Bounds = Field(description=REFLECTED)
     radius: Positive = Field(description="the radius of every circle, a number above 0")
     circles: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")] = Field(
         description="how many circles a layout has, a whole number from 1 to 10000"
     )
-    clear_ends: NotNegative = Field(description="how far start and target are from a circle at first, at least 0")
-    speed: NotNegative = Field(description=SPEED)
-    pace: Positive = Field(description=PACE)
-    steps: Steps = Field(description=STEPS)
 
 
-class RandomMovingField(Workspace):
+class RandomMovingField(RandomMoving):
     """Fields of cells with circles that move from random places in random directions."""
 
     drawn: ClassVar[str] = "grid"
     with_side: ClassVar[bool] = True
-    moves: ClassVar[bool] = True
 
     kind: Literal["random_moving_field"] = Field(description="random_moving_field")
     radius: Positive = Field(description="the radius of every circle as a share of the field's side, a number above 0")
-    clear_ends: NotNegative = Field(description="how far start and target are from a circle at first, at least 0")
-    speed: NotNegative = Field(description=SPEED)
-    pace: Positive = Field(description=PACE)
-    steps: Steps = Field(description=STEPS)
 
 
 class Change(Model):
@@ -287,35 +292,37 @@ class Change(Model):
         return self
 
 
-class ChangingCellMap(Workspace):
+class ChangingCellMap(World):
     """A map whose cells change."""
 
     made: ClassVar[str] = "grid"
-    moves: ClassVar[bool] = True
 
     kind: Literal["changing_cells"] = Field(description="changing_cells")
     file: File = Field(description="a map file in the study's folder")
     cell: Positive = Field(description="the side of a cell, a number above 0")
     changes: list[Change] = Field(description="a list of {file, after} or {file, at}, in order of time", min_length=1)
-    pace: Positive = Field(description=PACE)
-    steps: Steps = Field(description=STEPS)
 
 
-class RandomChangingCells(Workspace):
+class RandomChangingCells(World):
     """A map whose cells change at random; `obstacles` of a problem says how many at a time."""
 
     drawn: ClassVar[str] = "grid"
-    moves: ClassVar[bool] = True
 
     kind: Literal["random_changing_cells"] = Field(description="random_changing_cells")
     file: File = Field(description="a map file in the study's folder")
     cell: Positive = Field(description="the side of a cell, a number above 0")
     every: Count = Field(description="after how many steps as many cells change as a problem has obstacles, a whole number of at least 1")
-    pace: Positive = Field(description=PACE)
-    steps: Steps = Field(description=STEPS)
 
 
-WORKSPACES = {model.model_fields["kind"].annotation.__args__[0]: model for model in Workspace.__subclasses__()}
+def _kinds(base: type[Workspace]) -> Iterator[type[Workspace]]:
+    """The models derived from one that have a kind."""
+    for model in base.__subclasses__():
+        if "kind" in model.model_fields:
+            yield model
+        yield from _kinds(model)
+
+
+WORKSPACES = {model.model_fields["kind"].annotation.__args__[0]: model for model in _kinds(Workspace)}
 """Kind -> its model."""
 
 
