@@ -1,4 +1,4 @@
-"""The page in a real browser, opened from disk: a small page with every kind of content, and that of scale smoke if it has been made."""
+"""The page in a real browser, opened from disk: a small page with every kind of content, and that of scale smoke."""
 
 import os
 import shutil
@@ -15,6 +15,8 @@ from bezierplan.figures.page import build
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 SMOKE = Path(__file__).parents[1] / "results" / "smoke" / "index.html"
 
+# The environment comes from PyPI, which has no browser: that belongs to the machine, and not every reader can install one. Continuous
+# integration installs it (`.ci/run`).
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no chromium on this machine; on Debian: apt install chromium")
 
 
@@ -39,9 +41,14 @@ def small(tmp_path_factory):
 
 @pytest.fixture(params=["small", "smoke"])
 def file(request, small):
-    if request.param == "smoke" and not SMOKE.is_file():
-        pytest.skip(f"no {SMOKE.relative_to(SMOKE.parents[2])}; snakemake smoke makes it")
-    return small if request.param == "small" else SMOKE
+    return small if request.param == "small" else request.getfixturevalue("smoke")
+
+
+@pytest.fixture(scope="module")
+def smoke():
+    """`make test` makes it before the tests."""
+    assert SMOKE.is_file(), f"no {SMOKE.relative_to(SMOKE.parents[2])}: run snakemake smoke first"
+    return SMOKE
 
 
 @pytest.fixture
@@ -179,12 +186,10 @@ def test_address_of_a_run_opens_it_in_the_viewer(visit, small):
     assert tab.locator("#viewer-note", has_text="does not hold run one/first/p/a/77").count() == 1
 
 
-def test_page_of_the_smallest_scale_shows_its_studies(visit):
-    if not SMOKE.is_file():
-        pytest.skip("no results/smoke/index.html; snakemake smoke makes it")
-    tab = visit(SMOKE)
+def test_page_of_the_smallest_scale_shows_its_studies(visit, smoke):
+    tab = visit(smoke)
     assert tab.locator("section.paper").count() >= 5
-    assert SMOKE.stat().st_size < 15e6
+    assert smoke.stat().st_size < 15e6
     tab.locator("#page-query").fill("path best")
     tab.keyboard.press("Enter")
     tab.locator("#viewer-map .path").wait_for()

@@ -263,6 +263,7 @@ def processes_in(folder):
     return found
 
 
+# The kernel of Linux ends a job whose workflow dies (PR_SET_PDEATHSIG, `running.log`); macOS has no such call, and no /proc to look into.
 @pytest.mark.skipif(sys.platform != "linux", reason="jobs end with a killed workflow on Linux only")
 def test_killed_workflow_leaves_no_job_and_make_goes_on_from_there(finished, tree):
     shutil.rmtree(tree / "results")
