@@ -48,7 +48,7 @@ Reading = dict[str, Any]
 
 IN_FORCE = "in force"
 # Readings tried where the grid is too large to be searched completely, and starts of the search.
-MOST_READINGS = 60
+MOST_READINGS = 100
 STARTS = 3
 # Draws of whole experiments.
 EXPERIMENTS = 500
@@ -130,6 +130,8 @@ def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str)
     theirs = published.assign(statistic=published["statistic"].replace("unstated", "median"))
     theirs = theirs.astype({key: ours[key].dtype for key in given}).rename(columns={"value": "value_published"})
     both = theirs.merge(ours.drop(columns="value"), on=[*given, "metric", "statistic"], how="left")
+    runs = select(results.runs, spec["where"])
+    measured = {metric: metrics.values(runs, metric, results.problems) for metric in both["metric"].unique()}
     rows, draws = [], []
     for number, row in both.iterrows():
         if metrics.METRICS[row["metric"]].unit == "s" or not isinstance(row["numbers"], np.ndarray):
@@ -143,26 +145,26 @@ def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str)
         enough = len(row["numbers"]) >= statistics.LEAST_RUNS
         described = {key: row[key] for key in [*given, "metric", "statistic", "value_published"]}
         rows.append(described | {"low": low - half, "high": high + half, "in_range": bool(enough and low - half <= value <= high + half)})
-        draws.append(_experiments(results, spec, row, given, name) if enough else np.full(EXPERIMENTS, np.nan))
+        own = runs[np.logical_and.reduce([runs[key] == row[key] for key in given])].assign(value=measured[row["metric"]])
+        draws.append(_experiments(own, row, name) if enough else np.full(EXPERIMENTS, np.nan))
     frame = pd.DataFrame(rows, columns=[*given, "metric", "statistic", "value_published", "low", "high", "in_range"])
     return frame, _likelihood(frame["value_published"].to_numpy(dtype=float), np.array(draws), results)
 
 
-def _experiments(results: Results, spec: dict, row: pd.Series, given: list[str], name: str) -> np.ndarray:
-    """A number of a table in experiments of the paper's size, drawn as a whole from our runs (EXPERIMENTS,): the same units, which are
+def _experiments(runs: pd.DataFrame, row: pd.Series, name: str) -> np.ndarray:
+    """A number of a table in experiments of the paper's size, drawn as a whole from its runs (EXPERIMENTS,): the same units, which are
     repeats or layouts, for all numbers of the table. Experiments within a group are drawn for each number alone.
+
+    runs: with the metric of each as `value`.
     """
     size = None if pd.isna(row["n"]) else int(row["n"])
     if row["groups"]:
         drawn = statistics.predicted_within(row["statistic"], row["groups"], size, generator(f"{name}/{row.name}/within"))
         return drawn[:: len(drawn) // EXPERIMENTS][:EXPERIMENTS]
-    runs = select(results.runs, spec["where"])
-    for key in given:
-        runs = runs[runs[key] == row[key]]
-    values = (
-        runs.assign(value=metrics.values(runs, row["metric"], results.problems)).groupby(_unit_columns(runs))["value"].mean().to_numpy()
-    )
+    values = runs.groupby(_unit_columns(runs))["value"].mean().to_numpy()
     chosen = generator(f"{name}/experiments").integers(1 << 30, size=(EXPERIMENTS, size or len(values))) % len(values)
+    if not np.isnan(values).any():
+        return statistics.STATISTICS[row["statistic"]](values[chosen])
     return np.array([statistics.statistic(row["statistic"], own[~np.isnan(own)]) for own in values[chosen]])
 
 
@@ -186,7 +188,8 @@ def _likelihood(published: np.ndarray, draws: np.ndarray, results: Results) -> f
     draws, published = draws[known], published[known]
     k, centre = len(draws), draws.mean(axis=1)
     spread = np.maximum(draws.std(axis=1), 1e-3 * np.maximum(np.abs(centre), 1e-3))
-    correlation = np.nan_to_num(np.atleast_2d(np.corrcoef(draws)), nan=0.0) if k > 1 else np.eye(1)
+    with np.errstate(invalid="ignore"):  # a number without spread is correlated with none
+        correlation = np.nan_to_num(np.atleast_2d(np.corrcoef(draws)), nan=0.0) if k > 1 else np.eye(1)
     shrunk = (1 - k / (k + units)) * correlation
     np.fill_diagonal(shrunk, 1.0)
     away = (published - centre) / spread

@@ -61,7 +61,7 @@ def readings_job(study: Study, scale: str) -> dict[str, Any]:
         methods = _methods(study, name, table)
         chunk_jobs = {method: jobs.job(study, table.experiment, method, scale, 0) for method in methods}
         for job in chunk_jobs.values():
-            job["repeats"] = [0, content.repeats[scale]]
+            job["repeats"] = [0, content.readings or content.repeats[scale]]
         spec = table.plain() | {"where": table.where | {"method": methods}}
         tables[name] = {"experiment": table.experiment, "spec": spec, "jobs": chunk_jobs}
     experiments = list(dict.fromkeys(table["experiment"] for table in tables.values()))
