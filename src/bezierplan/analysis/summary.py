@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import worth
+from bezierplan.analysis import explained, worth
 from bezierplan.analysis.claims.verdicts import VERDICTS
 
 NUMBERS = ("reproduced", "not told apart", "cannot fail", "not reproduced")
@@ -114,11 +114,18 @@ def markdown(table: pd.DataFrame) -> str:
     return "\n".join("| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |" for row in rows)
 
 
-def report(numbers: pd.DataFrame, claims: pd.DataFrame, measured: pd.DataFrame, titles: dict[str, str], scale: str) -> str:
+def report(
+    numbers: pd.DataFrame,
+    claims: pd.DataFrame,
+    measured: pd.DataFrame,
+    titles: dict[str, str],
+    scale: str,
+    readings: tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame] | None = None,
+) -> str:
     """The summary of a scale as markdown: the outcome of each study, what its methods are worth, then its claims with their
     verdicts.
 
-    measured: rows with the columns `worth.COLUMNS`.
+    measured: rows with the columns `worth.COLUMNS`. readings: the tables of `explained`, if the search for readings has been made.
     """
     parts = [
         f"# Outcome at scale {scale}",
@@ -133,6 +140,7 @@ def report(numbers: pd.DataFrame, claims: pd.DataFrame, measured: pd.DataFrame, 
         "left out here; `numbers.csv` and `claims.csv` have them.",
         markdown(outcome(numbers, claims)),
         *worth.section(measured, titles),
+        *(explained.section(*readings, titles) if readings else []),
     ]
     for study, title in titles.items():
         own = claims[(claims["study"] == study) & claims["primary"]].set_index("id")

@@ -18,7 +18,8 @@ RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
 PICTURE = "song2016/figures/figure3.png"
 BLOCK = "outcome"
-SENSITIVITY = "sensitivity.csv"
+# Tables of each study at scale full.
+SENSITIVITY, READINGS = "sensitivity.csv", ("readings.csv", "explained.csv", "held_out.csv")
 WORTH = "worth.csv"
 
 
@@ -34,17 +35,19 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
 def write() -> None:
     """Copy the outcome, and insert its table into the README. Raises FileNotFoundError if results are missing."""
     titles = {key: study.title for key, study in reading.load(reading.read_config({})).items()}
-    tried = [pd.read_csv(FULL / key / SENSITIVITY) for key in titles]
-    claims = summary.with_readings(pd.read_csv(RESULTS / "claims.csv"), pd.concat(tried))
+    of_studies = {name: {key: pd.read_csv(FULL / key / name) for key in titles} for name in (SENSITIVITY, *READINGS)}
+    claims = summary.with_readings(pd.read_csv(RESULTS / "claims.csv"), pd.concat(of_studies[SENSITIVITY].values()))
     claims = summary.with_papers_size(claims, pd.read_csv(FULL / "claims.csv"))
     numbers = pd.read_csv(RESULTS / "numbers.csv")
     measured = pd.read_csv(RESULTS / WORTH)
     KEPT.mkdir(parents=True, exist_ok=True)
     numbers.to_csv(KEPT / "numbers.csv", index=False)
     claims.to_csv(KEPT / "claims.csv", index=False)
-    (KEPT / "summary.md").write_text(summary.report(numbers, claims, measured, titles, RESULTS.name), encoding="utf-8")
-    for frame in tried:
-        frame.to_csv(KEPT / f"{frame['study'].iloc[0]}_{SENSITIVITY}", index=False)
+    found = tuple(pd.concat(of_studies[name].values()) for name in READINGS)
+    (KEPT / "summary.md").write_text(summary.report(numbers, claims, measured, titles, RESULTS.name, found), encoding="utf-8")
+    for name in of_studies:
+        for key in titles:
+            shutil.copyfile(FULL / key / name, KEPT / f"{key}_{name}")
     shutil.copyfile(RESULTS / WORTH, KEPT / WORTH)
     shutil.copyfile(FULL / PICTURE, KEPT / PICTURE.replace("/figures/", "_"))
     README.write_text(summary.with_block(README.read_text(encoding="utf-8"), BLOCK, table(KEPT)), encoding="utf-8")
