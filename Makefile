@@ -52,8 +52,8 @@ compare: .cache/comparison/ready ## the chaotic swarm of tharwat2018 beside pysw
 
 outcome: .venv/ready ## everything at scales full and extended with alternatives and readings, then docs/outcome and the README's table
 	@$(UNLOCK)
-	$(SNAKEMAKE) alternatives readings $(ARGS)
-	$(SNAKEMAKE) all extended $(ARGS)
+	$(SNAKEMAKE) alternatives $(ARGS)
+	$(SNAKEMAKE) all extended readings $(ARGS)
 	$(RUN) -m bezierplan outcome
 
 lock: .venv/ready ## renew environment.txt from pyproject.toml (newest versions: ARGS=--upgrade)

@@ -29,7 +29,7 @@ from bezierplan.workspaces.seeds import generator
 logger = logging.getLogger(__name__)
 
 # Readings tried where the grid is too large to be searched completely, and starts of the search.
-MOST_READINGS = 100
+MOST_READINGS = 60
 STARTS = 3
 # Draws of whole experiments.
 EXPERIMENTS = 500
