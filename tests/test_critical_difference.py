@@ -101,7 +101,7 @@ def test_far_published_means_stand_at_the_edge(tmp_path):
     found = results({"near": [8.0, 9.0, 10.0], "far": [8.0, 8.5, 9.0]}, printed("objective", {"near": 9.5, "far": 30.25}))
     panel = {"kind": "boxes", "experiment": "routes", "metric": "objective", "limits": True}
     words = drawn(found, panel, tmp_path)
-    assert {"30.25", "published mean", "published mean, beyond the scale"} <= set(words)
+    assert {"30.25", "published mean", "published mean, off the scale"} <= set(words)
     axes = Figure().subplots()
     near = results({"near": [8.0, 9.0, 10.0], "far": [8.0, 8.5, 9.0]}, printed("objective", {"near": 10.4, "far": 30.25}))
     drawn_frame = boxes.data(near, metric="objective")

@@ -181,7 +181,7 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> st
         axes.plot(own["generation"], own["objective"], markevery=(number * step // len(groups), step), **look)
         if "printed" in own and np.isfinite(own["printed"].iloc[-1]):
             place = own["generation"].iloc[-1] * (1 - _MARK_STEP * (len(groups) - 1 - number))
-            mark = {"marker": look["marker"], "markerfacecolor": look["color"], "label": "published final mean, in the mark of its line"}
+            mark = {"marker": look["marker"], "markerfacecolor": look["color"], "label": "published final mean, with the mark of its line"}
             axes.plot(place, own["printed"].iloc[-1], clip_on=False, zorder=5, **(style.PUBLISHED_MARK | mark))
     axes.set_ylabel(f"{statistic} objective ({scene.unit})")
     axes.set_box_aspect(style.HIGH_PANEL_HEIGHT)

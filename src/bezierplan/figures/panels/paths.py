@@ -57,7 +57,7 @@ _LOOK = {
     },
     "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull of the control points", "zorder": 2},
     "bound": {**style.BOUND, "label": "exact shortest path", "zorder": 4},
-    "optimum": {"color": style.BLACK, "linestyle": (0, (5, 1.5)), "linewidth": 0.9, "label": "shortest from cell to cell", "zorder": 4},
+    "optimum": {"color": style.BLACK, "linestyle": (0, (5, 1.5)), "linewidth": 0.9, "label": "shortest between cell centres", "zorder": 4},
     "collision": {"color": style.BLACK, "linestyle": "", "marker": "X", "markersize": 8, "label": "first collision", "zorder": 6},
     "start": workspaces.START,
     "target": workspaces.TARGET,
@@ -390,7 +390,7 @@ def _note(frame: pd.DataFrame, unit: str, narrow: bool) -> str:
         lines.append(f"shortest printed {row['printed']:.2f} {unit}")
     if (frame["part"] == "optimum").any():
         cells, bound = (_joined(frame[frame["part"] == part]) for part in ("optimum", "bound"))
-        lines.append(f"shortest from cell to cell {cells:.2f}, at any angle {bound:.2f}")
+        lines.append(f"shortest between cell centres {cells:.2f}, at any angle {bound:.2f}")
     return run_note(frame, *lines)
 
 
