@@ -706,8 +706,16 @@ def test_equal_data_gives_equal_bytes_in_another_process(tmp_path):
 
 @pytest.mark.parametrize("kind", kinds_of_panel.kinds())
 def test_options_of_a_kind_are_the_arguments_of_its_data(kind):
-    """With the same defaults, which `data` needs for whoever calls it without a panel."""
+    """Their defaults stand in the options alone."""
     parameters = inspect.signature(sheet.kind_module(kind).data).parameters.values()
     arguments = {parameter.name: parameter.default for parameter in parameters if parameter.kind is inspect.Parameter.KEYWORD_ONLY}
-    fields = {name: field for name, field in kinds_of_panel.kinds()[kind].model_fields.items() if name not in sheet.PANEL_KEYS}
-    assert {name: inspect.Parameter.empty if field.is_required() else field.default for name, field in fields.items()} == arguments
+    fields = kinds_of_panel.kinds()[kind].model_fields.keys() - set(sheet.PANEL_KEYS)
+    assert arguments == dict.fromkeys(fields, inspect.Parameter.empty)
+
+
+def test_data_takes_the_defaults_of_the_options():
+    found = comparison()
+    given = {"metric": "objective", "by": "method", "limits": False, "limit": None}
+    pd.testing.assert_frame_equal(boxes.data(found, metric="objective"), boxes.data(found, **given))
+    with pytest.raises(TypeError, match="metric"):
+        boxes.data(found)

@@ -42,7 +42,8 @@ class Options(RunsPanel):
     limit: Number = Field(None, description="the published limit of the metric, a number")
 
 
-def data(results: Results, *, metric: str, by: str = "method", limits: bool = False, limit: float | None = None) -> pd.DataFrame:
+@Options.filled
+def data(results: Results, *, metric: str, by: str, limits: bool, limit: float | None) -> pd.DataFrame:
     """One row per part of a box; columns: those of `lines.constants`, `by` by its own name, runs and feasible_runs (counts), part, value.
 
     Parts: low and high (where the whiskers end), quartile1, median, quartile3; beyond, a value beyond the whiskers; mean; published, the
@@ -83,7 +84,7 @@ def _box(values: np.ndarray) -> list[tuple[str, float]]:
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     """Draw the rows of `data`, the first box on top; returns the note below the panel's title."""
-    by = panel.get("by", "method")
+    by = panel["by"]
     groups = style.in_order(frame[by], panel)
     own = [frame[frame[by] == group].groupby("part")["value"].apply(list).to_dict() for group in groups]
     _draw_boxes(axes, own)
