@@ -50,9 +50,10 @@ mutants: .venv/ready ## plant each fault of tests/mutants, and see that its test
 compare: .cache/comparison/ready ## the chaotic swarm of tharwat2018 beside pyswarms, pymoo and DEAP
 	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare.py'
 
-outcome: .venv/ready ## everything at scale full with the alternatives, then docs/outcome and the README's table from it
+outcome: .venv/ready ## everything at scales full and extended with alternatives and readings, then docs/outcome and the README's table
 	@$(UNLOCK)
-	$(SNAKEMAKE) all alternatives $(ARGS)
+	$(SNAKEMAKE) alternatives $(ARGS)
+	$(SNAKEMAKE) all extended readings $(ARGS)
 	$(RUN) -m bezierplan outcome
 
 lock: .venv/ready ## renew environment.txt from pyproject.toml (newest versions: ARGS=--upgrade)

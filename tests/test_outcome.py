@@ -1,5 +1,6 @@
 """The outcome that the repository keeps, and the summary that it is made from."""
 
+from argparse import ArgumentParser
 from pathlib import Path
 
 import pandas as pd
@@ -7,6 +8,7 @@ import pytest
 
 from bezierplan.analysis import summary
 from bezierplan.commands import outcome
+from bezierplan.study.checked import Fault
 
 ROOT = Path(__file__).parents[1]
 
@@ -95,6 +97,23 @@ def test_readings_that_agree_stand_next_to_the_verdict():
     numbers = summary.numbers({("one", "table1"): comparison([1.0], [1.2], ["plain"])}, {"one": []})
     assert summary.outcome(numbers, found).loc["one", "stable"] == "1 of 2"
     assert "stable" not in summary.outcome(numbers, claims)
+
+
+def test_verdict_at_the_papers_size_stands_next_to_that_of_many_runs():
+    claims = pd.DataFrame({"study": "one", "id": ["C1", "C1", "C2"], "variant": ["", "other", ""]})
+    extended, full = (
+        claims.assign(verdict=["supported", "mostly", "contradicted"]),
+        claims.assign(verdict=["undecided", "in part", "contradicted"]),
+    )
+    found = summary.with_papers_size(extended, full.iloc[::-1])
+    assert found["verdict"].to_list() == ["supported", "mostly", "contradicted"]
+    assert found["verdict_papers_size"].to_list() == ["undecided", "in part", "contradicted"]
+
+
+def test_missing_results_are_told_in_one_line(tmp_path, monkeypatch):
+    monkeypatch.setattr(outcome, "FULL", tmp_path / "full")
+    with pytest.raises(Fault, match=r"full/\w+/sensitivity.csv: not there yet; `make outcome` makes it$"):
+        outcome.main(ArgumentParser(), [])
 
 
 def test_text_without_the_part_is_told():

@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import readings, statistics
-from bezierplan.analysis.readings import Evaluated
+from bezierplan.analysis import explained, readings, statistics
+from bezierplan.analysis.explained import Evaluated
 from bezierplan.analysis.results import Results
 from bezierplan.figures import specification
 from bezierplan.running import problems
@@ -152,7 +152,7 @@ def evaluated(chosen: dict, planted: dict) -> Evaluated:
 
 def test_a_small_grid_is_searched_completely():
     tried = readings.search(CHOICES[:3], lambda chosen: evaluated(chosen, {}), "study", most=27)
-    assert len({readings.name_of(each.reading) for each in tried}) == 27
+    assert len({explained.name_of(each.reading) for each in tried}) == 27
     assert tried[0].reading == {}
 
 
@@ -167,14 +167,14 @@ def test_readings_that_exclude_themselves_are_left_out_and_the_budget_is_kept():
     asked = []
 
     def evaluate(chosen):
-        asked.append(readings.name_of(chosen))
+        asked.append(explained.name_of(chosen))
         return None if chosen.get("O2") == 1 else evaluated(chosen, {})
 
     tried = readings.search(CHOICES, evaluate, "study", most=20)
     assert len(asked) == len(set(asked)) == 20
     assert all(each.reading.get("O2") != 1 for each in tried)
-    assert [readings.name_of(each.reading) for each in readings.search(CHOICES, evaluate, "study", most=20)] == [
-        readings.name_of(each.reading) for each in tried
+    assert [explained.name_of(each.reading) for each in readings.search(CHOICES, evaluate, "study", most=20)] == [
+        explained.name_of(each.reading) for each in tried
     ]
 
 
@@ -184,27 +184,54 @@ def test_readings_that_exclude_themselves_are_left_out_and_the_budget_is_kept():
 def test_by_chance_exchanges_the_printed_numbers():
     frame = numbers([True, True, True]).assign(low=[-1.0, -1.0, 1.5], high=[1.5, 0.5, 2.5])
     # The first accepts one of the two others, the second one, the third none.
-    assert readings.by_chance(frame) == pytest.approx(0.5 + 0.5 + 0.0)
-    assert readings.by_chance(numbers([True])) == 0.0
+    assert explained.by_chance(frame) == pytest.approx(0.5 + 0.5 + 0.0)
+    assert explained.by_chance(numbers([True])) == 0.0
 
 
 def test_tables_of_readings_numbers_and_tables_left_out():
     tables = ["table1", "table1", "table2"]
     in_force = Evaluated({}, numbers([True, False, True], tables), {"table1": -1.0, "table2": -1.0})
     other = Evaluated({"O1": 2}, numbers([True, True, False], tables), {"table1": 0.0, "table2": -5.0})
-    found = readings.readings_table("study", [in_force, other], CHOICES)
+    found = explained.readings_table("study", [in_force, other], CHOICES)
     assert found["reading"].to_list() == ["in force", "O1=2"]
     assert found[["in_range", "in_range_table1", "in_range_table2"]].to_numpy().tolist() == [[2, 1, 1], [2, 2, 0]]
-    explained = readings.explained_table("study", [in_force, other])
-    assert explained["readings"].to_list() == [2, 1, 1]
-    assert explained["in_force"].to_list() == [True, False, True]
-    held_out = readings.held_out_table("study", [in_force, other]).set_index("table")
+    numbers_found = explained.explained_table("study", [in_force, other])
+    assert numbers_found["readings"].to_list() == [1, 1, 2]
+    assert numbers_found["in_force"].to_list() == [False, True, True]
+    held_out = explained.held_out_table("study", [in_force, other]).set_index("table")
     # The other one is best on the first table, and is wrong on the second.
     assert held_out.loc["table2", ["reading", "chosen", "in_force", "most"]].to_list() == ["O1=2", 0, 1, 1]
 
 
+def told(*tried):
+    tables = explained.readings_table("one", list(tried), CHOICES), explained.explained_table("one", list(tried))
+    (*_, text) = explained.section(*tables, explained.held_out_table("one", list(tried)), {"one": "The first"})
+    return text
+
+
+def test_summary_says_what_no_reading_gives_and_what_the_best_one_does():
+    tables = ["table1", "table1", "table2", "table2"]
+    in_force = Evaluated({}, numbers([True, False, False, False], tables), {"table1": -1.0, "table2": -5.0})
+    better = Evaluated({"O1": 2}, numbers([True, True, True, False], tables), {"table1": 0.0, "table2": -1.0})
+    text = told(in_force, better)
+    assert text.startswith("**The first** No reading gives 1 of the numbers (1 of table2). Of 4 numbers, 1 are in range")
+    assert "The best of 2 readings, O1=2, brings 3 into range" in text
+    assert text.endswith("readings bring 3, that in force 1: the tables held out agree with a change.")
+    assert "None of 1 readings does better." in told(in_force)
+
+
+def test_summary_does_not_follow_a_reading_that_other_tables_refuse():
+    tables = ["table1", "table1", "table2"]
+    in_force = Evaluated({}, numbers([False, False, True], tables), {"table1": -9.0, "table2": -1.0})
+    fitted = Evaluated({"O1": 2}, numbers([True, True, False], tables), {"table1": 0.0, "table2": -9.0})
+    text = told(in_force, fitted)
+    assert text.startswith("**The first** Each number is in range under some reading.")
+    assert text.endswith("the tables held out do not agree with a change.")
+    assert explained.section(pd.DataFrame(), pd.DataFrame(), pd.DataFrame(), {}) == []
+
+
 def test_figure_shows_every_choice_that_some_reading_makes():
-    table = readings.readings_table("study", [evaluated({}, {}), evaluated({"O1": 2}, {}), evaluated({"O3": 1}, {})], CHOICES)
+    table = explained.readings_table("study", [evaluated({}, {}), evaluated({"O1": 2}, {}), evaluated({"O3": 1}, {})], CHOICES)
     above, below = specification.draw(table, [choice["id"] for choice in CHOICES]).axes
     assert [label.get_text() for label in below.get_yticklabels()] == ["O1 = 2", "O3 = 1"]
     assert above.lines[0].get_ydata().tolist() == sorted(table["in_range"])
@@ -225,7 +252,7 @@ def test_a_search_goes_on_with_the_runs_that_it_kept(studies, tmp_path, monkeypa
 
     def search():
         evaluate = readings.Evaluator(job, {"routes": made}, {"routes": bounds}, files, tmp_path)
-        return readings.readings_table(study.key, readings.search(job["choices"], evaluate, study.key, most=2), job["choices"])
+        return explained.readings_table(study.key, readings.search(job["choices"], evaluate, study.key, most=2), job["choices"])
 
     first = search()
     monkeypatch.setattr(readings.execution, "run_chunk", lambda *_: pytest.fail("run again"))

@@ -11,7 +11,7 @@ from snakemake.iocontainers import OutputFiles
 from studies import study
 
 from bezierplan.running import log
-from bezierplan.study import targets
+from bezierplan.study import experiments, targets
 from bezierplan.study.checked import Fault
 
 SONG = study("song2016")
@@ -101,3 +101,29 @@ def test_failed_job_leaves_no_file_and_names_a_damaged_input(tmp_path, monkeypat
     given.input = []
     with pytest.raises(SystemExit, match="ValueError: no footer"), log.job(given):
         raise ValueError("no footer")
+
+
+@pytest.fixture
+def once():
+    """song2016 with as many repeats at each scale."""
+    content = SONG.experiments["routes"]
+    sizes = {name: dict.fromkeys(experiments.SCALES, 50) for name in ("repeats", "chunk")}
+    return dataclasses.replace(SONG, experiments={"routes": content.but(**sizes)})
+
+
+@pytest.mark.parametrize(("scale", "kept"), [("smoke", "smoke"), ("full", "full"), ("extended", "full")])
+def test_experiment_of_the_same_size_runs_once_for_both_scales(once, scale, kept):
+    inputs = targets.claims_inputs({"song2016": once}, scale, "song2016")
+    assert {file.split("/")[1] for name in ("runs", "problems", "bounds") for file in inputs[name]} == {kept}
+
+
+def test_experiment_with_more_repeats_keeps_its_own_runs():
+    assert {file.split("/")[1] for file in targets.claims_inputs(STUDIES, "extended", "song2016")["runs"]} == {"extended"}
+
+
+def test_extended_leaves_out_what_would_be_as_at_full(once):
+    drawings = {"figure1", "figure2"}  # without runs
+    assert targets.artefacts_of(SONG, "full") == [*SONG.tables, *SONG.figures]
+    assert set(targets.artefacts_of(SONG, "full")) - set(targets.artefacts_of(SONG, "extended")) == drawings
+    assert targets.artefacts_of(once, "extended") == []
+    assert targets.artefacts_of(once, "full") == [*SONG.tables, *SONG.figures]

@@ -10,7 +10,7 @@ COMMANDS = {
     "digest": "one hash a run table, over sorted rows without times: what `same content` means",
     "check-planner": "the contract tests of a planner, on small and degenerate problems",
     "plan": "one path on a map, checked by exact geometry",
-    "outcome": "copy the outcome of results/full to docs/outcome and into the README",
+    "outcome": "copy the outcome of results/extended and results/full to docs/outcome and into the README",
 }
 
 

@@ -7,7 +7,7 @@ with log.job(snakemake) as output:
 
     import pandas as pd
 
-    from bezierplan.analysis import readings
+    from bezierplan.analysis import explained, readings
     from bezierplan.figures import sheet, specification
     from bezierplan.running import problems
 
@@ -16,8 +16,8 @@ with log.job(snakemake) as output:
     bounds = {name: pd.read_parquet(file) for name, file in zip(job["experiments"], files.bounds, strict=True)}
     evaluate = readings.Evaluator(job, made, bounds, dict(zip(job["tables"], files.published)), Path(snakemake.params.kept))
     tried = readings.search(job["choices"], evaluate, job["study"])
-    found = readings.readings_table(job["study"], tried, job["choices"])
-    tables = {output.readings: found, output.explained: readings.explained_table(job["study"], tried)}
-    for file, table in (tables | {output.held_out: readings.held_out_table(job["study"], tried)}).items():
+    found = explained.readings_table(job["study"], tried, job["choices"])
+    tables = {output.readings: found, output.explained: explained.explained_table(job["study"], tried)}
+    for file, table in (tables | {output.held_out: explained.held_out_table(job["study"], tried)}).items():
         table.to_csv(file, index=False, float_format="%.10g", lineterminator="\n")
     sheet.save(specification.draw(found, [choice["id"] for choice in job["choices"]]), output.svg, output.png)

@@ -4,23 +4,6 @@ A reading assigns a value to some choices, by id; all others keep the value in f
 central 95 % of what experiments of the paper's size would print (`statistics.predictive_quantile`), ties by the joint likelihood of the
 numbers of each table: whole experiments are drawn from our runs, so that numbers from the same runs stay correlated, and the published
 numbers are placed in the multivariate t distribution of these draws.
-
-Columns of readings.csv, one row per reading, the best first:
-
-| column | meaning |
-| --- | --- |
-| study, reading | its changes, such as `O2=0.9, O7=clamp`; `in force` without any |
-| one column per choice | its value, empty for the one in force |
-| in_range, numbers | how many of the published numbers lie in range, and of how many |
-| by_chance | how many would if each printed number were exchanged with another of its kind in the same table (expected value) |
-| score | sum of the logarithms of the tables' likelihoods |
-| in_range_<table> | the same by table |
-
-Columns of explained.csv, one row per published number: study, table, the table's keys, metric, statistic, value_published; in_force and
-best, whether it lies in range under the reading in force and under the best one; readings, under how many of those tried.
-
-Columns of held_out.csv, one row per table: the reading that is best on all other tables, and how many of this table's numbers lie in range
-under that reading (`chosen`), under the one in force (`in_force`) and at most (`most`), of how many (`numbers`).
 """
 
 import hashlib
@@ -29,13 +12,14 @@ import logging
 import math
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pandas as pd
 import pyarrow.parquet as parquet
 
 from bezierplan.analysis import comparison, metrics, statistics, tables
+from bezierplan.analysis.explained import Evaluated, Reading, name_of
 from bezierplan.analysis.results import Results, joined, select
 from bezierplan.planners import planner_module
 from bezierplan.running import execution
@@ -44,32 +28,11 @@ from bezierplan.workspaces.seeds import generator
 
 logger = logging.getLogger(__name__)
 
-Reading = dict[str, Any]
-
-IN_FORCE = "in force"
 # Readings tried where the grid is too large to be searched completely, and starts of the search.
 MOST_READINGS = 60
 STARTS = 3
 # Draws of whole experiments.
 EXPERIMENTS = 500
-
-
-class Evaluated(NamedTuple):
-    """A reading with its numbers, one row each, as from `numbers_of`, and the logarithm of the likelihood of each table."""
-
-    reading: Reading
-    numbers: pd.DataFrame
-    likelihoods: dict[str, float]
-
-    @property
-    def rank(self) -> tuple[int, float]:
-        """By which readings are compared: the higher, the better."""
-        return int(self.numbers["in_range"].sum()), sum(self.likelihoods.values())
-
-
-def name_of(reading: Reading) -> str:
-    """A reading in words."""
-    return ", ".join(f"{choice}={value}" for choice, value in sorted(reading.items())) or IN_FORCE
 
 
 # One reading.
@@ -130,6 +93,8 @@ def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str)
     theirs = published.assign(statistic=published["statistic"].replace("unstated", "median"))
     theirs = theirs.astype({key: ours[key].dtype for key in given}).rename(columns={"value": "value_published"})
     both = theirs.merge(ours.drop(columns="value"), on=[*given, "metric", "statistic"], how="left")
+    runs = select(results.runs, spec["where"])
+    measured = {metric: metrics.values(runs, metric, results.problems) for metric in both["metric"].unique()}
     rows, draws = [], []
     for number, row in both.iterrows():
         if metrics.METRICS[row["metric"]].unit == "s" or not isinstance(row["numbers"], np.ndarray):
@@ -143,26 +108,26 @@ def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str)
         enough = len(row["numbers"]) >= statistics.LEAST_RUNS
         described = {key: row[key] for key in [*given, "metric", "statistic", "value_published"]}
         rows.append(described | {"low": low - half, "high": high + half, "in_range": bool(enough and low - half <= value <= high + half)})
-        draws.append(_experiments(results, spec, row, given, name) if enough else np.full(EXPERIMENTS, np.nan))
+        own = runs[np.logical_and.reduce([runs[key] == row[key] for key in given])].assign(value=measured[row["metric"]])
+        draws.append(_experiments(own, row, name) if enough else np.full(EXPERIMENTS, np.nan))
     frame = pd.DataFrame(rows, columns=[*given, "metric", "statistic", "value_published", "low", "high", "in_range"])
     return frame, _likelihood(frame["value_published"].to_numpy(dtype=float), np.array(draws), results)
 
 
-def _experiments(results: Results, spec: dict, row: pd.Series, given: list[str], name: str) -> np.ndarray:
-    """A number of a table in experiments of the paper's size, drawn as a whole from our runs (EXPERIMENTS,): the same units, which are
+def _experiments(runs: pd.DataFrame, row: pd.Series, name: str) -> np.ndarray:
+    """A number of a table in experiments of the paper's size, drawn as a whole from its runs (EXPERIMENTS,): the same units, which are
     repeats or layouts, for all numbers of the table. Experiments within a group are drawn for each number alone.
+
+    runs: with the metric of each as `value`.
     """
     size = None if pd.isna(row["n"]) else int(row["n"])
     if row["groups"]:
         drawn = statistics.predicted_within(row["statistic"], row["groups"], size, generator(f"{name}/{row.name}/within"))
         return drawn[:: len(drawn) // EXPERIMENTS][:EXPERIMENTS]
-    runs = select(results.runs, spec["where"])
-    for key in given:
-        runs = runs[runs[key] == row[key]]
-    values = (
-        runs.assign(value=metrics.values(runs, row["metric"], results.problems)).groupby(_unit_columns(runs))["value"].mean().to_numpy()
-    )
+    values = runs.groupby(_unit_columns(runs))["value"].mean().to_numpy()
     chosen = generator(f"{name}/experiments").integers(1 << 30, size=(EXPERIMENTS, size or len(values))) % len(values)
+    if not np.isnan(values).any():
+        return statistics.STATISTICS[row["statistic"]](values[chosen])
     return np.array([statistics.statistic(row["statistic"], own[~np.isnan(own)]) for own in values[chosen]])
 
 
@@ -186,7 +151,8 @@ def _likelihood(published: np.ndarray, draws: np.ndarray, results: Results) -> f
     draws, published = draws[known], published[known]
     k, centre = len(draws), draws.mean(axis=1)
     spread = np.maximum(draws.std(axis=1), 1e-3 * np.maximum(np.abs(centre), 1e-3))
-    correlation = np.nan_to_num(np.atleast_2d(np.corrcoef(draws)), nan=0.0) if k > 1 else np.eye(1)
+    with np.errstate(invalid="ignore"):  # a number without spread is correlated with none
+        correlation = np.nan_to_num(np.atleast_2d(np.corrcoef(draws)), nan=0.0) if k > 1 else np.eye(1)
     shrunk = (1 - k / (k + units)) * correlation
     np.fill_diagonal(shrunk, 1.0)
     away = (published - centre) / spread
@@ -319,55 +285,3 @@ def _ascend(reading: Reading, choices: list[dict], rank: Callable, spent: Callab
                 found = rank(other)
                 if found > best:
                     reading, best, improved = other, found, True
-
-
-# What was found.
-
-
-def readings_table(study: str, tried: list[Evaluated], choices: list[dict]) -> pd.DataFrame:
-    """readings.csv."""
-    rows = []
-    for each in sorted(tried, key=lambda each: each.rank, reverse=True):
-        numbers = each.numbers
-        by_table = numbers.groupby("table")["in_range"].sum()
-        rows.append(
-            {"study": study, "reading": name_of(each.reading)}
-            | {choice["id"]: each.reading.get(choice["id"], "") for choice in choices}
-            | {"in_range": int(numbers["in_range"].sum()), "numbers": len(numbers), "by_chance": by_chance(numbers)}
-            | {"score": sum(each.likelihoods.values())}
-            | {f"in_range_{table}": int(count) for table, count in by_table.items()}
-        )
-    return pd.DataFrame(rows)
-
-
-def by_chance(numbers: pd.DataFrame) -> float:
-    """Expected count of numbers in range if each were exchanged with another of the same table, metric and statistic."""
-    expected = 0.0
-    for _, group in numbers.groupby(["table", "metric", "statistic"], sort=False):
-        values = group["value_published"].to_numpy(dtype=float)
-        inside = (group["low"].to_numpy()[:, None] <= values) & (values <= group["high"].to_numpy()[:, None])
-        if len(values) > 1:
-            expected += (inside.sum() - np.trace(inside)) / (len(values) - 1)
-    return float(expected)
-
-
-def explained_table(study: str, tried: list[Evaluated]) -> pd.DataFrame:
-    """explained.csv."""
-    best, in_force = max(tried, key=lambda each: each.rank), tried[0]
-    described = in_force.numbers.drop(columns=["low", "high", "in_range"])
-    counts = np.sum([each.numbers["in_range"].to_numpy(dtype=int) for each in tried], axis=0)
-    found = {"in_force": in_force.numbers["in_range"].to_numpy(), "best": best.numbers["in_range"].to_numpy(), "readings": counts}
-    return described.assign(study=study, **found)[["study", *described.columns, *found]]
-
-
-def held_out_table(study: str, tried: list[Evaluated]) -> pd.DataFrame:
-    """held_out.csv."""
-    rows = []
-    for table in tried[0].likelihoods:
-        own = [int(each.numbers.loc[each.numbers["table"] == table, "in_range"].sum()) for each in tried]
-        others = [(each.rank[0] - count, each.rank[1] - each.likelihoods[table]) for each, count in zip(tried, own)]
-        chosen = max(range(len(tried)), key=lambda n: others[n])
-        numbers = int((tried[0].numbers["table"] == table).sum())
-        row = {"study": study, "table": table, "reading": name_of(tried[chosen].reading), "chosen": own[chosen]}
-        rows.append(row | {"in_force": own[0], "most": max(own), "numbers": numbers})
-    return pd.DataFrame(rows)

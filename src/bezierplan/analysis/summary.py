@@ -3,7 +3,7 @@
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import worth
+from bezierplan.analysis import explained, worth
 from bezierplan.analysis.claims.verdicts import VERDICTS
 
 NUMBERS = ("reproduced", "not told apart", "cannot fail", "not reproduced")
@@ -89,6 +89,16 @@ def with_readings(claims: pd.DataFrame, tried: pd.DataFrame) -> pd.DataFrame:
     return claims.assign(readings=readings)[columns]
 
 
+def with_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
+    """Claims of scale extended with one more column after the verdict: `verdict_papers_size`, that of the same claim at scale full."""
+    keys = ["study", "id", "variant"]
+    theirs = full[[*keys, "verdict"]].rename(columns={"verdict": "verdict_papers_size"})
+    both = claims.merge(theirs, on=keys, how="left", validate="one_to_one")
+    columns = list(claims)
+    columns.insert(columns.index("verdict") + 1, "verdict_papers_size")
+    return both[columns]
+
+
 def _stable(claims: pd.DataFrame) -> pd.Series:
     """How many of a study's claims have the same verdict under all readings, out of those on which alternatives were tried, as text."""
     tried = claims[claims["readings"].fillna("") != ""]
@@ -104,11 +114,18 @@ def markdown(table: pd.DataFrame) -> str:
     return "\n".join("| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |" for row in rows)
 
 
-def report(numbers: pd.DataFrame, claims: pd.DataFrame, measured: pd.DataFrame, titles: dict[str, str], scale: str) -> str:
+def report(
+    numbers: pd.DataFrame,
+    claims: pd.DataFrame,
+    measured: pd.DataFrame,
+    titles: dict[str, str],
+    scale: str,
+    readings: tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame] | None = None,
+) -> str:
     """The summary of a scale as markdown: the outcome of each study, what its methods are worth, then its claims with their
     verdicts.
 
-    measured: rows with the columns `worth.COLUMNS`.
+    measured: rows with the columns `worth.COLUMNS`. readings: the tables of `explained`, if the search for readings has been made.
     """
     parts = [
         f"# Outcome at scale {scale}",
@@ -118,9 +135,12 @@ def report(numbers: pd.DataFrame, claims: pd.DataFrame, measured: pd.DataFrame, 
         "range, which refuses fewer of them. `cannot fail`: within the range, which on the printed number's side of ours has no end, or "
         "ends where nothing possible lies beyond. `not reproduced`: outside. The other columns count claims by verdict; our own findings "
         "are not among them. `stable`: claims with the same verdict under every reading of what the paper leaves open, out of those on "
-        "which other readings were tried. Readings that do not decide are left out here; `numbers.csv` and `claims.csv` have them.",
+        "which other readings were tried, at the paper's number of runs. `verdict_papers_size`: the verdict from as many runs as the paper "
+        "made; `replication_probability`: how often an experiment of that size shows what the claim says. Readings that do not decide are "
+        "left out here; `numbers.csv` and `claims.csv` have them.",
         markdown(outcome(numbers, claims)),
         *worth.section(measured, titles),
+        *(explained.section(*readings, titles) if readings else []),
     ]
     for study, title in titles.items():
         own = claims[(claims["study"] == study) & claims["primary"]].set_index("id")
@@ -134,9 +154,11 @@ def report(numbers: pd.DataFrame, claims: pd.DataFrame, measured: pd.DataFrame, 
 
 def _listed(claims: pd.DataFrame) -> str:
     """Claims with their verdicts, as markdown."""
-    columns = ["statement", "verdict", "readings", "holds", "where_it_holds", "units_to_decide", "published"]
-    shown = claims[[*(name for name in columns if name in claims), "effect", "n"]].astype(object).fillna("")
-    shown["effect"] = [f"{value:.3g}" if isinstance(value, float) else value for value in shown["effect"]]
+    columns = ["statement", "verdict", "verdict_papers_size", "replication_probability", "readings", "holds", "where_it_holds"]
+    columns += ["units_to_decide", "published", "effect", "n"]
+    shown = claims[[name for name in columns if name in claims]].astype(object).fillna("")
+    for column in shown.columns.intersection(["effect", "replication_probability"]):
+        shown[column] = [f"{value:.3g}" if isinstance(value, float) else value for value in shown[column]]
     # Read from a file with gaps, whole numbers are floats.
     for column in shown.columns.intersection(["units_to_decide", "n"]):
         shown[column] = [f"{value:.0f}" if isinstance(value, float) else value for value in shown[column]]

@@ -1,6 +1,7 @@
-"""The outcome kept in the repository: docs/outcome and the README's table, both from results at scale full.
+"""The outcome kept in the repository: docs/outcome and the README's table.
 
-Next to each verdict stands how many readings of what the paper leaves open agree with it.
+Verdicts and numbers are those of scale extended: they are about the methods, not about the papers' samples. Next to each verdict stand the
+verdict at the paper's own number of runs, and how many readings of what the paper leaves open agree; both come from scale full.
 """
 
 import shutil
@@ -11,35 +12,44 @@ import pandas as pd
 
 from bezierplan.analysis import summary
 from bezierplan.study import reading
+from bezierplan.study.checked import Fault
 
-RESULTS, KEPT, README = Path("results/full"), Path("docs/outcome"), Path("README.md")
+RESULTS, FULL = Path("results/extended"), Path("results/full")
+KEPT, README = Path("docs/outcome"), Path("README.md")
 PICTURE = "song2016/figures/figure3.png"
 BLOCK = "outcome"
-SENSITIVITY = "sensitivity.csv"
+# Tables of each study at scale full.
+SENSITIVITY, READINGS = "sensitivity.csv", ("readings.csv", "explained.csv", "held_out.csv")
 WORTH = "worth.csv"
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Write docs/outcome and the README's table from results/full. Raises FileNotFoundError."""
+    """Write docs/outcome and the README's table from results/extended and results/full. Raises Fault if one of them is incomplete."""
     parser.parse_args(words)
-    write()
+    try:
+        write()
+    except FileNotFoundError as error:
+        raise Fault(f"{error.filename}: not there yet; `make outcome` makes it") from None
 
 
 def write() -> None:
     """Copy the outcome, and insert its table into the README. Raises FileNotFoundError if results are missing."""
-    KEPT.mkdir(parents=True, exist_ok=True)
-    tried = [pd.read_csv(file) for file in sorted(RESULTS.glob(f"*/{SENSITIVITY}"))]
-    claims = summary.with_readings(pd.read_csv(RESULTS / "claims.csv"), pd.concat(tried))
-    numbers = pd.read_csv(RESULTS / "numbers.csv")
     titles = {key: study.title for key, study in reading.load(reading.read_config({})).items()}
+    of_studies = {name: {key: pd.read_csv(FULL / key / name) for key in titles} for name in (SENSITIVITY, *READINGS)}
+    claims = summary.with_readings(pd.read_csv(RESULTS / "claims.csv"), pd.concat(of_studies[SENSITIVITY].values()))
+    claims = summary.with_papers_size(claims, pd.read_csv(FULL / "claims.csv"))
+    numbers = pd.read_csv(RESULTS / "numbers.csv")
     measured = pd.read_csv(RESULTS / WORTH)
+    KEPT.mkdir(parents=True, exist_ok=True)
     numbers.to_csv(KEPT / "numbers.csv", index=False)
     claims.to_csv(KEPT / "claims.csv", index=False)
-    (KEPT / "summary.md").write_text(summary.report(numbers, claims, measured, titles, RESULTS.name), encoding="utf-8")
-    for frame in tried:
-        frame.to_csv(KEPT / f"{frame['study'].iloc[0]}_{SENSITIVITY}", index=False)
+    found = tuple(pd.concat(of_studies[name].values()) for name in READINGS)
+    (KEPT / "summary.md").write_text(summary.report(numbers, claims, measured, titles, RESULTS.name, found), encoding="utf-8")
+    for name in of_studies:
+        for key in titles:
+            shutil.copyfile(FULL / key / name, KEPT / f"{key}_{name}")
     shutil.copyfile(RESULTS / WORTH, KEPT / WORTH)
-    shutil.copyfile(RESULTS / PICTURE, KEPT / PICTURE.replace("/figures/", "_"))
+    shutil.copyfile(FULL / PICTURE, KEPT / PICTURE.replace("/figures/", "_"))
     README.write_text(summary.with_block(README.read_text(encoding="utf-8"), BLOCK, table(KEPT)), encoding="utf-8")
 
 

@@ -7,6 +7,8 @@ A choice is a mapping of plain values: id; detail; values, the one in force firs
     metric                    the metric with which a printed word is compared
 """
 
+import csv
+from pathlib import Path
 from typing import Any
 
 from bezierplan.analysis.metrics import METRICS
@@ -17,8 +19,15 @@ from bezierplan.study.model import one_or_list
 
 
 def printed_tables(study: Study) -> dict[str, Pivot]:
-    """The tables of runs that have published numbers."""
-    return {name: table for name, table in study.compared().items() if table.published}
+    """The tables of runs that have published numbers, except those of nothing but seconds, which no reading explains."""
+    printed = {name: table for name, table in study.compared().items() if table.published}
+    return {name: table for name, table in printed.items() if _units(study, name) != {"s"}}
+
+
+def _units(study: Study, table: str) -> set[str]:
+    """Units of a table's published numbers."""
+    with Path(study.published_file(table)).open(encoding="utf-8", newline="") as file:
+        return {row["unit"] for row in csv.DictReader(file)}
 
 
 def choices(study: Study) -> list[dict[str, Any]]:
@@ -61,7 +70,7 @@ def readings_job(study: Study, scale: str) -> dict[str, Any]:
         methods = _methods(study, name, table)
         chunk_jobs = {method: jobs.job(study, table.experiment, method, scale, 0) for method in methods}
         for job in chunk_jobs.values():
-            job["repeats"] = [0, content.repeats[scale]]
+            job["repeats"] = [0, content.readings or content.repeats[scale]]
         spec = table.plain() | {"where": table.where | {"method": methods}}
         tables[name] = {"experiment": table.experiment, "spec": spec, "jobs": chunk_jobs}
     experiments = list(dict.fromkeys(table["experiment"] for table in tables.values()))

@@ -101,6 +101,13 @@ class Study:
                 described[f"{name}_{layout}_{obstacles}"] = same | {"layout": layout, "obstacles": obstacles}
         return described
 
+    def home(self, experiment: str, scale: str) -> str:
+        """The scale under which an experiment's runs for a scale are kept: `full` for `extended` if that has the same runs."""
+        content = self.experiments[experiment]
+        layouts = [self.problems[name].layouts for name in content.problems]
+        sizes = [content.repeats, content.chunk, *filter(None, layouts)]
+        return "full" if scale == "extended" and all(size["extended"] == size["full"] for size in sizes) else scale
+
     def maps(self, workspaces: Iterable[str]) -> list[str]:
         """Map files of workspaces relative to the working folder, each once."""
         described = {name: self.workspaces[name].plain() for name in workspaces}

@@ -382,6 +382,7 @@ class Experiment(Model):
     )
     repeats: Scales = Field(description="runs of each method under each condition, for smoke, full and extended")
     chunk: Scales = Field(description="how many repeats one job runs, for smoke, full and extended")
+    readings: Count = Field(None, description="repeats from which `snakemake readings` judges a reading; by default those of full")
 
     @model_validator(mode="after")
     def _check_size(self) -> "Experiment":

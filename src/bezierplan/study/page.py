@@ -38,7 +38,7 @@ def _artefacts(given: Studies, scale: str) -> list[tuple[str, str]]:
     """Study and name of every table and figure of a scale."""
     if scale == "smoke":
         return jobs.smoke(given)[0]
-    return [(key, name) for key, study in given.items() for name in [*study.tables, *study.figures]]
+    return [(key, name) for key, study in given.items() for name in targets.artefacts_of(study, scale)]
 
 
 def _made(given: Studies, scale: str) -> list[str]:

@@ -14,7 +14,7 @@ from pathlib import Path
 
 from bezierplan.running.digest import PACKAGE, content_digest, source_digest
 from bezierplan.study import alternatives, choices, definition, design, jobs
-from bezierplan.study.artefacts import Pivot
+from bezierplan.study.artefacts import Comparison, Pivot
 from bezierplan.study.checked import Fault
 from bezierplan.study.claims import Claim
 from bezierplan.study.definition import Study
@@ -30,16 +30,16 @@ def _folder(scale: str, study: str, alternative: str | None = None) -> str:
 
 def _chunks(study: Study, scale: str, experiment: str, methods: Iterable[str]) -> list[str]:
     """Chunk files of an experiment's methods as configured, whatever else the folder contains."""
-    folder = f"{_folder(scale, study.key)}/runs/{experiment}"
+    folder = f"{_folder(study.home(experiment, scale), study.key)}/runs/{experiment}"
     return [f"{folder}/{method}/{chunk}.parquet" for method in methods for chunk in jobs.chunks(study, experiment, scale)]
 
 
-def _problems(scale: str, study: str, experiments: Iterable[str]) -> list[str]:
-    return [f"{_folder(scale, study)}/problems/{experiment}.parquet" for experiment in experiments]
+def _problems(study: Study, scale: str, experiments: Iterable[str]) -> list[str]:
+    return [f"{_folder(study.home(name, scale), study.key)}/problems/{name}.parquet" for name in experiments]
 
 
-def _bounds(scale: str, study: str, experiments: Iterable[str]) -> list[str]:
-    return [f"{_folder(scale, study)}/problems/{experiment}.bounds.parquet" for experiment in experiments]
+def _bounds(study: Study, scale: str, experiments: Iterable[str]) -> list[str]:
+    return [f"{_folder(study.home(name, scale), study.key)}/problems/{name}.bounds.parquet" for name in experiments]
 
 
 def _code(script: str, *modules: str | None) -> str:
@@ -99,8 +99,8 @@ def artefact_inputs(given: Studies, scale: str, study: str, table: str = "", fig
     experiments = jobs.experiments_of(own, name)
     return {
         "runs": [file for experiment in experiments for file in _chunks(own, scale, experiment, jobs.methods_of(own, name, experiment))],
-        "problems": _problems(scale, study, experiments),
-        "bounds": _bounds(scale, study, experiments),
+        "problems": _problems(own, scale, experiments),
+        "bounds": _bounds(own, scale, experiments),
     }
 
 
@@ -208,7 +208,7 @@ def claims_inputs(given: Studies, scale: str, study: str) -> dict[str, list[str]
 
 
 def _judged_with(study: Study, scale: str, experiments: list[str]) -> dict[str, list[str]]:
-    problems, bounds = _problems(scale, study.key, experiments), _bounds(scale, study.key, experiments)
+    problems, bounds = _problems(study, scale, experiments), _bounds(study, scale, experiments)
     return {"problems": problems, "bounds": bounds, "published": study.published_files()}
 
 
@@ -276,7 +276,7 @@ def _audited_experiments(study: Study) -> list[str]:
 
 def audit_inputs(given: Studies, scale: str, study: str) -> dict[str, list[str]]:
     """Input files of the audit."""
-    return {"bounds": _bounds(scale, study, _audited_experiments(given[study])), "published": given[study].published_files()}
+    return {"bounds": _bounds(given[study], scale, _audited_experiments(given[study])), "published": given[study].published_files()}
 
 
 def audit_params(given: Studies, scale: str, study: str) -> dict:
@@ -311,9 +311,10 @@ def sensitivity_params(given: Studies, scale: str, study: str) -> dict:
 
 def readings_inputs(given: Studies, scale: str, study: str) -> dict[str, list[str]]:
     """Input files of the search for a reading."""
-    job = choices.readings_job(given[study], scale)
-    problems, bounds = _problems(scale, study, job["experiments"]), _bounds(scale, study, job["experiments"])
-    return {"problems": problems, "bounds": bounds, "published": [given[study].published_file(name) for name in job["tables"]]}
+    own = given[study]
+    job = choices.readings_job(own, scale)
+    problems, bounds = _problems(own, scale, job["experiments"]), _bounds(own, scale, job["experiments"])
+    return {"problems": problems, "bounds": bounds, "published": [own.published_file(name) for name in job["tables"]]}
 
 
 def readings_params(given: Studies, scale: str, study: str) -> dict:
@@ -357,11 +358,11 @@ def summary_params(given: Studies, scale: str) -> dict:
 def worth_inputs(given: Studies, scale: str) -> dict[str, list[str]]:
     """Input files of the table `worth`."""
     found: dict[str, list[str]] = {"runs": [], "problems": [], "bounds": []}
-    for key, study in given.items():
+    for study in given.values():
         experiments = study.worth.experiments if study.worth else []
         found["runs"] += [file for name in experiments for file in _chunks(study, scale, name, _measured(study, name))]
-        found["problems"] += _problems(scale, key, experiments)
-        found["bounds"] += _bounds(scale, key, experiments)
+        found["problems"] += _problems(study, scale, experiments)
+        found["bounds"] += _bounds(study, scale, experiments)
     return found
 
 
@@ -418,16 +419,32 @@ def files_of(given: Studies, scale: str, study: str, name: str) -> list[str]:
     return [f"{_folder(scale, study)}/figures/{name}{ending}" for ending in (".svg", ".png", ".csv")]
 
 
+def artefacts_of(study: Study, scale: str) -> list[str]:
+    """Tables and figures of a study that are made at a scale: at `extended` those that differ from what they are at `full`."""
+    made = [*study.tables, *study.figures]
+    if scale != "extended":
+        return made
+    return [name for name in made if any(study.home(experiment, scale) == scale for experiment in _experiments_behind(study, name))]
+
+
+def _experiments_behind(study: Study, artefact: str) -> list[str]:
+    """Names of the experiments that a table or figure shows, for a table of comparisons those of the tables that it compares."""
+    spec = study.tables.get(artefact)
+    if isinstance(spec, Comparison):
+        return [experiment for name in spec.of for experiment in jobs.experiments_of(study, name)]
+    return jobs.experiments_of(study, artefact)
+
+
 def files_of_study(given: Studies, scale: str, study: str) -> list[str]:
-    """All tables and figures of a study, its claims and its audit."""
-    files = [file for name in [*given[study].tables, *given[study].figures] for file in files_of(given, scale, study, name)]
+    """All tables and figures of a study that are made at a scale, its claims and its audit."""
+    files = [file for name in artefacts_of(given[study], scale) for file in files_of(given, scale, study, name)]
     if given[study].claims:
         files += [f"{_folder(scale, study)}/{name}.csv" for name in ("claims", "audit")]
     return files
 
 
 def files_of_scale(given: Studies, scale: str) -> list[str]:
-    """Everything at a scale; a summary if some study has claims and some table has published numbers."""
+    """Everything that is made at a scale; a summary if some study has claims and some table has published numbers."""
     summary = any(study.claims for study in given.values()) and _published_tables(given)
     return [file for study in given for file in files_of_study(given, scale, study)] + ([f"results/{scale}/summary.md"] if summary else [])
 
