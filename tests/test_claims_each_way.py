@@ -222,16 +222,19 @@ def made(key, claim, truth) -> dict[str, Results]:
 
 
 def verdict(key, claim, results, printed=None) -> pd.Series:
+    return judged(key, claim, results, printed)[0].iloc[0]
+
+
+def judged(key, claim, results, printed=None) -> tuple[pd.DataFrame, pd.DataFrame]:
     own = study(key)
     functions = {"song2016": song2016, "elhoseny2017": elhoseny2017, "tharwat2018": tharwat2018, "ma2020": ma2020}
-    judged, _ = judge.judge(
+    return judge.judge(
         [claim | {"variants": {column: values[:1] for column, values in claim.get("variants", {}).items()}}],
         *(results, printed or published(key), artefacts(key), key, vars(functions[key]) if key in functions else {}),
         variant_of=own.variants(),
         paired={name: own.experiments[name].paired for name in results},
         repeats=dict.fromkeys(results, 10),
     )
-    return judged.iloc[0]
 
 
 @pytest.fixture
@@ -253,6 +256,46 @@ def test_false_sentence_is_not_supported(key, identity, columns_alone):
     claim = claim_of(key, identity)
     row = verdict(key, claim, made(key, claim, truth=False))
     assert row["verdict"] in FALSE_VERDICTS, row[["verdict", "holds", "where_it_holds", "reason"]].to_list()
+
+
+# Seconds differ from machine to machine, and with what else a machine does.
+
+
+def is_timed(check) -> bool:
+    return check.get("metric") in metrics.METRICS and metrics.METRICS[check["metric"]].unit == "s"
+
+
+TIMED = [(key, identity) for key, identity in GENERATED if any(map(is_timed, claim_of(key, identity)["checks"]))]
+
+
+@pytest.mark.parametrize(("key", "identity"), CASES)
+def test_no_verdict_rests_on_seconds(key, identity):
+    """In no variant, and whether a check names them or a variant does."""
+    claim = claim_of(key, identity)
+    first, *_ = assignments = variants.variants(claim)
+    for assignment in assignments:
+        for check in variants.in_variant(claim["checks"], first, assignment):
+            assert "secondary" in check or not any(is_timed(each) for each in variants.with_work(check)[:1]), assignment
+
+
+@pytest.mark.parametrize("truth", [True, False])
+@pytest.mark.parametrize(("key", "identity"), TIMED)
+def test_a_loaded_machine_changes_no_verdict(key, identity, truth, columns_alone):
+    """The same runs, with times as they are and with others, of which some are fifty times as long."""
+    claim = claim_of(key, identity)
+    rows, effects = [], []
+    for machine, slower in (("idle", 1.0), ("loaded", 50.0)):
+        results = made(key, claim, truth)
+        rng = generator(f"{key}/{identity}/{machine}")
+        for each in results.values():
+            each.runs["cpu_s"] = np.exp(rng.uniform(0, np.log(slower + 1), len(each.runs)))
+        claims, checks = judged(key, claim, results)
+        rows.append(claims.iloc[0].drop("reason"))
+        effects.append(checks.loc[checks["timed"], "effect"].to_numpy())
+    pd.testing.assert_series_equal(*rows)
+    # The seconds were read, and differ.
+    assert len(effects[0])
+    assert not np.array_equal(*effects)
 
 
 # Claims that ask a function, or printed numbers.
@@ -279,6 +322,16 @@ def genes(monkeypatch, truth):
 
 def q_statistics(monkeypatch, truth):
     return {}, None if truth else altered("elhoseny2017", "table1", lambda values: 1 - values.where(values.index > 0, 1 - values))
+
+
+def parts_of_the_work(monkeypatch, truth):
+    """As many evaluations as nothing else can match, or as few as the first population takes."""
+    monkeypatch.setattr(elhoseny2017, "samples", lambda path, grid: (np.zeros(300), np.zeros(300)))
+    line = {"path_points": [np.array([0.5, 0.5, 1.5, 1.5])] * 8, "path_curve": "bezier", "history": [np.zeros(81)] * 8}
+    rows = pd.DataFrame(
+        {"repeat": range(8), "evaluations": (10**9 if truth else 60) + np.arange(8), "valid_share": 0.7, "extra_batches": 60} | line
+    )
+    return results_of(rows, "fields100", "fields200", workspace="published_like", method="mga"), None
 
 
 def printed_lengths(monkeypatch, truth):
@@ -357,6 +410,7 @@ def quoted(monkeypatch, truth):
 BY_HAND = {
     ("song2016", "C8"): genes,
     ("elhoseny2017", "C20"): q_statistics,
+    ("elhoseny2017", "C21"): parts_of_the_work,
     ("elhoseny2017", "C23"): printed_lengths,
     ("tharwat2018", "C3"): swarms,
     ("tharwat2018", "C16"): surface,

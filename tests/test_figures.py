@@ -7,6 +7,7 @@ import sys
 from dataclasses import replace
 from pathlib import Path as File
 
+import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
@@ -416,6 +417,17 @@ def test_lines_draw_the_table_of_a_function(tmp_path):
     joined = [axes.lines[0].get_linestyle() for axes in figure.axes]
     assert [len(axes.lines[0].get_xdata()) for axes in figure.axes] == [9, 300]
     assert joined == ["-", "None"], "many points are not joined"
+
+
+def test_axes_name_their_values_in_full():
+    """No offset such as +1.414e2 above the axis, on which the subtitle stands."""
+    with mpl.rc_context(style.SETTINGS):
+        figure = Figure()
+        axes = figure.add_subplot()
+        axes.plot([10, 100], [141.4213, 141.4685])
+        FigureCanvasAgg(figure).draw()
+    assert axes.yaxis.get_offset_text().get_text() == ""
+    assert all(label.get_text().startswith("141.4") for label in axes.get_yticklabels())
 
 
 def test_what_has_no_order_is_not_joined(tmp_path):

@@ -87,6 +87,7 @@ def test_table_in_the_order_of_the_configuration():
         "number of evaluations: fast",
         "length: plain method",
         "length: fast",
+        "runs counted: length: plain method to length: fast",
     ]
     assert table.iloc[:, 0].to_list() == ["2000", "2000"]
     assert [float(text) for text in table["length: fast"]] == pytest.approx([10, 5], abs=0.2)
@@ -100,6 +101,27 @@ def test_failed_runs_are_never_averaged():
     found = row(compare(ours), "long", "plain", "length")
     assert (found["n_ours"], found["best"]) == (16, feasible.min())
     assert found["value_ours"] == feasible.median()
+
+
+def test_count_stands_beside_what_leaves_failed_runs_out():
+    """One for all statistics of the same runs, and none where every run counts."""
+    length = {"metric": "length", "statistic": ["min", "max", "mean"], "label": "length"}
+    spec = {"where": {"method": "plain"}, "index": ["problem"], "values": [length, {"metric": "evaluations", "statistic": "mean"}]}
+    ours = results()
+    ours.runs.loc[ours.runs["problem"] == "brief", "feasible"] = True
+    table = tables.pivot(ours, spec, {})
+    assert table.columns.to_list() == ["length: min", "length: max", "length: mean", "runs counted: length", "evaluations: mean"]
+    assert table["runs counted: length"].to_dict() == {"long": "16 of 20", "brief": "20 of 20"}
+    ours.runs["feasible"] = True
+    assert "runs counted: length" not in tables.pivot(ours, spec, {})
+
+
+def test_count_is_of_the_runs_that_a_value_asks_for():
+    late = {"metric": "length", "statistic": "median", "where": {"repeat": [0, 1, 2]}}
+    table = tables.pivot(results(), {"index": ["value"], "columns": ["method"], "values": [late]}, {})
+    assert table["runs counted: fast to plain"].to_list() == ["4 of 6"]
+    found = row(compare(results(), spec=SPEC | {"values": [late]}), "long", "plain", "length")
+    assert (found["n_ours"], found["n_asked"]) == (2, 3)
 
 
 def test_empty_group_gives_an_empty_cell():
@@ -133,21 +155,21 @@ def test_where_of_a_value_and_several_statistics():
     two = ours.runs.query("problem == 'brief' and method == 'plain' and repeat in [1, 2]")["length"]
     assert table.index.to_list() == ["min", "max"]
     assert table["plain: length"].to_list() == [f"{two.min():.3f}", f"{two.max():.3f}"]
-    assert table.columns.to_list() == ["fast: length", "faster: length", "plain: length"]
+    assert table.columns.to_list() == ["fast: length", "faster: length", "plain: length"]  # all of these runs have a path
 
 
 def test_words_left_out_become_levels_where_needed():
     length = {"metric": "length", "statistic": "mean"}
     one = {"index": ["problem"], "columns": ["method"], "values": [length]}
-    assert tables.pivot(results(), one, {}).columns.to_list() == ["fast", "faster", "plain"]
+    assert tables.pivot(results(), one, {}).columns.to_list() == ["fast", "faster", "plain", "runs counted: fast to plain"]
     lone = {"index": ["problem", "method"], "values": [length]}
-    assert tables.pivot(results(), lone, {}).columns.to_list() == ["length"]
+    assert tables.pivot(results(), lone, {}).columns.to_list() == ["length", "runs counted: length"]
     several = {
         "index": ["problem", "method"],
         "values": [length | {"statistic": ["min", "max"]}, {"metric": "evaluations", "statistic": "mean"}],
     }
     table = tables.pivot(results(), several, {})
-    assert table.columns.to_list() == ["length: min", "length: max", "evaluations: mean"]
+    assert table.columns.to_list() == ["length: min", "length: max", "runs counted: length", "evaluations: mean"]
     assert table.index.names == ["problem", "method"]
 
 
@@ -178,7 +200,8 @@ def test_rows_do_not_depend_on_the_others():
 
 def test_columns_of_the_comparison():
     assert ",".join(compare(results()).columns) == (
-        "problem,method,metric,statistic,unit,n_published,value_published,n_ours,value_ours,best,mean,median,quartile1,quartile3,"
+        "problem,method,metric,statistic,unit,n_published,value_published,n_ours,n_asked,value_ours,best,mean,median,"
+        "quartile1,quartile3,"
         "low95_ours,high95_ours,low95_predicted,high95_predicted,quantile_published,reproduced,can_fail,power,verdict,possible,"
         "share_claimed,share_feasible,bound,gap"
     )

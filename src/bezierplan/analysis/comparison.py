@@ -11,6 +11,7 @@ One row for each group of runs, metric and statistic; an empty cell means that t
 | n_published | runs behind the published number, if the paper states it |
 | value_published | the published number; a variant of a published method is compared with that method's number |
 | n_ours | our runs that count: feasible ones for metrics of feasible paths, all for the others |
+| n_asked | runs among which these are: the others failed, or have no such value |
 | value_ours | the statistic of these runs |
 | best, mean, median, quartile1, quartile3 | of the same runs; best is the lowest |
 | low95_ours, high95_ours | 95 % bootstrap interval of value_ours; empty below two runs, and for min, max and range |
@@ -44,7 +45,7 @@ MATTERS = 0.1
 """Where the paper prints no other method's number in a place, numbers that differ from ours by this share are those that matter."""
 
 _COLUMNS = [
-    *("metric", "statistic", "unit", "n_published", "value_published", "n_ours", "value_ours"),
+    *("metric", "statistic", "unit", "n_published", "value_published", "n_ours", "n_asked", "value_ours"),
     *("best", "mean", "median", "quartile1", "quartile3", "low95_ours", "high95_ours"),
     *("low95_predicted", "high95_predicted", "quantile_published", "reproduced", "can_fail", "power", "verdict", "possible"),
     *("share_claimed", "share_feasible", "bound", "gap"),
@@ -82,7 +83,8 @@ def compare(
     both["unit"] = [metrics.unit(metric, workspace_unit) for metric in both["metric"]]
     described = pd.DataFrame([_described(row, keys, name, _rivals(row, given, published)) for _, row in both.iterrows()], index=both.index)
     table = both.join(described).reindex(columns=keys + _COLUMNS)
-    return table.astype({"n_published": "Int64", "n_ours": "Int64", "reproduced": "boolean", "can_fail": "boolean", "possible": "boolean"})
+    whole, marks = ("n_published", "n_ours", "n_asked"), ("reproduced", "can_fail", "possible")
+    return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))
 
 
 def _side_by_side(ours: pd.DataFrame, published: pd.DataFrame, given: list[str], variant_of: dict[str, str]) -> pd.DataFrame:
@@ -129,7 +131,7 @@ def _rivals(row: pd.Series, given: list[str], published: pd.DataFrame) -> np.nda
 def _described(row: pd.Series, keys: list[str], name: str, rivals: np.ndarray) -> dict[str, Any]:
     """Our side of one row, and the published number's position in it; empty for a published number without runs of ours."""
     if pd.isna(row["runs"]):
-        return {"n_ours": 0, "reproduced": None, "can_fail": None, "possible": None}
+        return {"n_ours": 0, "n_asked": 0, "reproduced": None, "can_fail": None, "possible": None}
     numbers = row["numbers"]
     statistic = row["statistic"]
     row_name = "/".join([name, *(f"{key}={row[key]}" for key in keys), row["metric"], statistic])
@@ -151,6 +153,7 @@ def _described(row: pd.Series, keys: list[str], name: str, rivals: np.ndarray) -
         predicted = statistics.prediction_interval(statistic, numbers, size, generator(f"{row_name}/prediction"), single, groups)
     return {
         "n_ours": len(numbers),
+        "n_asked": int(row["asked"]),
         "value_ours": statistics.statistic(statistic, numbers),
         "best": statistics.statistic("min", numbers),
         **{each: statistics.statistic(each, numbers) for each in ("mean", "median", "quartile1", "quartile3")},

@@ -214,6 +214,11 @@ def curvature_jump(path: Path) -> float:
     return curves.curvature_jump(path)
 
 
+def points_evaluated(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """Control points (n,) of all paths evaluated, each counted with as many as the run's path has; NaN where the run has no path."""
+    return runs["evaluations"].to_numpy() * np.array(of_path(lambda path: len(path.points), runs, problems))
+
+
 def distinct_points(path: Path) -> int:
     """Number of distinct control points of a path."""
     return len(set(map(tuple, path.points.tolist())))

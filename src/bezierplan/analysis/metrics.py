@@ -86,6 +86,7 @@ METRICS: dict[str, Metric] = {
     "collision_depth": Metric("u", "largest depth of the path in obstacles or beyond the border", False),
     "clearance": Metric("u", "least distance to the obstacles and the border", False),
     "evaluations": Metric("-", "paths whose objective the planner asked for", False, least=0.0),
+    "points_evaluated": Metric("-", "control points of all paths evaluated", False, measures.points_evaluated, least=0.0),
     "generations": Metric("-", "generations really done", False),
     "rank": Metric(
         "-", "rank of the objective among the rows of the table, within one unit", False, measures.rank, among_rows=True, least=1.0

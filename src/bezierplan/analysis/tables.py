@@ -45,10 +45,10 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
     """The numbers behind a table: one row for each group of runs with equal keys, entry of `values`, and statistic.
 
     Columns: the keys; value (the entry's number), metric, statistic, decimals; numbers, sorted (n,): the metric of the runs that count,
-    which satisfy the entry's `where` and have one; groups: the same as one array for each value of the column `within`, None without
-    that key; least, most: the range of the metric for one run; and over all runs of the
-    group: runs (how many), share_claimed, share_feasible, bound (median) and gap (median of the feasible ones) of the metric's kind of
-    length.
+    which satisfy the entry's `where` and have one; asked: how many satisfy `where`, with or without one; groups: the numbers as one
+    array for each value of the column `within`, None without that key; least, most: the range of the metric for one run; and over all
+    runs of the group: runs (how many), share_claimed, share_feasible, bound (median) and gap (median of the feasible ones) of the
+    metric's kind of length.
     """
     # Sorted by name, so that no sum depends on the order in which chunks were read.
     runs = select(results.runs, spec.get("where", {})).sort_values("id")
@@ -56,7 +56,7 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
     described = [metrics.METRICS[entry["metric"]] for entry in entries]
     wanted = {entry["metric"] for entry in entries} | {metric.gap for metric in described}
     measured = {name: _measured(runs, name, results, spec) for name in sorted(wanted)}
-    counted = [measured[entry["metric"]].reindex(select(runs, entry.get("where", {})).index).dropna() for entry in entries]
+    asked = [measured[entry["metric"]].reindex(select(runs, entry.get("where", {})).index) for entry in entries]
     rows = []
     for key, group in runs.groupby(keys, dropna=False):
         shares = {"share_claimed": group["claimed_feasible"].mean(), "share_feasible": group["feasible"].mean()}
@@ -68,14 +68,15 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
                 "least": group[metric.least].min() if isinstance(metric.least, str) else metric.least,
                 "most": metric.most,
             }
-            own = counted[value].loc[counted[value].index.intersection(group.index)]
+            own = asked[value].loc[asked[value].index.intersection(group.index)]
+            cell = {"value": value, "metric": entry["metric"], "decimals": entry.get("decimals"), "asked": len(own)}
+            own = own.dropna()
             # Tuples, because pandas would expand lists of arrays.
             groups = tuple(np.sort(each.to_numpy()) for _, each in own.groupby(group[spec["within"]])) if "within" in spec else None
             for statistic in _statistics(entry):
-                cell = {"value": value, "metric": entry["metric"], "statistic": statistic, "decimals": entry.get("decimals")}
-                rows.append(same | of_group | cell | {"numbers": np.sort(own.to_numpy()), "groups": groups})
+                rows.append(same | of_group | cell | {"statistic": statistic, "numbers": np.sort(own.to_numpy()), "groups": groups})
     of_runs = ["runs", "share_claimed", "share_feasible", "bound", "gap", "least", "most"]
-    columns = [*keys, *of_runs, "value", "metric", "statistic", "decimals", "numbers", "groups"]
+    columns = [*keys, *of_runs, "value", "metric", "statistic", "decimals", "asked", "numbers", "groups"]
     # Of type object, so that integers stay integers next to entries without decimals.
     return pd.DataFrame(rows, columns=columns).assign(decimals=pd.Series([row["decimals"] for row in rows], dtype=object))
 
@@ -92,7 +93,7 @@ def pivot(results: Results, spec: dict, labels: dict[str, str]) -> pd.DataFrame:
     """A table as printed: text, rounded to each entry's decimals, empty where no run counts.
 
     labels: how names are printed. Column levels are joined into one name, such as `objective value: smooth`; index levels stay columns of
-    the csv file.
+    the csv file. Where some runs have no value, a column beside the values says how many have one (`_with_counts`).
     """
     index, columns = _levels(spec)
     table = in_order(cells(results, spec, keys(spec)), spec, list(results.problems))
@@ -103,13 +104,40 @@ def pivot(results: Results, spec: dict, labels: dict[str, str]) -> pd.DataFrame:
         for statistic, numbers, decimals in zip(table["statistic"], table["numbers"], table["decimals"])
     ]
     rows, heads = (table[levels].drop_duplicates().sort_values(levels) for levels in (index, columns))
-    wide = table.set_index(index + columns)["text"].unstack(columns)
-    wide = wide.reindex(index=_index(rows), columns=_index(heads)).fillna("")
+    table["counted"] = [len(numbers) for numbers in table["numbers"]]
+    cells_by_place = table.set_index(index + columns)
+    wide, counted, asked = (
+        cells_by_place[name].unstack(columns).reindex(index=_index(rows), columns=_index(heads)) for name in ("text", "counted", "asked")
+    )
+    wide = wide.fillna("")
     titles = [entry.get("label", entry["metric"]) for entry in spec["values"]]
     rows, heads = (levels.apply(_labelled, labels=labels, titles=titles) for levels in (rows, heads))
-    wide.index = _index(rows.rename(columns=labels))
+    stems = [": ".join(levels) for levels in heads.drop(columns="statistic", errors="ignore").itertuples(index=False)]
     wide.columns = [": ".join(levels) for levels in heads.itertuples(index=False)]
+    wide = _with_counts(wide, counted, asked, stems)
+    wide.index = _index(rows.rename(columns=labels))
     return wide
+
+
+def _with_counts(wide: pd.DataFrame, counted: pd.DataFrame, asked: pd.DataFrame, stems: list[str]) -> pd.DataFrame:
+    """A table with a column such as `20 of 30` beside the values of which some runs have none, for example because they failed.
+
+    counted, asked: how many runs have a value, and of how many, at the places of the table. stems: the name of each column without its
+    statistic. Neighbouring columns with equal counts share one column.
+    """
+    columns, first = [], 0
+    for place in range(len(stems)):
+        columns.append(wide.iloc[:, place])
+        last = place + 1 == len(stems)
+        if not last and all(table.iloc[:, place].equals(table.iloc[:, place + 1]) for table in (counted, asked)):
+            continue
+        have, of = counted.iloc[:, place], asked.iloc[:, place]
+        if (have < of).any():
+            texts = [f"{number:.0f} of {total:.0f}" if total > 0 else "" for number, total in zip(have, of)]
+            name = " to ".join(filter(None, dict.fromkeys([stems[first], stems[place]])))
+            columns.append(pd.Series(texts, wide.index, object, f"runs counted: {name}" if name else "runs counted"))
+        first = place + 1
+    return pd.concat(columns, axis=1) if columns else wide
 
 
 def _statistics(entry: dict) -> list[str]:

@@ -31,6 +31,7 @@ SETTINGS = {
     "ytick.major.size": 2.5,
     "axes.grid": False,
     "axes.axisbelow": True,
+    "axes.formatter.useoffset": False,  # an offset above the axis would stand in the subtitle, and hide what is shown
     "grid.color": "0.88",
     "grid.linewidth": 0.5,
     "lines.solid_capstyle": "butt",

@@ -7,19 +7,21 @@ Numbers of equations, sections, tables and figures are the paper's.
 import itertools
 import math
 from fractions import Fraction
-from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis.results import Results, select
-from bezierplan.geometry.cell_length import DIAGONAL, occupied_cells, samples, touched_cells
+from bezierplan.analysis import statistics
+from bezierplan.analysis.claims.material import Untestable
+from bezierplan.analysis.papers.validation import curve_through, is_free, verdicts
+from bezierplan.analysis.results import Results, path_of, select
+from bezierplan.geometry.cell_length import DIAGONAL, samples
 from bezierplan.geometry.region import region
 from bezierplan.planners.parts.diversity import q_of_rows, q_statistic
+from bezierplan.study.model import one_or_list
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.problem import Path
+from bezierplan.workspaces.seeds import generator
 
 
 def said(published: dict[str, pd.DataFrame]) -> dict[str, float]:
@@ -78,6 +80,43 @@ def printed_over_bound(check: dict, results: dict[str, Results], published: dict
         ratios.append((printed / least.reindex(printed.index)).max())
         explained.append(bool((printed <= 2 * problems["side"].iloc[0]).all()))
     return "+" if all(explained) else "-", float(max(ratios)), None, fields
+
+
+def fitness_leads(
+    check: dict,
+    results: dict[str, Results],
+    published: dict[str, pd.DataFrame],
+    *,
+    population: int,
+    offspring: int,
+    genes: int,
+    at_once: int,
+) -> tuple[str, float, tuple[float, float], int]:
+    """Claim C21: whether fitness takes more work than diversity, counted because seconds differ from machine to machine.
+
+    Fitness (equations 2 and 8): for each chromosome that a run evaluates, every control point weighs on every sample of the curve; all
+    are counted as if they had the points and the samples of the final path. Diversity (equation 10): lines 8 and 12 of Algorithm 2
+    compare each pair of the pool gene by gene, or `at_once` genes together. A pool holds the population and the valid children of one
+    batch, after line 11 of two. offspring: children of a batch for each chromosome of the population. The effect is the share of
+    fitness in this work, on average over the runs; the sentence holds if the interval of this mean lies above one half.
+    """
+    shares = []
+    for name in one_or_list(check["experiment"]):
+        found = results[name]
+        for _, run in select(found.runs, check.get("where", {})).iterrows():
+            path = path_of(run)
+            if path is not None:
+                x, _ = samples(path, found.problems[run["problem"]].workspace)
+                fitness = run["evaluations"] * len(path.points) * len(x)
+                batch = population * offspring * run["valid_share"]
+                pairs = [math.comb(round(population + batches * batch), 2) for batches in (1, 2)]
+                compared = (len(run["history"]) - 1) * pairs[0] + run["extra_batches"] * pairs[1]
+                shares.append(fitness / (fitness + compared * math.ceil(genes / at_once)))
+    if not shares:
+        raise Untestable("no run has a path")
+    low, high = statistics.interval("mean", np.array(shares), generator(f"elhoseny2017/C21/{at_once}"))
+    mark = "+" if low > 0.5 else "-" if high < 0.5 else "?"
+    return mark, float(np.mean(shares)), (low, high), len(shares)
 
 
 def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
@@ -300,43 +339,6 @@ def crossover_and_mutation(*, parents: list[str]) -> pd.DataFrame:
     frame = np.add([[-0.5, 0.5], [3.5, 0.5], [3.5, -0.5], [-0.5, -0.5], [-0.5, 0.5]], (0, at[one][1]))
     border = {"mark": "line", "role": "first", "group": "subspace", "label": "subspace 00 of the parents", "operator": "crossover"}
     return pd.DataFrame([*marks, *(border | {"x": x, "y": y} for x, y in frame)])
-
-
-class Verdict(NamedTuple):
-    """The verdict of Section 3.2.2 on a candidate control point: obstacle, too near, or accepted."""
-
-    point: tuple[int, int]
-    word: str
-
-
-def verdicts(points: np.ndarray, grid: Grid, least: float) -> list[Verdict]:
-    """The subprocesses `Obstacles` and `Distance Threshold` of Section 3.2.2, applied to points (n, 2) in turn, in units of cells.
-
-    least: the smallest allowed distance from the points accepted before.
-    """
-    found: list[Verdict] = []
-    for x, y in points.tolist():
-        accepted = [each.point for each in found if each.word == "accepted"]
-        if grid.occupied[grid.cell_of(x, y)]:
-            word = "obstacle"
-        elif any(math.dist((x, y), point) < least for point in accepted):
-            word = "too near"
-        else:
-            word = "accepted"
-        found.append(Verdict((x, y), word))
-    return found
-
-
-def curve_through(points: list[tuple[int, int]], start: tuple[int, int], target: tuple[int, int]) -> Path:
-    """The Bezier curve of control points, ordered by their projection on the line from start to target."""
-    along = np.subtract(target, start)
-    order = sorted(points, key=lambda point: float(np.dot(np.subtract(point, start), along)))
-    return Path("bezier", np.array([start, *order, target], dtype=float))
-
-
-def is_free(path: Path, grid: Grid) -> bool:
-    """The subprocess `Valid Path` of Section 3.2.2: whether no cell that the curve touches is occupied."""
-    return occupied_cells(*touched_cells(*samples(path, grid)), grid.occupied) == 0
 
 
 def chromosome(*, least_distance: float) -> pd.DataFrame:
