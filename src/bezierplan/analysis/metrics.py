@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from bezierplan.analysis import measures
+from bezierplan.analysis import measures, running_time
 from bezierplan.analysis.measures import BENDING_PART, CURVATURE_SAMPLES, FINE_SAMPLES
 
 if TYPE_CHECKING:
@@ -76,6 +76,9 @@ _CELLS8 = {"bound": "octile_bound", "gap": "gap8"}
 METRICS: dict[str, Metric] = {
     "objective": Metric("u", "the planner's own final value, in its own rule", False),
     "length": Metric("u", "exact arc length", True, least="bound"),
+    "certified_length": Metric(
+        "u", "exact arc length, infinite unless the certified checker accepts the path", False, running_time.certified_length, least="bound"
+    ),
     "claimed_feasible": Metric("-", "the planner's own test of the path", False, step=1.0),
     "feasible": Metric("-", "the certified checker's test of the path", False, step=1.0),
     "failed": Metric("-", "without a path that the certified checker accepts", False, measures.failed, step=1.0),
@@ -273,3 +276,21 @@ METRICS: dict[str, Metric] = {
         step=1.0,
     ),
 }
+
+for _within in running_time.TARGETS:
+    _percent = f"{100 * _within:.0f}"
+    METRICS[f"within_{_percent}pct"] = Metric(
+        "-",
+        f"whether the path is certified and at most {_percent} % longer than the exact shortest one",
+        False,
+        partial(running_time.solved, _within),
+        step=1.0,
+    )
+    for _cost, _unit in (("evaluations", "-"), ("cpu_s", "s")):
+        METRICS[f"{_cost}_to_{_percent}pct"] = Metric(
+            _unit,
+            f"{_cost} of all runs of the same method and condition over the number of those within {_percent} %: expected running time",
+            False,
+            partial(running_time.work_to, _cost, _within),
+            least=0.0,
+        )
