@@ -30,7 +30,8 @@ class Metric(NamedTuple):
     among_rows: it compares the methods of a table with each other, so variants and baselines outside the table have none.
     least: the smallest value that a run can have, or the column of the runs table that holds it. most: the largest.
     bound, gap: the column with the bound for this kind of length, and the metric of the gap to it.
-    step: the distance between possible values of a run, 1 for whole numbers; None if there is none.
+    step: the distance between possible values of a run, 1 for whole numbers; None if there is none. of_group: all runs of a method under a
+    condition share it, so resampling them does not show how certain it is.
     """
 
     unit: str
@@ -43,6 +44,7 @@ class Metric(NamedTuple):
     bound: str = "bound"
     gap: str = "gap"
     step: float | None = None
+    of_group: bool = False
 
 
 def values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Series:
@@ -293,4 +295,5 @@ for _within in running_time.TARGETS:
             False,
             partial(running_time.work_to, _cost, _within),
             least=0.0,
+            of_group=True,
         )
