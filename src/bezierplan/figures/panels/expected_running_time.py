@@ -106,8 +106,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     axes.set_xlabel(_NAMES[panel["cost"]])
     axes.grid(visible=True, axis="x")
     first = frame.iloc[0]
+    targets_named = ", ".join(f"{100 * target:g}" for target in targets)
     if first["problems"] > 1:
-        return f"median over {first['problems']:g} problems; right: on how many of them any run gets there"
+        return f"median over {first['problems']:g} problems; right: on how many of them any run is within {targets_named} %"
     fewest, most = frame["runs"].min(), frame["runs"].max()
     runs = f"{fewest:g}" if fewest == most else f"{fewest:g} to {most:g}"
-    return f"{runs} runs a method; right: how many of them get there"
+    return f"{runs} runs a method; right: how many of them are within {targets_named} %"

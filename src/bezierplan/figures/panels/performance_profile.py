@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -20,6 +21,9 @@ if TYPE_CHECKING:
 
 # Room beyond the largest ratio, as a factor of the axis, so that the level that a line ends at can be seen.
 _ROOM = 1.15
+
+# Ratios that the axis may name.
+_RATIOS = (1.01, 1.02, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0, 5.0, *(10.0**power for power in range(1, 13)))
 
 _AXES = {
     "length": "length / shortest length of all methods",
@@ -79,13 +83,14 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     """Draw the rows of `data`; returns the note below the panel's title."""
     end = max(frame["ratio"].max(), 1.01) ** _ROOM
     methods = style.in_order(frame["method"], panel)
-    for method, look in zip(methods, style.lines(methods)):
+    for number, (method, look) in enumerate(zip(methods, style.lines(methods))):
         own = frame[frame["method"] == method]
         places = np.concatenate([[1.0], own["ratio"], [end]])
         heights = np.concatenate([[0.0], own["share"], own["share"].iloc[-1:]])
-        marks = look | {"markevery": [len(places) - 1], "clip_on": False}
+        # Marks at different steps, because lines may end at one height.
+        marks = look | {"markevery": sorted({1 + number * len(own) // len(methods), len(places) - 1}), "clip_on": False}
         axes.plot(places, heights, drawstyle="steps-post", label=scene.labels.get(method, method), **marks)
-    axes.set_xscale("log", base=2 if end > 4 else 10)
+    axes.set_xscale("log")
     axes.set_xlim(1, end)
     _name_ratios(axes, end)
     axes.set_ylim(0, 1.02)
@@ -100,12 +105,14 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 
 
 def _name_ratios(axes: Axes, end: float) -> None:
-    """A few ratios as plain numbers, at even distances on the logarithmic axis."""
+    """A few ratios as plain numbers, with room for their digits."""
     from matplotlib.ticker import FixedLocator, NullLocator
 
-    wide = [10.0**power for power in range(12)] if end > 100 else [2.0**power for power in range(8)]
-    narrow = [value for step in (1.01, 1.02, 1.05, 1.1, 1.2, 1.5, 2, 3) if (value := step) <= end]
-    ticks = [value for value in wide if value <= end] if end > 4 else [1.0, *narrow[-4:]]
-    axes.xaxis.set_major_locator(FixedLocator(ticks))
+    named = [1.0]
+    for value in _RATIOS:
+        # A quarter of the axis holds the longest of them.
+        if value <= end and math.log(value / named[-1]) >= 0.24 * math.log(end):
+            named.append(value)
+    axes.xaxis.set_major_locator(FixedLocator(named))
     axes.xaxis.set_minor_locator(NullLocator())
-    axes.set_xticks(ticks, [f"{value:,.10g}" for value in ticks])
+    axes.set_xticks(named, [f"{value:,.10g}" for value in named])
