@@ -77,7 +77,7 @@ def study(claims: list[content.Claim], numbers: list[content.Number]) -> content
         claims=claims,
         tables=[table, listing],
         figures=[],
-        audit=[content.Audited(item="table1", place=HOSTILE, rule="sum", printed=4, limit=3.5, consistent=False)],
+        audit=[content.Audited(item="table1", place=HOSTILE, rule="sum", printed=4, limit=3.5, consistent=False, arithmetic=HOSTILE)],
         assumptions=[content.Assumption(address="one/O1", id="O1", claims=["C1"], choices=claims[0].choices, **open_choice)],
         shown=[content.Shown(problem="p", best="one/first/p/a/0", worst="one/first/p/a/1", **shown)],
         labels={"a": HOSTILE, "p": "the room"},

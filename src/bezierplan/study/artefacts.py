@@ -58,6 +58,16 @@ class TableValue(Model):
         return one_or_list(self.statistic)
 
 
+class Monotone(Model):
+    """An entry of a table's `monotone`."""
+
+    metric: Metric = Field(description="the name of a metric")
+    statistic: Statistic = Field(description="the name of a statistic")
+    along: Column = Field(description="a column of the published file, along which the numbers must rise or fall")
+    direction: Literal["up", "down"] = Field(description="up or down; equal numbers are accepted")
+    because: Line = Field(description="why they must, in words")
+
+
 class Pivot(Table):
     """A table of runs, compared with published numbers."""
 
@@ -76,6 +86,10 @@ class Pivot(Table):
         None,
         description="the column of which all runs behind a published number share one value, such as layout: predictions are then for "
         "experiments within one of ours; left out: none",
+    )
+    monotone: list[Monotone] = Field(
+        [],
+        description="orders that the published numbers must keep, which the audit checks: {metric, statistic, along, direction, because}",
     )
     primary: Where = Field({}, description="column → the value whose rows count as the paper's reading in the summary; left out: all rows")
 

@@ -162,6 +162,7 @@ class Audited(Record):
     printed: Cell
     limit: Cell
     consistent: bool | None
+    arithmetic: str = Field(description="how it was checked, for rules that hold for any paper; otherwise empty")
 
 
 class Shown(Record):

@@ -270,4 +270,5 @@ def _audited(row: pd.Series) -> content.Audited:
         printed=cell(row["printed"]),
         limit=cell(row["limit"]),
         consistent=None if checked is None else str(checked) == "True",
+        arithmetic=_text(row, "arithmetic"),
     )
