@@ -19,7 +19,7 @@ def inputs(given: Studies, scale: str) -> dict[str, list[str]]:
     made, runs = _made(given, scale), [_runs(given, scale, key) for key in given]
     summary = f"results/{scale}/summary.md"
     named = [f"results/{scale}/{name}.csv" for name in ("numbers", "claims")] if summary in made else []
-    merged = {name: list(dict.fromkeys(each for files in runs for each in files[name])) for name in ("runs", "problems", "bounds")}
+    merged = {name: list(dict.fromkeys(each for files in runs for each in files[name])) for name in ("runs", "problems", "bounds", "traces")}
     return {"made": made, "summary": named} | merged
 
 
@@ -48,7 +48,7 @@ def _made(given: Studies, scale: str) -> list[str]:
 
 
 def _runs(given: Studies, scale: str, key: str) -> dict[str, list[str]]:
-    """The runs, problems and bounds behind what is made of a study at a scale."""
+    """The runs, problems and bounds behind what is made of a study at a scale, and the traces of those runs that are drives."""
     found: dict[str, list[str]] = {"runs": [], "problems": [], "bounds": []}
     for own, name in _artefacts(given, scale):
         if own == key:
@@ -56,7 +56,12 @@ def _runs(given: Studies, scale: str, key: str) -> dict[str, list[str]]:
             _add(found, targets.artefact_inputs(given, scale, key, **{kind: name}))
     if scale != "smoke" and given[key].claims:
         _add(found, targets.claims_inputs(given, scale, key))
-    return found
+    return found | {"traces": [str(Path(run).with_suffix(".traces.parquet")) for run in found["runs"] if given[key].moves(_of(run))]}
+
+
+def _of(run: str) -> str:
+    """The experiment of a file of runs."""
+    return Path(run).parts[-3]
 
 
 def _add(found: dict[str, list[str]], more: dict[str, list[str]]) -> None:
@@ -92,9 +97,9 @@ def _experiments(given: Studies, scale: str, key: str) -> dict[str, dict[str, An
     experiments = {}
     for problems, bounds in zip(found["problems"], found["bounds"], strict=True):
         name = Path(problems).stem
-        runs = [each for each in found["runs"] if Path(each).parts[-3] == name]
+        runs, traces = ([each for each in found[kind] if _of(each) == name] for kind in ("runs", "traces"))
         methods = [method for method in study.methods_of(name) if method not in study.baselines]
-        files = {"runs": runs, "problems": problems, "bounds": bounds}
+        files = {"runs": runs, "problems": problems, "bounds": bounds, "traces": traces}
         if runs:
             experiments[name] = {"methods": methods, "repeats": study.experiments[name].repeats[scale]} | files
     return experiments

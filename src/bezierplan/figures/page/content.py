@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-FORMAT = 1
+FORMAT = 2
 """Number of the format; a change that breaks a reader of the JSON raises it."""
 
 Address = Annotated[str, Field(description="what follows # in a link to this place of the page")]
@@ -193,10 +193,20 @@ class Study(Record):
     labels: dict[str, str] = Field(description="name -> how it is printed")
 
 
+class World(Record):
+    """How obstacles move while a robot drives: circles, or cells that change. Time is counted in steps."""
+
+    walls: list[float] = Field([], description="lowest and highest x, lowest and highest y of centres, which are reflected there")
+    circles: list[list[float]] = Field([], description="x, y, velocity in x and in y per step, radius; a straight line within a step")
+    moments: list[float] = Field([], description="when cells change, in steps")
+    changed: list[list[int]] = Field([], description="the cells that change at each moment, row by row from the top left one")
+
+
 class Problem(Record):
     """A workspace with start, target and the exact shortest path."""
 
-    workspace: dict[str, Any] = Field(description="its kind, unit and shapes")
+    workspace: str = Field(description="key in `workspaces`; of a world that moves, the workspace at its beginning")
+    world: World | None = Field(None, description="how the obstacles move, if they do")
     start: tuple[float, float]
     target: tuple[float, float]
     bound: float | None = Field(description="length of the exact shortest path")
@@ -218,7 +228,10 @@ class Run(Record):
     curve: str
     path: list[float] = Field(description="x0, y0, x1, y1, ... along the path")
     control: list[float] = Field(description="control points; empty if some are tangents")
-    history: list[tuple[int, float]] = Field(description="generation and best objective, where it changes")
+    history: list[tuple[int, float]] = Field(description="generation and best objective, where it changes; of a drive, each plan's")
+    steps: float | None = Field(None, description="of a drive: time until its end, in steps")
+    driven: list[float] = Field([], description="of a drive: length of the way along `path` at step 0, 1, ... and at the end")
+    collision_step: float | None = Field(None, description="of a drive: time of the first collision, in steps")
 
 
 class Page(Record):
@@ -228,5 +241,6 @@ class Page(Record):
     scale: str
     answer: list[list[Part]] = Field(description="sentences, each in parts")
     studies: dict[str, Study]
+    workspaces: dict[str, dict[str, Any]] = Field(description="kind, unit, bounds and shapes of each, named by the first problem that has it")
     problems: dict[str, Problem]
     runs: dict[str, Run]
