@@ -164,6 +164,40 @@ class Audited(Record):
     consistent: bool | None
 
 
+class Worth(Record):
+    """A method beside a baseline that needs no search: medians over conditions of its median over the baseline's."""
+
+    address: Address
+    method: str
+    baseline: str
+    conditions: int = Field(description="conditions under which both have runs")
+    feasible: float = Field(description="share of its runs whose path the certified checker accepts")
+    feasible_baseline: float
+    length: float | None = Field(description="length over the baseline's, feasible runs only")
+    curvature: float | None = Field(description="largest curvature over the baseline's; null also for paths with corners")
+    cornered: bool = Field(description="whether its paths have corners, where the curvature is infinite")
+    cpu: float | None = Field(description="CPU time over the baseline's")
+
+
+class Explanation(Record):
+    """How many published numbers a reading of what the paper leaves open explains."""
+
+    reading: str = Field(description="its choices; `in force` without any")
+    in_range: int = Field(description="numbers in the central 95 % of what experiments of the paper's size would print")
+    numbers: int = Field(description="of how many")
+    by_chance: float | None = Field(description="how many would be on average if each were exchanged with another of its kind")
+
+
+class Explained(Record):
+    """Numbers of a table that readings explain."""
+
+    table: str
+    numbers: int
+    in_force: int = Field(description="explained under the reading in force")
+    best: int = Field(description="explained under the best reading")
+    never: int = Field(description="explained under no reading")
+
+
 class Shown(Record):
     """Runs of a method in the viewer, by their ids in `runs`: on one problem, or on all of an experiment."""
 
@@ -189,6 +223,11 @@ class Study(Record):
     figures: list[Figure]
     audit: list[Audited]
     assumptions: list[Assumption]
+    worth: list[Worth] = []
+    worth_in_words: str = Field("", description="what follows from `worth`")
+    explanations: list[Explanation] = Field([], description="the best readings tried, the best first, and the one in force")
+    readings_tried: int = 0
+    explained: list[Explained] = []
     shown: list[Shown]
     labels: dict[str, str] = Field(description="name -> how it is printed")
 
@@ -241,6 +280,6 @@ class Page(Record):
     scale: str
     answer: list[list[Part]] = Field(description="sentences, each in parts")
     studies: dict[str, Study]
-    workspaces: dict[str, dict[str, Any]] = Field(description="kind, unit, bounds and shapes of each, named by the first problem that has it")
+    workspaces: dict[str, dict[str, Any]] = Field(description="kind, unit, bounds and shapes, by the first problem in each")
     problems: dict[str, Problem]
     runs: dict[str, Run]

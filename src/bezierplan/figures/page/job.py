@@ -9,12 +9,13 @@ import pandas as pd
 from bezierplan.figures.page import answer, build, content, gather, runs
 
 
-def page(job: dict[str, Any], folder: Path, numbers: str | None, claims: str | None) -> content.Page:
+def page(job: dict[str, Any], folder: Path, summary: list[str] | None) -> content.Page:
     """The content of the page.
 
     job: `scale`, and `studies`: study -> what `gather.studies` takes, and `experiments` (name -> `methods`, `repeats` and the files `runs`,
-    `problems`, `bounds` and, of drives, `traces`). folder: that of the scale. numbers, claims: files of all studies together, if the scale has them."""
-    tables: list[pd.DataFrame | None] = [gather.read(file) if file else None for file in (numbers, claims)]
+    `problems`, `bounds` and, of drives, `traces`). folder: that of the scale. summary: files of all studies together,
+    numbers.csv, claims.csv and worth.csv, if the scale has them."""
+    tables: list[pd.DataFrame | None] = [gather.read(file) for file in summary] if summary else [None, None, None]
     studies = gather.studies(job["studies"], folder, *tables)
     workspaces: dict[str, dict[str, Any]] = {}
     problems: dict[str, content.Problem] = {}
@@ -42,6 +43,6 @@ def _once(workspaces: dict[str, dict[str, Any]], problems: dict[str, content.Pro
     }
 
 
-def write(job: dict[str, Any], folder: Path, numbers: str | None, claims: str | None, file: str) -> None:
+def write(job: dict[str, Any], folder: Path, summary: list[str] | None, file: str) -> None:
     """Write the page."""
-    Path(file).write_text(build.html(page(job, folder, numbers, claims), folder), encoding="utf-8")
+    Path(file).write_text(build.html(page(job, folder, summary), folder), encoding="utf-8")

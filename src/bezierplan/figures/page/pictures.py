@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Sequence
+from functools import lru_cache
 from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import quote
@@ -31,15 +32,18 @@ def data_uri(file: Path) -> str:
         return f'class="{styles.setdefault(rules, f"s{len(styles)}")}"'
 
     def shorter(tag: re.Match) -> str:
-        text = _OUTLINE.sub(lambda found: f'd="{_stepwise(found.group(1))}"', tag.group())
-        clip = _CLIP.search(text)
-        # A clip of its own stays an attribute: one that a group has is no style of the group's children.
-        if clip and _STYLE.search(text):
-            text = _STYLE.sub(lambda found: f'style="{found.group(1)}; clip-path: {clip.group(1)}"', _CLIP.sub("", text))
+        text = tag.group()
+        if text.startswith("</"):
+            return text
+        text = _OUTLINE.sub(lambda found: f'd="{_stepwise(found.group(1))}"', text)
+        if "#" in text:
+            clip = _CLIP.search(text)
+            if clip and _STYLE.search(text):
+                text = _STYLE.sub(lambda found: f'style="{found.group(1)}; clip-path: {clip.group(1)}"', _CLIP.sub("", text))
+            text = _REFERENCE.sub(lambda found: found.group().replace(f"#{found.group(1)}", f"#{names[found.group(1)]}"), text)
         text = _ID.sub(lambda found: f'id="{names[found.group(1)]}"' if found.group(1) in names else "", text)
-        text = _REFERENCE.sub(lambda found: found.group().replace(f"#{found.group(1)}", f"#{names[found.group(1)]}"), text)
         text = _STYLE.sub(lambda found: classed(found.group(1)), text)
-        text = re.sub(r" (?=/?>)", "", " ".join(_LONG_NUMBER.sub(_rounded, text).split()))
+        text = " ".join(_LONG_NUMBER.sub(_rounded, text).split()).replace(" >", ">").replace(" />", "/>")
         return text if "'" in text else text.replace('"', "'")
 
     text = _TAG.sub(shorter, text)
@@ -53,19 +57,20 @@ def _stepwise(outline: str) -> str:
     parts, x, y, first = [], 0, 0, (0, 0)
     for name, numbers in _STEP.findall(outline):
         places = [round(100 * float(each)) for each in numbers.split()]
-        moved = [place - (y if n % 2 else x) for n, place in enumerate(places)]
         if not places:
             x, y = first
             parts.append(name)
             continue
+        moved = [place - (y if n % 2 else x) for n, place in enumerate(places)]
         x, y = places[-2:]
         first = (x, y) if name == "M" else first
         if name == "L" and 0 in moved:
             name, moved = ("h", moved[:1]) if moved[1] == 0 else ("v", moved[1:])
-        parts.append(name.lower() + "".join(_hundredths(each) for each in moved).lstrip(" "))
+        parts.append(name.lower() + "".join(map(_hundredths, moved)).lstrip(" "))
     return "".join(parts)
 
 
+@lru_cache(maxsize=100_000)
 def _hundredths(value: int) -> str:
     """A number of hundredths as short as svg allows: a sign separates it from the number before, otherwise a space does."""
     whole, rest = divmod(abs(value), 100)

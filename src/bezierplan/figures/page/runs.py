@@ -131,7 +131,13 @@ def _drive(run: content.Run, trace: np.ndarray, row: pd.Series, pace: float) -> 
     if np.isfinite(row["collision_at"]):
         times = np.append(np.arange(len(trace) - 1), steps)
         collision = tuple(float(np.interp(row["collision_at"], times, along)) for along in trace.T)
-    more = {"control": [], "driven": _rounded(driven, size), "steps": steps, "collision": collision, "collision_step": _finite(row["collision_at"])}
+    more = {
+        "control": [],
+        "driven": _rounded(driven, size),
+        "steps": steps,
+        "collision": collision,
+        "collision_step": _finite(row["collision_at"]),
+    }
     return run.model_copy(update=more)
 
 

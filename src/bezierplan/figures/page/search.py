@@ -29,6 +29,9 @@ def _of_study(key: str, study: Study) -> Iterator[Entry]:
     for table in study.tables:
         yield Entry("table", table.address, f"{_words(table.name)}: {table.title}", key)
         yield from (_of_number(number, table.name, f"{key} {table.title}") for number in table.numbers if number.published is not None)
+    for row in study.worth:
+        text = f"{study.labels.get(row.method, _words(row.method))} beside the exact shortest path with rounded corners"
+        yield Entry("worth", row.address, text, f"{key} {row.method}", True)
     for figure in study.figures:
         yield Entry("figure", figure.address, f"{_words(figure.name)}: {figure.title}", key)
     for choice in study.assumptions:
