@@ -17,7 +17,7 @@ sys.executable = shlex.quote(sys.executable)
 from bezierplan.study import alternatives, checked, experiments, page, reading, targets
 
 try:
-    STUDIES = reading.load(reading.read_config(config, alone=workflow.modifier.is_module))
+    STUDIES = reading.load(reading.read_config(config, alone=workflow.modifier.namespace is not None))
     targets.check_folder()
 except checked.Fault as fault:
     sys.exit(str(fault))
