@@ -19,6 +19,7 @@ TARGETS = {
     "benchmark",
     "compare",
     "outcome",
+    "cluster",
     "lock",
     "clean",
     "distclean",

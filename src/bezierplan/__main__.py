@@ -10,6 +10,7 @@ COMMANDS = {
     "digest": "one hash a run table, over sorted rows without times: what `same content` means",
     "check-planner": "the contract tests of a planner, on small and degenerate problems",
     "plan": "one path on a map, checked by exact geometry",
+    "forecast": "how long a target takes on some cores, how much disk, and its longest jobs",
     "outcome": "copy the outcome of results/full to docs/outcome and into the README",
 }
 

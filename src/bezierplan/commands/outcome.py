@@ -10,6 +10,7 @@ from pathlib import Path
 import pandas as pd
 
 from bezierplan.analysis import summary
+from bezierplan.commands import forecast
 from bezierplan.study import reading
 
 RESULTS, KEPT, README = Path("results/full"), Path("docs/outcome"), Path("README.md")
@@ -31,7 +32,8 @@ def write() -> None:
     tried = [pd.read_csv(file) for file in sorted(RESULTS.glob(f"*/{SENSITIVITY}"))]
     claims = summary.with_readings(pd.read_csv(RESULTS / "claims.csv"), pd.concat(tried))
     numbers = pd.read_csv(RESULTS / "numbers.csv")
-    titles = {key: study.title for key, study in reading.load(reading.read_config({})).items()}
+    studies = reading.load(reading.read_config({}))
+    titles = {key: study.title for key, study in studies.items()}
     measured = pd.read_csv(RESULTS / WORTH)
     numbers.to_csv(KEPT / "numbers.csv", index=False)
     claims.to_csv(KEPT / "claims.csv", index=False)
@@ -39,6 +41,7 @@ def write() -> None:
     for frame in tried:
         frame.to_csv(KEPT / f"{frame['study'].iloc[0]}_{SENSITIVITY}", index=False)
     shutil.copyfile(RESULTS / WORTH, KEPT / WORTH)
+    forecast.keep(studies, Path())
     shutil.copyfile(RESULTS / PICTURE, KEPT / PICTURE.replace("/figures/", "_"))
     README.write_text(summary.with_block(README.read_text(encoding="utf-8"), BLOCK, table(KEPT)), encoding="utf-8")
 
