@@ -11,10 +11,10 @@ LOCK      = $(RUN) -m uv pip compile --quiet --universal --python-version 3.11 -
 # A killed run leaves its lock behind. A clone has one user, so these targets may break it; plain `snakemake` keeps it.
 UNLOCK = if [ -n "$$(ls .snakemake/locks 2>/dev/null)" ]; then $(SNAKEMAKE) --unlock >/dev/null 2>&1 || true; fi
 
-.PHONY: help reproduce smoke extended test lint benchmark mutants compare cluster outcome lock clean distclean anew
+.PHONY: help reproduce smoke extended test lint benchmark mutants compare cluster outcome verify-outcome lock clean distclean anew
 
 help: ## list these targets
-	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1|\2/p' Makefile | awk -F '|' '{ printf "%-15s %s\n", $$1, $$2 }'
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1|\2/p' Makefile | awk -F '|' '{ printf "%-15s %s\n", $$1, $$2 }'
 
 reproduce: .venv/ready ## every table and figure at the papers' own numbers of repeats, into results/full
 	@$(UNLOCK)
@@ -57,6 +57,11 @@ outcome: .venv/ready ## everything at scale full with the alternatives, then doc
 	@$(UNLOCK)
 	$(SNAKEMAKE) all alternatives $(ARGS)
 	$(RUN) -m bezierplan outcome
+
+verify-outcome: .venv/ready ## is this installation sound? minutes of runs, tested against docs/outcome
+	@$(UNLOCK)
+	$(SNAKEMAKE) $$($(RUN) -m bezierplan verify-outcome --targets) $(ARGS)
+	$(RUN) -m bezierplan verify-outcome
 
 lock: .venv/ready ## renew environment.txt from pyproject.toml (newest versions: ARGS=--upgrade)
 	$(LOCK) $(ARGS) --group build -o environment-build.txt

@@ -19,6 +19,7 @@ TARGETS = {
     "benchmark",
     "compare",
     "outcome",
+    "verify-outcome",
     "cluster",
     "lock",
     "clean",
