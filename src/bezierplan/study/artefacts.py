@@ -5,6 +5,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, PlainValidator, TypeAdapter, ValidationError
 
 from bezierplan.figures.panels import EACH, Panel, kinds
+from bezierplan.study.experiments import Settings
 from bezierplan.study.model import (
     ARGUMENTS,
     Arguments,
@@ -16,11 +17,13 @@ from bezierplan.study.model import (
     Model,
     Name,
     Names,
+    Setting,
     Statistic,
     Where,
     Whole,
     first_fault,
     listed,
+    mapping_or,
     one_of,
     one_or_list,
     wrong,
@@ -193,3 +196,6 @@ class ConfigFile(Model):
     """The file `config/config.yaml`, or what `--config` gives."""
 
     studies: listed(Line) = Field(description="a list of studies, each the name of a folder in `config/studies` or a path")
+    settings: dict[Name, dict[Name, Annotated[Any, mapping_or(Settings, Setting)]]] = Field(
+        {}, description="study → settings that take the place of those of the same name in its `experiments.yaml`"
+    )
