@@ -40,6 +40,8 @@ def shortest_on_grid(problem: Problem, blocked: GridRegion, corner_cutting: str)
     scale = _lattice(ends / blocked.cell, min(_FINEST_LATTICE, _LARGEST_WHOLE // max(cells.shape)))
     lattice = np.concatenate([np.rint(ends / blocked.cell * scale).astype(np.int64), corners * scale])
     if len(lattice) > MOST_NODES and corner_cutting == "open":
+        if not _joined(cells, lattice[0], lattice[1], scale):
+            return no_path()
         direct = bool((lattice[0] == lattice[1]).all()) or _sees(lattice[0], lattice[1], cells, scale, False)
         points = np.concatenate([ends / blocked.cell, corners])
         nodes = shadows.search(shadows.scene(cells, corners, slopes, scale), lattice[:2], points, direct)
@@ -117,6 +119,17 @@ def _lattice(points: np.ndarray, finest: int) -> int:
     scale = math.lcm(*(fraction.denominator for fraction in fractions))
     exact = all(abs(value - fraction) <= _SAME_FRACTION for value, fraction in zip(points.ravel(), fractions))
     return scale if exact and scale <= finest else finest
+
+
+def _joined(cells: np.ndarray, start: np.ndarray, target: np.ndarray, scale: int) -> bool:
+    """Whether free cells lead from one free point of the lattice to another; they may meet at a corner only."""
+    from scipy import ndimage
+
+    parts, _ = ndimage.label(~cells, np.ones((3, 3)))
+    # All free cells around a point are in the same part.
+    around = (parts[-(-y // scale) : y // scale + 2, -(-x // scale) : x // scale + 2] for x, y in (start, target))
+    one, other = (part.max() for part in around)
+    return one == other
 
 
 @njit(cache=True)

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from bezierplan.geometry.region import occupied_around
 from bezierplan.geometry.shortest_paths.graph import way_back
 
 
@@ -22,7 +23,8 @@ class Scene(NamedTuple):
     cells: bool (rows + 2, columns + 2), occupied cells with a ring around them. first_run: (rows + 3,) where the runs of occupied cells
     of each row of `cells` begin in `runs`. runs: (r, 2) grid lines at which a run begins and ends, in cells. corners: (n, 2) x and y in
     cells, row by row, each from left to right. first_corner: (rows + 2,) where those of each horizontal grid line begin. slopes: (n,) signs
-    of dx dy of the directions that a shortest path can take from a corner.
+    of dx dy of the directions that a shortest path can take from a corner. sides: (n,) whether the occupied cell beside a corner lies above
+    it (1) or below it (-1); 0 at a contact, which has both.
     """
 
     cells: np.ndarray
@@ -31,6 +33,7 @@ class Scene(NamedTuple):
     corners: np.ndarray
     first_corner: np.ndarray
     slopes: np.ndarray
+    sides: np.ndarray
     scale: int
 
 
@@ -42,7 +45,9 @@ def scene(cells: np.ndarray, corners: np.ndarray, slopes: np.ndarray, scale: int
     runs = np.column_stack([begin, end]) - 1
     first_run = np.searchsorted(row, np.arange(len(cells) + 1))
     first_corner = np.searchsorted(corners[:, 1], np.arange(len(cells)))
-    return Scene(cells, first_run, runs, corners, first_corner, slopes, scale)
+    below_left, below_right, above_left, above_right = occupied_around(cells)[:, corners[:, 1], corners[:, 0]].astype(np.int64)
+    sides = above_left + above_right - below_left - below_right
+    return Scene(cells, first_run, runs, corners, first_corner, slopes, sides, scale)
 
 
 @njit(cache=True)
@@ -53,6 +58,7 @@ def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> 
     ends: (2, 2) start and target in whole numbers. points: (n + 2, 2) all nodes in cells. direct: whether start and target see each other.
     """
     ahead = np.hypot(points[:, 0] - points[1, 0], points[:, 1] - points[1, 1])
+    at = np.concatenate((ends, scene.corners * scene.scale))
     length = np.full(len(points), np.inf)
     came_by = np.full(len(points), -1)
     settled = np.zeros(len(points), dtype=np.bool_)
@@ -60,7 +66,7 @@ def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> 
     fans = np.empty((2, scene.cells.shape[1] + 1, 4), dtype=np.int64)
     sees_target = np.zeros(len(points), dtype=np.bool_)
     sees_target[0] = direct
-    for k in range(_look(ends[1, 0], ends[1, 1], 0, scene, fans, seen)):
+    for k in range(_look_around(at[1], scene, fans, seen)):
         sees_target[seen[k] + 2] = True
 
     length[0] = 0.0
@@ -72,11 +78,7 @@ def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> 
         settled[i] = True
         if i == 1:
             return way_back(came_by, length[1])
-        if i == 0:
-            count = _look(ends[0, 0], ends[0, 1], 0, scene, fans, seen)
-        else:
-            x, y = scene.corners[i - 2, 0], scene.corners[i - 2, 1]
-            count = _look(x * scene.scale, y * scene.scale, scene.slopes[i - 2], scene, fans, seen)
+        count = _look(at[i], at[i] - at[came_by[i]], i - 2, scene, fans, seen) if i else _look_around(at[0], scene, fans, seen)
         for k in range(-1, count):
             if k < 0 and not sees_target[i]:
                 continue
@@ -90,37 +92,64 @@ def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> 
 
 
 @njit(cache=True)
-def _look(x: int, y: int, slope: int, scene: Scene, fans: np.ndarray, seen: np.ndarray) -> int:
-    """The corners that a point sees, among those that a shortest path can pass in that direction: their number, and themselves in `seen`.
+def _look_around(point: np.ndarray, scene: Scene, fans: np.ndarray, seen: np.ndarray) -> int:
+    """The corners that a point sees and a shortest path can pass in that direction: their number, and themselves in `seen`.
 
-    slope: sign of dx dy of the directions in which a path may leave the point, 0 for all. fans: (2, columns + 3, 4) room for intervals.
+    fans: (2, columns + 3, 4) room for intervals.
     """
-    count = 0
-    if y % scene.scale == 0:
-        left, right = _edge_ahead(x, y, scene)
-        count = _gather(left, right, y // scene.scale, x, 0, scene, seen, count)
+    x, y = point
+    count = _look_along(x, y, 0, scene, seen)
     for side in (-1, 1):
-        count = _look_across(x, y, side, side * slope, scene, fans, seen, count)
+        count = _look_across(x, y, side, (-1, 0, 1, 0), scene, fans, seen, count)
     return count
 
 
 @njit(cache=True)
-def _edge_ahead(x: int, y: int, scene: Scene) -> tuple[int, int]:
-    """Between which grid lines a point sees along its horizontal grid line: up to the first edge whose two cells are occupied."""
-    below, above = scene.cells[y // scene.scale], scene.cells[y // scene.scale + 1]
-    left, right = -(-x // scene.scale), x // scene.scale
-    while not (below[left] and above[left]):
-        left -= 1
-    while not (below[right + 1] and above[right + 1]):
-        right += 1
-    return left, right
+def _look(point: np.ndarray, came: np.ndarray, corner: int, scene: Scene, fans: np.ndarray, seen: np.ndarray) -> int:
+    """As `_look_around`, from a corner that a path has come to along a vector.
+
+    It goes on in the same quadrant, or it would have been shorter past the corner; and it turns towards the occupied cell beside the corner
+    or not at all. At a contact it can turn both ways.
+    """
+    x, y = point
+    right, up = abs(came[0]), abs(came[1])
+    if right == 0 and up == 0:
+        return _look_around(point, scene, fans, seen)
+    slope, cell = scene.slopes[corner], scene.sides[corner]
+    to_right = came[0] + slope * came[1] > 0
+    side = slope if to_right else -slope
+    # The steepest direction and the flattest one, as slopes from the vertical.
+    low, low_y = (0, 1) if cell in (0, side) else (right, up)
+    high, high_y = (right, up) if cell == side else (1, 0)
+    count = 0
+    if high_y == 0:
+        count = _look_along(x, y, 1 if to_right else -1, scene, seen)
+    cone = (low, low_y, high, high_y) if to_right else (-high, high_y, -low, low_y)
+    return _look_across(x, y, side, cone, scene, fans, seen, count)
 
 
 @njit(cache=True)
-def _look_across(x, y, side, turn, scene, fans, seen, count):
-    """Add to `seen` the corners above a point (side 1) or below it (-1), to its right (turn 1), to its left (-1), or both (0); their number.
+def _look_along(x: int, y: int, to: int, scene: Scene, seen: np.ndarray) -> int:
+    """The corners that a point sees along its horizontal grid line, if it lies on one: to the right (1), to the left (-1), or both (0).
 
-    An interval holds its lowest and its highest slope, each by numerator and denominator. far: distance of the line behind the row, in y.
+    An edge ends the view if both of its cells are occupied.
+    """
+    if y % scene.scale:
+        return 0
+    below, above = scene.cells[y // scene.scale], scene.cells[y // scene.scale + 1]
+    left, right = -(-x // scene.scale), x // scene.scale
+    while to <= 0 and not (below[left] and above[left]):
+        left -= 1
+    while to >= 0 and not (below[right + 1] and above[right + 1]):
+        right += 1
+    return _gather(left, right, y // scene.scale, x, 0, scene, seen, 0)
+
+
+@njit(cache=True)
+def _look_across(x, y, side, cone, scene, fans, seen, count):
+    """Add to `seen` the corners within a cone above a point (side 1) or below it (-1), and return how many there are now.
+
+    cone: its lowest and its highest slope, each by numerator and denominator, which may be 0; so are the intervals.
     """
     band = y // scene.scale if side > 0 else -(-y // scene.scale) - 1
     far = (band + 1) * scene.scale - y if side > 0 else y - band * scene.scale
@@ -129,10 +158,14 @@ def _look_across(x, y, side, turn, scene, fans, seen, count):
     if scene.runs[run, 0] * scene.scale < x:
         return count
     fan, following = fans[0], fans[1]
-    fan[0, 0] = 0 if turn > 0 else scene.runs[run - 1, 1] * scene.scale - x
-    fan[0, 2] = 0 if turn < 0 else scene.runs[run, 0] * scene.scale - x
-    fan[0, 1] = fan[0, 3] = far
-    intervals = 1
+    low, low_y, high, high_y = cone
+    begin, end = scene.runs[run - 1, 1] * scene.scale - x, scene.runs[run, 0] * scene.scale - x
+    if begin * low_y >= low * far:
+        low, low_y = begin, far
+    if end * high_y <= high * far:
+        high, high_y = end, far
+    fan[0] = low, low_y, high, high_y
+    intervals = 1 if low * high_y <= high * low_y else 0
     while intervals > 0:
         line = band + 1 if side > 0 else band
         for k in range(intervals):
