@@ -291,8 +291,8 @@ def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarr
 def _add_offspring(rng, pool, filled, wheel, eta, child, memory, field, rules):
     """Add a batch of offspring of the pool's first chromosomes (Algorithm 2, lines 6 and 7) after those already in it.
 
-    wheel: (population,) running sum of the parents' fitness. memory: of validated children, renewed in place. Returns the number of chromosomes now in the pool, of chromosomes validated,
-    and of invalid children.
+    wheel: (population,) running sum of the parents' fitness. memory: of validated children, changed in place. Returns the number of
+    chromosomes now in the pool, of chromosomes validated, and of invalid children.
     """
     tried = invalid = 0
     for _ in range(rules.pairs):
