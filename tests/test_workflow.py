@@ -134,12 +134,12 @@ EDITS = {
     "how a job is logged": ("src/bezierplan/running/log.py", "PR_SET_PDEATHSIG = 1", "PR_SET_PDEATHSIG = 1 + 0", {}),
     "a title": ("config/studies/song2016/artefacts.yaml", "title: ", "title: The same, ", PAGE),
     "a comment": ("src/bezierplan/planners/parts/genetic.py", "# A draw close to 1", "# Hence a draw close to 1", {}),
-    # Paths and convergence share code with the kind `lines`, which reads the units of metrics.
+    # Paths and convergence share code with the kind `lines`, which reads the units of metrics; the audit reads what a metric can be.
     "a metric": (
         "src/bezierplan/analysis/measures.py",
         "FINE_SAMPLES = 4001",
         "FINE_SAMPLES = 4002",
-        ARTEFACTS_OF_RUNS,
+        ARTEFACTS_OF_RUNS | {"audit": 1},
     ),
     "a kind of figure": (
         "src/bezierplan/figures/panels/convergence.py",
