@@ -309,7 +309,7 @@ def test_method_with_corners_has_no_number_of_curvature():
 
 def test_search_finds_every_published_number_and_every_run_shown_by_its_words():
     found = {entry.address: entry for entry in search.entries(page())}
-    assert found["one/table1/a/objective/mean"].text == "a: objective: 10.51 → 10.71 not told apart"
+    assert found["one/table1/a/objective/mean"].text == "a: objective, mean: 10.51 → 10.71 not told apart"
     assert found["one/circles/p/a/0"].text.startswith("best feasible run of ")
     assert found["one/worth/a"].more == "one a"
     assert "one/table1/c/length/mean" not in found

@@ -42,9 +42,10 @@ def _of_study(key: str, study: Study) -> Iterator[Entry]:
 
 def _of_number(number: Number, table: str, more: str) -> Entry:
     values = f"{number.published:.4g} → {'–' if number.ours is None else f'{number.ours:.4g}'} {number.verdict}"
+    column = number.column if number.statistic in number.column else f"{number.column}, {number.statistic}"
     keys = " ".join(str(value) for value in number.keys.values())
     more = f"{more} {number.metric} {number.statistic} {keys}"
-    return Entry(f"number, {table}", number.address, f"{number.row}: {number.column}: {values}", more, not number.primary)
+    return Entry(f"number, {table}", number.address, f"{number.row}: {column}: {values}", more, not number.primary)
 
 
 def _of_runs(key: str, shown: Shown, labels: dict[str, str]) -> Iterator[Entry]:

@@ -125,7 +125,7 @@ function search() {
   index ??= JSON.parse(find("page-index").textContent).map(([kind, address, text, more, later]) => (
     { kind, address, text, later, all: `${kind} ${address} ${text} ${more}`.toLowerCase() }));
   const matching = words.length ? index.filter((each) => words.every((word) => each.all.includes(word))) : [];
-  const rank = (each) => (each.later ? 2 : 0) + (words.every((word) => each.text.toLowerCase().includes(word)) ? 0 : 1);
+  const rank = (each) => (each.later ? 2 : 0) + (words.every((word) => each.text.toLowerCase().split(/[^\p{L}\d-]+/u).includes(word)) ? 0 : 1);
   const best = matching.map((each) => [rank(each), each]).sort((one, other) => one[0] - other[0]).slice(0, 30);
   hits.replaceChildren(...best.map(([, each]) => {
     const link = Object.assign(document.createElement("a"), { href: `#${encodeURI(each.address)}`, textContent: each.text });

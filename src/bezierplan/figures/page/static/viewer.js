@@ -144,7 +144,7 @@ const number = (value) => (value === null ? "–" : String(Number(value.toPrecis
 
 function showFacts(id, run, problem) {
   const { unit } = data.workspaces[problem.workspace], drive = run.steps !== null;
-  const gap = run.length === null || !problem.bound ? "" : `, ${(100 * (run.length / problem.bound - 1)).toFixed(1)} % above the bound`;
+  const gap = !run.feasible || !problem.bound ? "" : `, ${(100 * (run.length / problem.bound - 1)).toFixed(1)} % above the bound`;
   const facts = [
     ["Verdict", run.feasible ? "feasible by the certified check" : `not feasible: it ${run.collision ? "collides" : "does not arrive"}`],
     drive ? ["Drive", `${run.claimed ? "arrives" : "stops"} after ${number(run.steps)} steps` +
