@@ -1,4 +1,4 @@
-"""A fault put into a study's folder, and what is told of it."""
+"""A fault put into a study's folder, and the line that reports it."""
 
 from pathlib import Path
 

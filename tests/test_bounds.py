@@ -174,8 +174,8 @@ def test_centre_paths_of_the_environments_of_meledje(environment, length):
     assert shortest_path(problem).length < length
 
 
-PINCH = np.zeros((4, 4), dtype=bool)
-PINCH[1, 1] = PINCH[2, 2] = True
+CORNER_CONTACT = np.zeros((4, 4), dtype=bool)
+CORNER_CONTACT[1, 1] = CORNER_CONTACT[2, 2] = True
 
 
 @pytest.mark.parametrize("cell", [1.0, 10.0])
@@ -191,9 +191,9 @@ PINCH[1, 1] = PINCH[2, 2] = True
     ],
 )
 def test_a_contact_open_and_closed(start, target, is_open, is_closed, mirrored, cell):
-    occupied = PINCH
+    occupied = CORNER_CONTACT
     if mirrored:
-        occupied = PINCH[:, ::-1]
+        occupied = CORNER_CONTACT[:, ::-1]
         start, target = ((4 - x, y) for x, y in (start, target))
     start, target = (tuple(cell * value for value in point) for point in (start, target))
     problem = on_cells(occupied, start, target, cell)

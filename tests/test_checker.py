@@ -63,7 +63,7 @@ DISC_FAR_OFF = circles((8, -8, 1))
 BLOCK = cells(6, (2, 2, 2, 1))
 BLOCK_AND_BORDER = cells(6, (2, 2, 2, 1), (3, 0, 1, 1))
 LARGE_BLOCK = cells(6, (1, 1, 3, 3))
-PINCH = cells(4, (1, 1, 1, 1), (2, 2, 1, 1))
+CORNER_CONTACT = cells(4, (1, 1, 1, 1), (2, 2, 1, 1))
 SQUARE = polygons("(4,4)(6,4)(6,6)(4,6)")
 ELL = polygons("(2,2)(8,2)(8,8)(6,8)(6,4)(2,4)")
 HOLLOW = polygons("(1,1)(9,1)(9,9)(1,9) (3,3)(7,3)(7,7)(3,7)")
@@ -101,9 +101,9 @@ TOUCHING = {
     "cells: from an edge into the cell and back": (BLOCK, bezier("(2.25,3)(2.5,2.5)(2.75,3)"), 0.0),
     "cells: out of the grid": (BLOCK, bezier("(1,1)(-2,1)"), 1 / 3),
     "cells: far out of the grid": (BLOCK, bezier("(-5,1)(-5,2)"), 0.0),
-    "contact: straight through": (PINCH, bezier("(1,3)(3,1)"), FREE),
-    "contact: apex on it": (PINCH, bezier("(.5,3.5)(2,2)(3.5,.5)"), FREE),
-    "contact: along grid lines": (PINCH, bezier("(0,2)(4,2)"), FREE),
+    "contact: straight through": (CORNER_CONTACT, bezier("(1,3)(3,1)"), FREE),
+    "contact: apex on it": (CORNER_CONTACT, bezier("(.5,3.5)(2,2)(3.5,.5)"), FREE),
+    "contact: along grid lines": (CORNER_CONTACT, bezier("(0,2)(4,2)"), FREE),
     "square: along a wall": (SQUARE, bezier("(0,6)(10,6)"), FREE),
     "square: past a corner": (SQUARE, bezier("(2,4)(6,8)"), FREE),
     "square: past a corner, 4.5e-9 lower": (SQUARE, lowered(bezier("(2,4)(6,8)"), 4.5e-9), 0.5),
@@ -183,8 +183,8 @@ def test_an_apex_under_a_thin_wall_touches_it(bulge):
     ],
 )
 def test_a_closed_contact_may_be_touched_but_not_passed(pieces, collision_at):
-    assert check(pieces, PINCH).feasible
-    found = check(pieces, PINCH, corner_cutting="closed")
+    assert check(pieces, CORNER_CONTACT).feasible
+    found = check(pieces, CORNER_CONTACT, corner_cutting="closed")
     assert found.feasible == (collision_at is FREE)
     if not found.feasible:
         assert found.collision_at == pytest.approx(collision_at, abs=1e-6)
@@ -367,7 +367,7 @@ def test_unfit_shapes_and_rules_are_refused():
     with pytest.raises(ValueError, match="degree"):
         check(np.zeros((1, 62, 2)), UNIT_DISC)
     with pytest.raises(ValueError, match="corner cutting"):
-        check(np.zeros((1, 2, 2)), PINCH, corner_cutting="shut")
+        check(np.zeros((1, 2, 2)), CORNER_CONTACT, corner_cutting="shut")
 
 
 @pytest.mark.parametrize("blocked", ["Grid(np.eye(3, dtype=bool), 1.0, 'm')", "Circles((0, 9, 0, 9), np.ones((1, 2)), np.ones(1), 'm')"])

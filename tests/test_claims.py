@@ -959,3 +959,24 @@ def test_columns():
     described = set(re.findall(r"\w+", judging.__doc__))
     assert described.issuperset(judging.CLAIM_COLUMNS + judging.CHECK_COLUMNS)
     assert set(summary["verdict"]) <= set(verdicts.VERDICTS)
+
+
+# How often a verdict is right.
+
+
+def normal_runs(trial: int, n: int, shift: float) -> pd.DataFrame:
+    """Runs of two methods, drawn at random: b's mean is by `shift` above a's, both have standard deviation 1."""
+    a, b = generator(f"trial {trial}").normal(size=(2, n))
+    return table({"a": a, "b": shift + b})
+
+
+@pytest.mark.parametrize(("shift", "truth"), [(0.6, "supported"), (-0.6, "contradicted"), (0.0, "no effect")])
+def test_verdict_from_many_runs_is_right_95_times_in_100(shift, truth):
+    found = [judged(LOWER, normal_runs(trial, 400, shift))["verdict"] for trial in range(100)]
+    assert found.count(truth) >= 95
+
+
+def test_few_runs_without_an_effect_are_seldom_taken_for_one():
+    found = [judged(LOWER, normal_runs(trial, 10, 0.0))["verdict"] for trial in range(100)]
+    assert found.count("supported") + found.count("contradicted") <= 5
+    assert found.count("undecided") > 50

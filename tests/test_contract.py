@@ -155,7 +155,7 @@ def test_planner_that_raises_without_a_way_fails_there_alone(tmp_path):
 
 
 def test_feasible_path_to_a_sealed_target_fails(tmp_path):
-    """Such a path ends elsewhere, which is told as well."""
+    """Such a path ends elsewhere, which is reported as well."""
     source = changed("middles[lengths.argmin()], target]", "start]")
     assert ("circles: sealed target", "no way") in [finding[:2] for finding in failed(written(tmp_path, source), {"evaluations": 20})]
 

@@ -101,11 +101,11 @@ def test_far_published_means_stand_at_the_edge(tmp_path):
     found = results({"near": [8.0, 9.0, 10.0], "far": [8.0, 8.5, 9.0]}, printed("objective", {"near": 9.5, "far": 30.25}))
     panel = {"kind": "boxes", "experiment": "routes", "metric": "objective", "limits": True}
     words = drawn(found, panel, tmp_path)
-    assert {"30.25", "published mean", "published mean, beyond the scale"} <= set(words)
+    assert {"30.25", "published mean", "published mean, off the scale"} <= set(words)
     axes = Figure().subplots()
     near = results({"near": [8.0, 9.0, 10.0], "far": [8.0, 8.5, 9.0]}, printed("objective", {"near": 10.4, "far": 30.25}))
     drawn_frame = boxes.data(near, metric="objective")
-    boxes.draw(axes, drawn_frame, sheet.Scene({}, {}, {}, "m"), panel)
+    boxes.draw(axes, drawn_frame, sheet.Scene({}, {}, {}, "m"), boxes.Options.complete(panel))
     assert axes.get_xlim()[0] < 8 < 10.4 < axes.get_xlim()[1] < 11, "what is not far stays in sight"
     frame = boxes.data(found, metric="objective", limits=True).query("method.isna()")
     assert dict(zip(frame["part"], frame["value"])) == {"reference": 2.5, "bound": 2.0}

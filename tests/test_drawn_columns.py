@@ -18,7 +18,7 @@ COUNTS = {"runs": 10, "feasible_runs": 9}
 
 def drawn(kind, frame, **panel):
     axes = Figure().add_subplot()
-    kind.draw(axes, frame, SCENE, {"experiment": "first"} | panel)
+    kind.draw(axes, frame, SCENE, kind.Options.complete({"experiment": "first"} | panel))
     return axes
 
 

@@ -280,7 +280,7 @@ def test_the_shortest_path_from_cell_to_cell_has_the_length_of_the_optimum(tmp_p
     np.testing.assert_array_equal(way[[0, -1]], [[5, 5], [35, 35]])
     least = ground.least_energy(grid(), 1.0, False, 0, 15)
     assert np.hypot(*np.diff(way, axis=0).T).sum() == pytest.approx(10 * least), "cells of 10 units"
-    note = f"shortest from cell to cell {10 * least:.2f}, at any angle"
+    note = f"shortest between cell centres {10 * least:.2f}, at any angle"
     panel = panels()[0] | {"cell_optimum": True}
     assert any(note in " ".join(text.split()) for text in words(drawn(found, [panel], 1, tmp_path)))
 
@@ -364,7 +364,7 @@ def test_convergence_marks_the_printed_means_of_one_table(tmp_path):
     marked = frame[frame["printed"].notna()]
     assert marked[["method", "generation", "printed"]].to_numpy().tolist() == [["smooth", 5, 36.5]]
     panel = {"kind": "convergence", "experiment": "routes", "hue": "method", "printed": "table3"}
-    assert "published final mean, in the mark of its line" in words(drawn(found, [panel], 1, tmp_path))
+    assert "published final mean, with the mark of its line" in words(drawn(found, [panel], 1, tmp_path))
     assert "printed" not in convergence.data(comparison(), hue="method", printed="table3")
 
 
@@ -448,7 +448,7 @@ def test_boxes_show_published_ends_and_a_limit(tmp_path):
     assert frame.loc[frame["part"] == "limit", "value"].tolist() == [33.5]
     panel = {"kind": "boxes", "experiment": "routes", "metric": "objective", "limit": 33.5}
     figure = drawn(comparison(ends), [panel], 1, tmp_path)
-    assert {"published least and largest value", "published limit: 33.5 unit"} <= set(words(figure))
+    assert {"published minimum and maximum", "published limit: 33.5 unit"} <= set(words(figure))
 
 
 def test_boxes_end_at_the_last_value_within_reach():
@@ -718,8 +718,16 @@ def test_equal_data_gives_equal_bytes_in_another_process(tmp_path):
 
 @pytest.mark.parametrize("kind", kinds_of_panel.kinds())
 def test_options_of_a_kind_are_the_arguments_of_its_data(kind):
-    """With the same defaults, which `data` needs for whoever calls it without a panel."""
+    """Their defaults stand in the options alone."""
     parameters = inspect.signature(sheet.kind_module(kind).data).parameters.values()
     arguments = {parameter.name: parameter.default for parameter in parameters if parameter.kind is inspect.Parameter.KEYWORD_ONLY}
-    fields = {name: field for name, field in kinds_of_panel.kinds()[kind].model_fields.items() if name not in sheet.PANEL_KEYS}
-    assert {name: inspect.Parameter.empty if field.is_required() else field.default for name, field in fields.items()} == arguments
+    fields = kinds_of_panel.kinds()[kind].model_fields.keys() - set(sheet.PANEL_KEYS)
+    assert arguments == dict.fromkeys(fields, inspect.Parameter.empty)
+
+
+def test_data_takes_the_defaults_of_the_options():
+    found = comparison()
+    given = {"metric": "objective", "by": "method", "limits": False, "limit": None}
+    pd.testing.assert_frame_equal(boxes.data(found, metric="objective"), boxes.data(found, **given))
+    with pytest.raises(TypeError, match="metric"):
+        boxes.data(found)

@@ -47,7 +47,7 @@ def bomb(presets=12):
     return "\n".join(lines)
 
 
-# A file's whole text, and what is told of it.
+# A file's whole text, and the line that reports it.
 TEXTS = {
     "nothing": (E, "", "experiments.yaml: None: expected a mapping with title, methods"),
     "a list": (E, "- a\n- b\n", "experiments.yaml: ['a', 'b']: expected a mapping"),
@@ -101,7 +101,7 @@ TEXTS = {
     "a map with NUL": (M, "..\0.\n", "figure2.txt: has a NUL character in line 1"),
 }
 
-# A file, words in it, what stands in their place, and what is told of it.
+# A file, words in it, what stands in their place, and the line that reports it.
 WORDS = {
     # Text
     "a title of two lines": (E, 'title: "', 'title: "a\\nb', "experiments.yaml: title: 'a\\nb"),
@@ -775,7 +775,7 @@ WORDS = {
     ),
 }
 
-# A planner's file, and what is told of it.
+# A planner's file, and the line that reports it.
 PLANNERS = {
     "a planner that is not Python": ("def plan(:\n", "walk.py: line 1: SyntaxError: "),
     "a planner that is empty": ("", "walk.py: no function plan; expected plan(problem, rng, *, <settings>)"),

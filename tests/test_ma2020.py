@@ -240,6 +240,6 @@ CUSP = [(0, 0), (1, 1), (0, 1), (1, 0)]
     [([SMOOTH], True, "+", 1), ([SMOOTH, STILL], True, "-", 2), ([CUSP], True, "-", 1), ([SMOOTH], False, "?", 0)],
 )
 def test_continuous_curvature(points, feasible, mark, count):
-    found = ma2020.continuous_curvature({"experiment": "environments"}, results(points, feasible), {})
+    found = ma2020.continuous_curvature({"experiment": "environments", "where": {}}, results(points, feasible), {})
     assert (found[0], found[2], found[3]) == (mark, None, count)
     assert count == 0 or found[1] == 0

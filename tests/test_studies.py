@@ -188,7 +188,9 @@ def test_a_bowl_holds_only_with_several_minima(monkeypatch, waves, mark):
     values = np.add.outer(side**2 - waves * np.cos(3 * side), side**2)
     monkeypatch.setattr(tharwat2018, "landscape", lambda *given: surface_of(values))
     runs = pd.DataFrame([{"planner": "chaotic_pso", "problem": "p", "workspace": "p", "samples": SAMPLES, "beta": BETA}])
-    answer = tharwat2018.bowl_with_local_minima({"experiment": "maps"}, {"maps": Results(runs, {"p": None}, pd.DataFrame())}, {})
+    answer = tharwat2018.bowl_with_local_minima(
+        {"experiment": "maps", "where": {}}, {"maps": Results(runs, {"p": None}, pd.DataFrame())}, {}
+    )
     assert answer[0] == mark
     assert answer[1] > 0.5
 

@@ -11,7 +11,7 @@ from snakemake.iocontainers import OutputFiles
 from studies import study
 
 from bezierplan.running import log
-from bezierplan.study import experiments, targets
+from bezierplan.study import experiments, reading, targets
 from bezierplan.study.checked import Fault
 
 SONG = study("song2016")
@@ -21,7 +21,7 @@ RULES = ("runs", "table", "all", "default")
 
 def fault(studies):
     with pytest.raises(Fault) as caught:
-        targets.check_names(studies, RULES)
+        reading.check_names(studies, RULES)
     assert "\n" not in str(caught.value)
     return str(caught.value)
 
@@ -33,11 +33,11 @@ def elsewhere(tmp_path, key):
 
 
 def test_studies_of_the_project_have_names_of_their_own():
-    targets.check_names(STUDIES, RULES)
+    reading.check_names(STUDIES, RULES)
 
 
 def test_fresh_name_is_taken(tmp_path):
-    targets.check_names(elsewhere(tmp_path, "my-study_2") | STUDIES, RULES)
+    reading.check_names(elsewhere(tmp_path, "my-study_2") | STUDIES, RULES)
 
 
 @pytest.mark.parametrize("key", ["x[1]", "{scale}", "a b", "2016", "$(date)", "..x"])
@@ -61,10 +61,10 @@ def test_folder_that_would_overwrite_results_of_a_study_is_told(tmp_path):
 
 def test_results_that_cannot_be_written_are_told(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    targets.check_folder()
+    reading.check_folder()
     (tmp_path / "results").touch()
     with pytest.raises(Fault, match="results: cannot be written"):
-        targets.check_folder()
+        reading.check_folder()
 
 
 HOSTILE = "a title\n\n.. include:: /etc/passwd\n\n.. raw:: html\n\n   <b>x</b> </script> `code`_ *bold* |sub| http://a.b {{ 7 * 7 }} \\"

@@ -1,4 +1,4 @@
-"""Figures of a landscape and of tracks on it: runs made again pass through what they passed through."""
+"""Figures of a landscape and of tracks on it: reproduced runs pass through what they passed through."""
 
 from pathlib import Path as File
 

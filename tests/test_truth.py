@@ -29,7 +29,7 @@ def plan(problem, rng):
     return ANSWER
 """
 
-# A method: what it answers, and the line that is told of it.
+# A method: what it answers, and the line that reports it.
 TOLD = {
     "ends_short": (
         'answer._replace(path=Path("polyline", points * 0.5))',

@@ -11,6 +11,7 @@ from fields import BENCHMARK_MAPS
 
 from bezierplan.running import problems
 from bezierplan.workspaces import files, random_circles
+from bezierplan.workspaces.geojson import polygons_from_geojson
 
 MAPS = Path(__file__).parent / "data" / "maps"
 SQUARE = [[4, 4], [6, 4], [6, 6], [4, 6], [4, 4]]
@@ -88,7 +89,7 @@ POLYGON_FAULTS = {
 def test_polygon_fault_is_told(fault):
     text, told = POLYGON_FAULTS[fault]
     with pytest.raises(ValueError, match=told) as caught:
-        files.polygons_from_geojson(text, "m")
+        polygons_from_geojson(text, "m")
     assert "\n" not in str(caught.value)
 
 
@@ -98,13 +99,13 @@ def test_no_obstacle_vanishes():
         {"properties": {"role": "obstacle", "id": 1}, "geometry": {"type": "Polygon", "coordinates": [moved(x, 0)]}} for x in (-3, 0, 3)
     ]
     border = json.loads(geojson())["features"]
-    found = files.polygons_from_geojson(json.dumps({"features": border + same}), "m")
+    found = polygons_from_geojson(json.dumps({"features": border + same}), "m")
     assert [ring.tolist() for (ring,) in found.obstacles] == [moved(x, 0)[:-1] for x in (-3, 0, 3)]
 
 
 def test_start_and_target_features_are_left_out():
     place = {"type": "Point", "coordinates": [1, 1]}
-    assert files.polygons_from_geojson(feature({"role": "start"}, place), "m").obstacles == ()
+    assert polygons_from_geojson(feature({"role": "start"}, place), "m").obstacles == ()
 
 
 def fifo(file):
@@ -154,7 +155,7 @@ def test_cell_beyond_all_coordinates_is_told(cell, tmp_path):
     "obstacles", [([SQUARE],), ([SQUARE], [moved(2, 0)]), ([moved(4, 0)],), ([SQUARE, [[4.5, 4.5], [5, 5], [5, 4.5], [4.5, 4.5]]],)]
 )
 def test_touching_polygons_and_holes_are_accepted(obstacles):
-    assert len(files.polygons_from_geojson(geojson(*obstacles), "m").obstacles) == len(obstacles)
+    assert len(polygons_from_geojson(geojson(*obstacles), "m").obstacles) == len(obstacles)
 
 
 CIRCLE_FAULTS = {

@@ -18,7 +18,7 @@ from bezierplan.workspaces.problem import Problem
 def benchmark_node_genetic() -> None:
     """The proposed mutation of meledje on the maps of the study, and on random maps of growing size.
 
-    Prepared once a map: the least energy of all paths, and up to `TABLE_CELLS` cells a table of all edges, whose size is told.
+    Prepared once a map: the least energy of all paths, and up to `TABLE_CELLS` cells a table of all edges, whose size is printed.
     """
     study = reading.load(reading.read_config({"studies": ["meledje"]}))["meledje"]
     maps = {name: (files.load(study.workspaces[name], study.folder), study.problems[name]["settings"]) for name in list(study.problems)[:4]}

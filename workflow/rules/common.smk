@@ -18,7 +18,7 @@ from bezierplan.study import alternatives, checked, experiments, page, reading, 
 
 try:
     STUDIES = reading.load(reading.read_config(config))
-    targets.check_folder()
+    reading.check_folder()
 except checked.Fault as fault:
     sys.exit(str(fault))
 

@@ -1,7 +1,7 @@
 # Names for what a user may want: everything, a scale, a study, a table or figure. `snakemake --list-target-rules` lists them.
 
 try:
-    targets.check_names(
+    reading.check_names(
         STUDIES, [*(rule.name for rule in workflow.rules), "all", "smoke", "extended", "alternatives", "readings", "default"]
     )
 except checked.Fault as fault:

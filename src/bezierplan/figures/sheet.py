@@ -131,7 +131,8 @@ def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, column
         headings, notes = [], []
         for number, panel in enumerate(panels):
             own = frame[frame["panel"] == number]
-            notes.append(kind_module(panel["kind"]).draw(grid.flat[number], own, scene, panel))
+            kind = kind_module(panel["kind"])
+            notes.append(kind.draw(grid.flat[number], own, scene, kind.Options.complete(panel)))
             letter = f"({string.ascii_lowercase[number]}) " if len(panels) > 1 else ""
             headings.append(letter + _title(panel, own, scene))
         for axes in grid.flat[len(panels) :]:

@@ -41,7 +41,7 @@ def draw(readings: pd.DataFrame, choices: list[str]) -> Figure:
 def _draw_curve(axes: Axes, ordered: pd.DataFrame) -> None:
     place = np.arange(len(ordered))
     axes.plot(place, ordered["in_range"], label="in range", marker="o", markersize=2.5, **style.OURS)
-    axes.plot(place, ordered["by_chance"], label="expected with the printed numbers exchanged", **style.REFERENCE)
+    axes.plot(place, ordered["by_chance"], label="expected with the printed numbers permuted", **style.REFERENCE)
     axes.axhline(ordered["numbers"].iloc[0], label="all", **style.BOUND)
     in_force = ordered.index[ordered["reading"] == "in force"]
     axes.plot(in_force, ordered["in_range"][in_force], label="the reading in force", **style.PUBLISHED_MARK)
@@ -56,4 +56,4 @@ def _draw_choices(axes: Axes, ordered: pd.DataFrame, rows: list[tuple[str, str]]
         axes.plot(made, np.full(len(made), row), linestyle="", marker="|", markersize=5, color=style.BLACK)
     axes.set_yticks(range(len(rows)), [f"{choice} = {value}" for choice, value in rows])
     axes.set_ylim(len(rows) - 0.5, -0.5)
-    axes.set_xlabel("reading, in the order of how many published numbers it explains")
+    axes.set_xlabel("reading, ordered by how many published numbers it explains")

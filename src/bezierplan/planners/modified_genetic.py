@@ -21,7 +21,7 @@ from bezierplan.planners.parts import gene_lists
 from bezierplan.planners.parts.gene_curves import MOST_POINTS, FitnessLength, validate
 from bezierplan.planners.parts.gene_lattice import Field, field_of, polygon
 from bezierplan.planners.parts.genetic import check_pairs
-from bezierplan.planners.prm import road_map
+from bezierplan.planners.prm import roadmap
 from bezierplan.workspaces.problem import Path, Problem
 
 workspaces = ("grid",)
@@ -211,7 +211,7 @@ def _from_roadmaps(
     for _ in range(most):
         if len(counts) == wanted:
             break
-        _, way, _ = road_map(problem, rng, nodes, neighbours)
+        _, way, _ = roadmap(problem, rng, nodes, neighbours)
         column, row = np.floor(problem.workspace.in_cells(way[1:-1])).astype(int).T
         line, place = (row, column) if field.by_rows else (column, row)
         genes = np.unique(line * field.places[0] + place)

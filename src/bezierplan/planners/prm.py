@@ -45,14 +45,14 @@ def plan(
 
     With the same generator, the nodes of a smaller roadmap are the first nodes of a larger one. Extra column: roads, the number of links.
     """
-    length, way, roads = road_map(problem, rng, nodes, None if links == "visible" else neighbours, d_min)
+    length, way, roads = roadmap(problem, rng, nodes, None if links == "visible" else neighbours, d_min)
     path = Path("polyline", way) if len(way) else None
     found = path is not None
     history = np.array([length])
     return Plan(path, length, claimed_feasible=found, evaluations=1, history=history, stop="direct", extra={"roads": roads})
 
 
-def road_map(
+def roadmap(
     problem: Problem, rng: np.random.Generator, nodes: int, neighbours: int | None, d_min: float = 0.0
 ) -> tuple[float, np.ndarray, int]:
     """Length and points (n, 2) of the shortest path along a random roadmap, infinite and empty if there is none, and the number of links.

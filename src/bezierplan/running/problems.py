@@ -7,6 +7,7 @@ octile_bound (the least of all lengths counted in cells, `cell_length`, in units
 """
 
 import math
+from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,8 +16,7 @@ import pyarrow.parquet as parquet
 
 from bezierplan.geometry import cell_length
 from bezierplan.geometry.region import blocks, region
-from bezierplan.workspaces import files, lattice, random_blocks, random_circles, random_field
-from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces import files, lattice, random_blocks
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem, Workspace
 
@@ -61,23 +61,20 @@ def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, st
 
     Map files are looked up in the folder. Raises ValueError for a fault in any of them.
     """
-    fixed = {name: files.load(each, folder) for name, each in job["workspaces"].items() if not each["kind"].startswith("random_")}
-    layouts: dict[tuple[str, int], Circles] = {}
+    from bezierplan.workspaces.kinds import kind_of
+
+    kinds = {name: kind_of(each) for name, each in job["workspaces"].items()}
+    fixed = {name: files.load(each, folder) for name, each in job["workspaces"].items() if hasattr(kinds[name], "load")}
     problems = {}
     for name, description in job["problems"].items():
         home = description["workspace"]
+        given = job["workspaces"][home], description, f"{job['study']}/{home}"
         if home in fixed:
             workspace = fixed[home]
-        elif job["workspaces"][home]["kind"] == "random_field":
-            workspace = random_field.field(job["workspaces"][home], description, f"{job['study']}/{home}")
-        elif job["workspaces"][home]["kind"] == "random_blocks":
-            workspace = _block_map(job["workspaces"][home], description, f"{job['study']}/{home}")
+        elif hasattr(kinds[home], "draw"):
+            workspace = kinds[home].draw(*given)
         else:
-            key = home, description["layout"]
-            if key not in layouts:
-                ends = [tuple(map(float, description[end])) for end in ("start", "target")]
-                layouts[key] = random_circles.layout(job["workspaces"][home], f"{job['study']}/{home}", description["layout"], ends)
-            workspace = random_circles.first(layouts[key], description["obstacles"])
+            workspace = _suitable(kinds[home].candidates(*given), job["workspaces"][home], description)
         if "scenario" in description:
             description = description | scenario(job["workspaces"][home], description["scenario"], workspace, folder)
         problems[name] = build(name, description, workspace)
@@ -105,15 +102,15 @@ def scenario(description: dict, number: int, workspace: Grid, folder: Path) -> d
 _SAME_LENGTH = 1e-4
 
 
-def _block_map(description: dict, problem: dict, name: str) -> Grid:
-    """The first map of blocks whose shortest path over the 8-connected lattice has the wanted length, in cells, if one is given.
+def _suitable(maps: Iterator[Grid], description: dict, problem: dict) -> Grid:
+    """The first of some maps whose shortest path over the 8-connected lattice has the wanted length, in cells, if one is given.
 
     Raises ValueError if there is none.
     """
     from bezierplan.geometry import shortest_paths
 
     wanted = description.get("lattice_length")
-    for grid in random_blocks.maps(description, problem, name):
+    for grid in maps:
         ends = lattice.lattice(grid, tuple(problem["start"]), tuple(problem["target"]), description["corners"])
         cells = (divmod(cell, problem["side"]) for cell in (ends.start, ends.target))
         length = shortest_paths.lattice_path(grid.occupied, *cells, ends.diagonal, description["corners"]).length + ends.ends

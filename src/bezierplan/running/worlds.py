@@ -10,15 +10,12 @@ import pyarrow as pa
 import pyarrow.parquet as parquet
 
 from bezierplan.running import problems as problem_files
-from bezierplan.workspaces import files, random_field, worlds
+from bezierplan.workspaces import random_field, worlds
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.random_circles import MOST_DRAWS
 from bezierplan.workspaces.seeds import generator
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World
-
-KINDS = ("moving_circles", "random_moving_circles", "random_moving_field", "changing_cells", "random_changing_cells")
-"""Kinds of workspace that are worlds."""
 
 
 def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, str], dict[str, World]]:
@@ -103,9 +100,11 @@ def _drawn_centres(rng: np.random.Generator, count: int, walls: tuple, ends: np.
 
 
 def _changing_cells(description: dict, problem: dict, folder: Path) -> ChangingCells:
-    given = {key: description[key] for key in ("cell", "unit")} | {"kind": "grid"}
+    from bezierplan.workspaces.kinds.grid import load
+
+    given = {key: description[key] for key in ("cell", "unit")}
     names = [description["file"], *(change["file"] for change in description["changes"])]
-    maps = tuple(files.load(given | {"file": file}, folder) for file in names)
+    maps = tuple(load(given | {"file": file}, folder) for file in names)
     for file, grid in zip(names, maps):
         if grid.occupied.shape != maps[0].occupied.shape:
             raise ValueError(f"changes: {file}: {grid.occupied.shape} cells, but {names[0]} has {maps[0].occupied.shape}")
@@ -135,7 +134,9 @@ _MOST_CHANGES = 1000
 
 def _random_changes(description: dict, problem: dict, name: str, folder: Path) -> ChangingCells:
     """At every `every`-th step as many random cells change as the problem has `obstacles`; start and target stay free, and connected."""
-    first = files.load({"kind": "grid", "unit": description["unit"], "cell": description["cell"], "file": description["file"]}, folder)
+    from bezierplan.workspaces.kinds.grid import load
+
+    first = load({key: description[key] for key in ("unit", "cell", "file")}, folder)
     ends = [first.cell_of(*map(float, problem[end])) for end in ("start", "target")]
     if None in ends:
         raise ValueError("start or target lies outside the map")

@@ -5,7 +5,6 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, PlainValidator, TypeAdapter, ValidationError
 
 from bezierplan.figures.panels import EACH, Panel, kinds
-from bezierplan.study.experiments import File
 from bezierplan.study.model import (
     ARGUMENTS,
     Arguments,
@@ -26,6 +25,7 @@ from bezierplan.study.model import (
     one_or_list,
     wrong,
 )
+from bezierplan.workspaces.kinds import File
 
 PublishedFile = Annotated[File, Names("published")]
 # A column of the runs table, `value` or `statistic`.

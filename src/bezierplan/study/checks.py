@@ -22,12 +22,12 @@ from bezierplan.study.checked import Fault, closest
 from bezierplan.study.claims import Assumption, Claim
 from bezierplan.study.definition import Study, files_of, relative
 from bezierplan.study.design import Design, in_first_variant
-from bezierplan.study.experiments import WORKSPACES
 from bezierplan.study.files import inside
 from bezierplan.study.jobs import job
 from bezierplan.study.model import Model, first_fault, named, one_or_list
 from bezierplan.study.planner_checks import asked, check_complete, check_settings, loaded
 from bezierplan.workspaces import files
+from bezierplan.workspaces.kinds import kinds
 from bezierplan.workspaces.problem import Problem
 
 
@@ -139,7 +139,7 @@ def _check_workspace(study: Study, name: str, place: str) -> None:
 def _check_problem(study: Study, built: Callable[[str], Problem], name: str, place: str) -> None:
     """Start and target are free; in the first layout if the workspace is random."""
     problem, home = study.problems[name], study.workspace_of(name)
-    drawn = [kind for kind, model in WORKSPACES.items() if model.drawn]
+    drawn = [kind for kind, model in kinds().items() if model.drawn]
     if bool(home.drawn) != (problem.layouts is not None):
         needed = (
             "layouts and obstacles are needed" if home.drawn else f"layouts and obstacles need a workspace of kind {' or '.join(drawn)}"
@@ -148,10 +148,10 @@ def _check_problem(study: Study, built: Callable[[str], Problem], name: str, pla
     if home.drawn and problem.start is None:
         raise Fault(f"{place}: start_cell: {problem.start_cell}: cells of drawn workspaces have no numbers; expected start: [x, y]")
     if home.with_side != (problem.side is not None):
-        with_side = [kind for kind, model in WORKSPACES.items() if model.with_side]
+        with_side = [kind for kind, model in kinds().items() if model.with_side]
         needed = "side is needed" if home.with_side else f"side needs a workspace of kind {' or '.join(with_side)}"
         raise Fault(f"{place}: workspace: {problem.workspace}: {needed}")
-    if home.kind in ("random_circles", "random_moving_circles") and max(problem.obstacles) > home.circles:
+    if home.drawn and hasattr(home, "circles") and max(problem.obstacles) > home.circles:
         raise Fault(f"{place}: obstacles: {max(problem.obstacles)}; expected at most {home.circles}, the circles of the workspace")
     try:
         built(name)

@@ -12,8 +12,9 @@ from bezierplan.planners import planner_module, planner_settings
 from bezierplan.running import worlds
 from bezierplan.study.artefacts import Figure, Pivot, Table
 from bezierplan.study.claims import Assumption, Claim
-from bezierplan.study.experiments import Experiment, Method, Policy, Problem, Workspace, Worth
+from bezierplan.study.experiments import Experiment, Method, Policy, Problem, Worth
 from bezierplan.workspaces import files
+from bezierplan.workspaces.kinds import Workspace, file_keys
 
 
 @dataclass(frozen=True)
@@ -140,7 +141,7 @@ class Study:
 def files_of(workspace: Workspace) -> dict[str, str]:
     """Files that a workspace is read from, by key."""
     changes = {f"changes: {number}: file": change.file for number, change in enumerate(getattr(workspace, "changes", []))}
-    return {key: getattr(workspace, key) for key in ("file", "heights", "scenarios") if getattr(workspace, key, None)} | changes
+    return {key: getattr(workspace, key) for key in file_keys(type(workspace)) if getattr(workspace, key)} | changes
 
 
 def relative(path: Path) -> str:

@@ -1,8 +1,7 @@
 """Models of `experiments.yaml`: methods, workspaces, problems, experiments."""
 
 import math
-from collections.abc import Iterator
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
@@ -13,11 +12,9 @@ from bezierplan.study.model import (
     Model,
     Name,
     NotNegative,
-    Number,
     Positive,
     Setting,
     Whole,
-    after,
     is_number,
     listed,
     mapping_or,
@@ -26,6 +23,7 @@ from bezierplan.study.model import (
     value,
     wrong,
 )
+from bezierplan.workspaces.kinds import File, Workspace, kinds, of_length
 
 SCALES = ("smoke", "full", "extended")
 
@@ -36,16 +34,7 @@ MOST_CONDITIONS = 100_000
 
 Settings = dict[Name, Setting]
 ProblemName = Annotated[str, matching(r"^[a-z0-9][a-z0-9_]*$", "a name of lower-case letters, digits and _")]
-File = Annotated[str, value(lambda given: isinstance(given, str) and given.isprintable() and 0 < len(given) <= 200, "the name of a file")]
-Point = Annotated[list[Number], after(lambda given: _of_length(given, 2, "[x, y]"))]
-Bounds = Annotated[list[Number], after(lambda given: _of_length(given, 4, "[x low, x high, y low, y high]"))]
-Circle = Annotated[list[Number], after(lambda given: _of_length(given, 3, "[x, y, radius]"))]
-
-
-def _of_length(given: list, length: int, expected: str) -> list:
-    if len(given) != length:
-        raise wrong(f"{given!r}: expected {expected}")
-    return given
+Point = of_length(2, "[x, y]")
 
 
 class Scales(Model):
@@ -106,224 +95,6 @@ class Policy(Model):
     step_seconds: Positive = Field(
         0.05, description="how long a step lasts, in seconds: metric `replans_late` counts the plans that take longer; left out: 0.05"
     )
-
-
-class Workspace(Model):
-    """Keys common to all workspaces. drawn: for a random workspace, the kind that planners see; made: for one converted from files of
-    another format, the kind that planners see; with_side: whether its problems have a `side`; moves: whether it is a world, in which runs
-    are simulated drives.
-    """
-
-    drawn: ClassVar[str | None] = None
-    made: ClassVar[str | None] = None
-    with_side: ClassVar[bool] = False
-    moves: ClassVar[bool] = False
-
-    unit: Line = Field(description="the name of the unit of length")
-
-
-class GridMap(Workspace):
-    """A map of cells."""
-
-    kind: Literal["grid"] = Field(description="grid")
-    file: File = Field(description="a map file in the study's folder")
-    cell: Positive = Field(description="the side of a cell, a number above 0")
-    heights: File = Field(description="a file of heights in the study's folder", default=None)
-
-
-class CircleMap(Workspace):
-    """Circles in a rectangle."""
-
-    kind: Literal["circles"] = Field(description="circles")
-    bounds: Bounds = Field(description="[x low, x high, y low, y high]")
-    circles: list[Circle] = Field(description="a list of [x, y, radius]")
-
-
-class PolygonMap(Workspace):
-    """Polygons in a rectangle."""
-
-    kind: Literal["polygons"] = Field(description="polygons")
-    file: File = Field(description="a GeoJSON file in the study's folder")
-
-
-class Raster(Workspace):
-    """Cells rasterized from polygons."""
-
-    made: ClassVar[str] = "grid"
-
-    kind: Literal["raster"] = Field(description="raster")
-    file: File = Field(description="a GeoJSON file in the study's folder")
-    cell: Positive = Field(description="the side of a cell, a number above 0")
-    rule: Literal["overlap", "centre"] = Field(
-        description="which cells are occupied: those that overlap an obstacle, or whose centre lies in one"
-    )
-
-
-class RosMap(Workspace):
-    """An image with the YAML file of ROS's map_server."""
-
-    made: ClassVar[str] = "grid"
-
-    kind: Literal["ros_map"] = Field(description="ros_map")
-    file: File = Field(description="the YAML file of a map_server map in the study's folder")
-    robot_radius: NotNegative = Field(0, description="by how much obstacles grow, a number of at least 0")
-    most_pixels: Annotated[int, value(lambda given: type(given) is int and given >= 1, "")] = Field(
-        None, description="the most pixels of an image, a whole number of at least 1"
-    )
-
-
-class MovingAiMap(Workspace):
-    """A map of the MovingAI benchmarks."""
-
-    made: ClassVar[str] = "grid"
-
-    kind: Literal["moving_ai"] = Field(description="moving_ai")
-    file: File = Field(description="a .map file in the study's folder")
-    scenarios: File = Field(None, description="a .scen file of the same map")
-
-
-class RandomCircles(Workspace):
-    """Layouts of circles at random places."""
-
-    drawn: ClassVar[str] = "circles"
-
-    kind: Literal["random_circles"] = Field(description="random_circles")
-    bounds: Bounds = Field(description="[x low, x high, y low, y high]")
-    radius: Positive = Field(description="the radius of every circle, a number above 0")
-    circles: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")] = Field(
-        description="how many circles a layout has, a whole number from 1 to 10000"
-    )
-
-
-class RandomField(Workspace):
-    """Fields of cells with circles at random places."""
-
-    drawn: ClassVar[str] = "grid"
-    with_side: ClassVar[bool] = True
-
-    kind: Literal["random_field"] = Field(description="random_field")
-    radius: Positive = Field(description="the radius of every circle as a share of the field's side, a number above 0")
-    clear_ends: NotNegative = Field(description="how many cells stay free between a circle and start or target, at least 0")
-
-
-class RandomBlocks(Workspace):
-    """Maps with blocks of cells at random places."""
-
-    drawn: ClassVar[str] = "grid"
-    with_side: ClassVar[bool] = True
-
-    kind: Literal["random_blocks"] = Field(description="random_blocks")
-    largest_block: Count = Field(description="the most cells of a block's side, a whole number of at least 1")
-    clear_ends: Count = Field(description="a whole number of at least 1: 1 keeps the cells of start and target free")
-    corners: Literal["free", "one", "none"] = Field(description="how many of the cells beside a diagonal step may be occupied")
-    lattice_length: Positive = Field(None, description="the length that the shortest lattice path must have, a number above 0")
-
-
-MovingCircle = Annotated[list[Number], after(lambda given: _of_length(given, 5, "[x, y, radius, x velocity, y velocity]"))]
-REFLECTED = "[x low, x high, y low, y high]; centres of circles that move are reflected there"
-
-
-class World(Workspace):
-    """Keys common to all worlds."""
-
-    moves: ClassVar[bool] = True
-
-    pace: Positive = Field(description="how far a robot drives in a step, in units, a number above 0")
-    steps: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")] = Field(
-        description="when a world ends and with it every drive, in steps, a whole number from 1 to 10000"
-    )
-
-
-class RandomMoving(World):
-    """Keys common to worlds with circles that move from random places in random directions."""
-
-    clear_ends: NotNegative = Field(description="how far start and target are from a circle at first, at least 0")
-    speed: NotNegative = Field(
-        description="how far every circle moves in a step, in units, a number of at least 0; their directions are random"
-    )
-
-
-class MovingCircleMap(World):
-    """Circles that move."""
-
-    made: ClassVar[str] = "circles"
-
-    kind: Literal["moving_circles"] = Field(description="moving_circles")
-    bounds: Bounds = Field(description=REFLECTED)
-    circles: list[MovingCircle] = Field(description="a list of [x, y, radius, x velocity, y velocity], velocities in units per step")
-
-
-class RandomMovingCircles(RandomMoving):
-    """Layouts of circles that move from random places in random directions."""
-
-    drawn: ClassVar[str] = "circles"
-
-    kind: Literal["random_moving_circles"] = Field(description="random_moving_circles")
-    bounds: Bounds = Field(description=REFLECTED)
-    radius: Positive = Field(description="the radius of every circle, a number above 0")
-    circles: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")] = Field(
-        description="how many circles a layout has, a whole number from 1 to 10000"
-    )
-
-
-class RandomMovingField(RandomMoving):
-    """Fields of cells with circles that move from random places in random directions."""
-
-    drawn: ClassVar[str] = "grid"
-    with_side: ClassVar[bool] = True
-
-    kind: Literal["random_moving_field"] = Field(description="random_moving_field")
-    radius: Positive = Field(description="the radius of every circle as a share of the field's side, a number above 0")
-
-
-class Change(Model):
-    """A moment at which the cells of a map change."""
-
-    file: File = Field(description="the map file that is in force from then on")
-    after: Positive = Field(
-        None, description="when: the share of its way that a robot on the shortest path from cell to cell has then covered, above 0"
-    )
-    at: Positive = Field(None, description="or when: a step, a number above 0")
-
-    @model_validator(mode="after")
-    def _check_moment(self) -> "Change":
-        if len(self.model_fields_set & {"after", "at"}) != 1:
-            raise wrong("expected either after or at")
-        return self
-
-
-class ChangingCellMap(World):
-    """A map whose cells change."""
-
-    made: ClassVar[str] = "grid"
-
-    kind: Literal["changing_cells"] = Field(description="changing_cells")
-    file: File = Field(description="a map file in the study's folder")
-    cell: Positive = Field(description="the side of a cell, a number above 0")
-    changes: list[Change] = Field(description="a list of {file, after} or {file, at}, in order of time", min_length=1)
-
-
-class RandomChangingCells(World):
-    """A map whose cells change at random; `obstacles` of a problem says how many at a time."""
-
-    drawn: ClassVar[str] = "grid"
-
-    kind: Literal["random_changing_cells"] = Field(description="random_changing_cells")
-    file: File = Field(description="a map file in the study's folder")
-    cell: Positive = Field(description="the side of a cell, a number above 0")
-    every: Count = Field(description="after how many steps as many cells change as a problem has obstacles, a whole number of at least 1")
-
-
-def _kinds(base: type[Workspace]) -> Iterator[type[Workspace]]:
-    """The models derived from one that have a kind."""
-    for model in base.__subclasses__():
-        if "kind" in model.model_fields:
-            yield model
-        yield from _kinds(model)
-
-
-WORKSPACES = {model.model_fields["kind"].annotation.__args__[0]: model for model in _kinds(Workspace)}
-"""Kind -> its model."""
 
 
 class Problem(Model):
@@ -428,9 +199,7 @@ class ExperimentsFile(Model):
         "`profile: {default: {}, tuned: {...}}`",
     )
     policies: dict[Name, Policy] = Field({}, description="name → what a robot does in a world that moves")
-    workspaces: dict[Name, Annotated[Workspace, one_of("kind", WORKSPACES)]] = Field(
-        description="name → kind, unit, and the keys of the kind"
-    )
+    workspaces: dict[Name, Annotated[Workspace, one_of("kind", kinds())]] = Field(description="name → kind, unit, and the keys of the kind")
     problems: dict[ProblemName, Problem] = Field(description="name → workspace, start and target", min_length=1)
     experiments: dict[Name, Experiment] = Field(description="name → problems × varied settings × methods × repeats", min_length=1)
     worth: Worth = Field(None, description="what the summary measures the study's methods against: a row of `worth.csv` for each method")

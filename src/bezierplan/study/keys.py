@@ -12,6 +12,8 @@ from bezierplan.figures import panels
 from bezierplan.running.digest import PACKAGE
 from bezierplan.study import artefacts, claims, experiments
 from bezierplan.study.model import Model, keys
+from bezierplan.workspaces import kinds as workspace_kinds
+from bezierplan.workspaces.kinds import changing_cells
 
 README = PACKAGE.parents[1] / "config" / "README.md"
 
@@ -20,8 +22,8 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
         ("The file", experiments.ExperimentsFile),
         ("A method or baseline", experiments.Method),
         ("A policy, for experiments in worlds that move", experiments.Policy),
-        ("A workspace has `kind`, and by kind", experiments.WORKSPACES),
-        ("A change of `changing_cells`", experiments.Change),
+        ("A workspace has `kind`, and by kind", workspace_kinds.kinds()),
+        ("A change of `changing_cells`", changing_cells.Change),
         ("A problem", experiments.Problem),
         ("An experiment", experiments.Experiment),
         ("`worth`", experiments.Worth),

@@ -80,6 +80,11 @@ def keys(model: type[Model]) -> dict[str, FieldInfo]:
     return {field.alias or name: field for name, field in model.model_fields.items()}
 
 
+def defaults(model: type[Model]) -> dict[str, Any]:
+    """Keys that a mapping can leave out -> the values that they then have, None for none."""
+    return {key: field.default for key, field in keys(model).items() if not field.is_required()}
+
+
 def plain(value: Any) -> Any:
     """Models as mappings, also inside lists and mappings."""
     if isinstance(value, Model):

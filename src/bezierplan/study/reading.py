@@ -2,7 +2,9 @@
 one line (`checked.Fault`).
 """
 
-from collections.abc import Mapping
+import os
+import re
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -92,3 +94,26 @@ def _read(folder: Path, name: str, model: type[M]) -> M | None:
     place = relative(file)
     inside(folder, file.name, place)
     return parsed(model, checked.read(file, place), place)
+
+
+def check_names(given: Mapping[str, Study], taken: Iterable[str]) -> None:
+    """Raise Fault for a study whose results or targets would clash with others. taken: names of rules and other targets."""
+    owners = dict.fromkeys(taken, "the workflow")
+    home = PACKAGE.parents[1] / "config" / "studies"
+    for key, study in given.items():
+        place = relative(study.folder)
+        if not re.fullmatch("[A-Za-z][A-Za-z0-9_-]*", key):
+            raise Fault(f"{place}: {key}: not a name of a study; expected letters, digits, _ and -, a letter first; rename the folder")
+        if (home / key).is_dir() and not (home / key).samefile(study.folder):
+            raise Fault(f"{place}: config/studies has a study {key} already, whose results this one would overwrite; rename the folder")
+        for target in [key, *(f"{key}_{item}" for item in [*study.tables, *study.figures])]:
+            if target in owners:
+                raise Fault(f"{place}: {target}: {owners[target]} has a target of this name already; rename the folder")
+            owners[target] = f"study {key}"
+
+
+def check_folder() -> None:
+    """Raise Fault unless results can be written below the working folder."""
+    for place in (Path(), Path("results")):
+        if place.exists() and not (place.is_dir() and os.access(place, os.W_OK | os.X_OK)):
+            raise Fault(f"{place.resolve()}: cannot be written; the workflow writes its results into results/ of the working folder")

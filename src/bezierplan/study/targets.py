@@ -7,15 +7,12 @@ Params hold everything that determines what a job writes, and nothing else: name
 calls, and digests of the content of maps and published numbers. So timestamps of sources do not matter.
 """
 
-import os
-import re
 from collections.abc import Iterable
 from pathlib import Path
 
 from bezierplan.running.digest import PACKAGE, content_digest, source_digest
 from bezierplan.study import alternatives, choices, definition, design, jobs
 from bezierplan.study.artefacts import Comparison, Pivot
-from bezierplan.study.checked import Fault
 from bezierplan.study.claims import Claim
 from bezierplan.study.definition import Study
 
@@ -58,12 +55,18 @@ def _planner(planner: str) -> str:
 
 def problems_params(given: Studies, scale: str, study: str, experiment: str) -> dict:
     """Params of the job that builds the problems of an experiment."""
+    job = jobs.problems_job(given[study], experiment, scale)
     return {
-        "job": jobs.problems_job(given[study], experiment, scale),
+        "job": job,
         "folder": definition.relative(given[study].folder),
         "maps": content_digest(*problem_maps(given, scale, study, experiment)),
-        "code": _code("worlds" if given[study].moves(experiment) else "problems"),
+        "code": _code("worlds" if given[study].moves(experiment) else "problems", *_kinds_of_workspace(job)),
     }
+
+
+def _kinds_of_workspace(job: dict) -> list[str]:
+    """Modules of the kinds of a job's workspaces, which are imported by name."""
+    return sorted({f"bezierplan.workspaces.kinds.{described['kind']}" for described in job["workspaces"].values()})
 
 
 def problem_maps(given: Studies, scale: str, study: str, experiment: str) -> list[str]:
@@ -157,7 +160,7 @@ def figure_params(given: Studies, scale: str, study: str, figure: str) -> dict:
         "job": _shown(given[study], figure, job),
         "folder": definition.relative(given[study].folder),
         "sources": content_digest(*inputs["maps"], *inputs["published"]),
-        "code": _code("figure", *sorted(kinds), module, *sorted(again)),
+        "code": _code("figure", *sorted(kinds), module, *sorted(again), *_kinds_of_workspace(job)),
     }
 
 
@@ -386,29 +389,6 @@ def worth_params(given: Studies, scale: str) -> dict:
 
 # ---------------------------------------------------------------------------------------------------------------------
 # Targets
-
-
-def check_names(given: Studies, taken: Iterable[str]) -> None:
-    """Raise Fault for a study whose results or targets would clash with others. taken: names of rules and other targets."""
-    owners = dict.fromkeys(taken, "the workflow")
-    home = PACKAGE.parents[1] / "config" / "studies"
-    for key, study in given.items():
-        place = definition.relative(study.folder)
-        if not re.fullmatch("[A-Za-z][A-Za-z0-9_-]*", key):
-            raise Fault(f"{place}: {key}: not a name of a study; expected letters, digits, _ and -, a letter first; rename the folder")
-        if (home / key).is_dir() and not (home / key).samefile(study.folder):
-            raise Fault(f"{place}: config/studies has a study {key} already, whose results this one would overwrite; rename the folder")
-        for target in [key, *(f"{key}_{item}" for item in [*study.tables, *study.figures])]:
-            if target in owners:
-                raise Fault(f"{place}: {target}: {owners[target]} has a target of this name already; rename the folder")
-            owners[target] = f"study {key}"
-
-
-def check_folder() -> None:
-    """Raise Fault unless results can be written below the working folder."""
-    for place in (Path(), Path("results")):
-        if place.exists() and not (place.is_dir() and os.access(place, os.W_OK | os.X_OK)):
-            raise Fault(f"{place.resolve()}: cannot be written; the workflow writes its results into results/ of the working folder")
 
 
 def files_of(given: Studies, scale: str, study: str, name: str) -> list[str]:

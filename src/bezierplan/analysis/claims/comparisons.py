@@ -9,7 +9,7 @@ import pandas as pd
 from bezierplan.analysis import comparison, metrics
 from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.effects import Comparison
-from bezierplan.analysis.claims.kinds import cell_column, kind_of, named_groups
+from bezierplan.analysis.claims.kinds import cell_column, kind_of, named_groups, option
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.analysis.claims.published import printed, rows_of_cell
 from bezierplan.analysis.results import pick, select
@@ -52,7 +52,7 @@ def _parts_of_artefact(check: dict, claim: dict, material: Material) -> list[dic
 
 def _groups_of_artefact(check: dict, claim: dict, material: Material) -> list:
     """Groups that an artefact shows, each once, in its order; all groups of the experiment if it does not select any."""
-    across = check.get("across", "method")
+    across = option(check, "across")
     groups = []
     for part in _parts_of_artefact(check, claim, material) or [{}]:
         if across in part.get("where", {}):
@@ -72,8 +72,8 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
     runs = _measured_runs(check, claim, material)
     if runs.empty:
         raise Untestable("no run is of the conditions that the claim names")
-    column, unit = cell_column(check), check.get("replicate", "repeat")
-    every, pool = check.get("every", []), check.get("pool", [])
+    column, unit = cell_column(check), option(check, "replicate")
+    every, pool = option(check, "every"), option(check, "pool") or []
     tables, printed_metric = _published_tables(check, claim, material), check.get("printed_metric", check["metric"])
     keys = ["experiment", *every, *pool, *([column] if column else []), *(key for _, table in tables for key in table if key in runs)]
     keys = list(dict.fromkeys(key for key in keys if key != "value"))
@@ -119,7 +119,7 @@ def _measured_runs(check: dict, claim: dict, material: Material) -> pd.DataFrame
     A condition on an outcome, such as `feasible: true`, keeps the other runs without a value (or as failed, if failures rank last): a
     place where no run satisfies it is kept.
     """
-    where = check.get("where", {})
+    where = option(check, "where")
     conditions = {column: wanted for column, wanted in where.items() if column not in metrics.METRICS}
     outcomes = {column: wanted for column, wanted in where.items() if column in metrics.METRICS}
     measured = []
@@ -152,7 +152,7 @@ def _picked(runs: pd.DataFrame, which: dict) -> pd.DataFrame:
 
 def _failure(check: dict) -> float:
     """The value of a run without one: dropped, worse than any other, or one for which the event is false."""
-    match check.get("failures", "drop"):
+    match option(check, "failures"):
         case "last":
             return np.inf
         case "count":
@@ -190,7 +190,7 @@ def _unit_table(rows: pd.DataFrame, unit: str, column: str | None) -> pd.DataFra
 def _is_boolean(check: dict, material: Material) -> bool:
     """Whether the metric is a boolean column that is not averaged over the runs of a unit."""
     runs = material.results[one_or_list(check["experiment"])[0]].runs
-    return check.get("replicate", "repeat") == "repeat" and check["metric"] in runs and pd.api.types.is_bool_dtype(runs[check["metric"]])
+    return option(check, "replicate") == "repeat" and check["metric"] in runs and pd.api.types.is_bool_dtype(runs[check["metric"]])
 
 
 def _shares_draws(check: dict, material: Material) -> bool:
@@ -200,7 +200,7 @@ def _shares_draws(check: dict, material: Material) -> bool:
 
 def _note(check: dict, rows: pd.DataFrame, column: str | None, cells: list) -> str:
     """A note where two groups are compared on their successful runs but differ in success rate (Fisher's exact test)."""
-    if len(cells) != 2 or check.get("failures", "drop") != "drop" or not metrics.METRICS[check["metric"]].feasible_only:
+    if len(cells) != 2 or option(check, "failures") not in (None, "drop") or not metrics.METRICS[check["metric"]].feasible_only:
         return ""
     from scipy import stats
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bezierplan.analysis import statistics
-from bezierplan.analysis.claims.kinds import kind_of
+from bezierplan.analysis.claims.kinds import kind_of, option
 from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED, TAIL
 from bezierplan.workspaces.seeds import generator
 
@@ -119,18 +119,18 @@ class Effect(NamedTuple):
 
 def _group_less_other(check: dict, points: np.ndarray, cells: tuple) -> np.ndarray:
     group, other = points[..., 0], points[..., 1]
-    return group / other - 1 if check.get("scale") == "relative" else group - other
+    return group / other - 1 if option(check, "scale") == "relative" else group - other
 
 
 def _gradient_of_groups(check: dict, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
-    if check.get("scale") != "relative":
+    if option(check, "scale") != "relative":
         return np.array([1.0, -1.0])
     return np.array([1.0, -ours[0] / ours[1]]) / ours[1] if ours[1] else None
 
 
 def on_claimed_side(check: dict, effects: np.ndarray, margin: float) -> np.ndarray:
     """Whether the effect points as claimed and exceeds the claimed least effect, if any."""
-    return SIDES[check["direction"]] * effects > check.get("least", 0)
+    return SIDES[check["direction"]] * effects > (option(check, "least") or 0)
 
 
 # Two cells: a group and the one that it is compared with.
@@ -164,7 +164,7 @@ def margin_of(check: dict, comparison: Comparison) -> float:
     if not isinstance(margin, dict):
         return margin
     own = margin["published"]
-    if check.get("scale") != "relative" and not comparison.boolean:
+    if option(check, "scale") != "relative" and not comparison.boolean:
         own *= abs(float(points(comparison, point_statistic(check))[kind_of(check).EFFECT.reference]))
     printed = effect(check, comparison.printed, comparison.cells)
     as_claimed = printed * SIDES.get(check.get("direction"), np.sign(printed)) > 0
@@ -173,8 +173,8 @@ def margin_of(check: dict, comparison: Comparison) -> float:
 
 def point_statistic(check: dict) -> str:
     """The statistic that represents a cell by one number."""
-    named = check.get("statistic", "rank")
-    return kind_of(check).EFFECT.statistic if named == "rank" else named
+    named = option(check, "statistic")
+    return kind_of(check).EFFECT.statistic if named in (None, "rank") else named
 
 
 # Values of units, statistics of cells, and their bootstrap.
@@ -222,7 +222,7 @@ def drawn_points(comparison: Comparison, statistic: str, name: str, size: int | 
 def drawn_effects(check: dict, comparison: Comparison, name: str) -> np.ndarray:
     """The effect of the check's statistic in bootstrap draws (DRAWS,), or their normal approximation; NaN with an empty cell."""
     statistic = point_statistic(check)
-    if comparison.boolean and statistic == "mean" and check.get("scale") != "relative" and len(comparison.cells) == 2:
+    if comparison.boolean and statistic == "mean" and option(check, "scale") != "relative" and len(comparison.cells) == 2:
         adjusted = [_adjusted_difference(*counted(stratum, comparison.paired), comparison.paired) for stratum in comparison.strata.values()]
         centre, variance = np.mean(adjusted, axis=0)
         return statistics.normal_draws(float(centre), math.sqrt(variance / len(adjusted)))

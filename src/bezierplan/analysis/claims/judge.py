@@ -77,7 +77,7 @@ import pandas as pd
 from bezierplan.analysis import metrics
 from bezierplan.analysis.claims import comparisons, effects, verdicts
 from bezierplan.analysis.claims.effects import Comparison, Finding
-from bezierplan.analysis.claims.kinds import OfRuns, kind_of
+from bezierplan.analysis.claims.kinds import OfRuns, kind_of, option
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.analysis.claims.variants import in_variant, variants, with_work
 from bezierplan.analysis.results import Results
@@ -204,7 +204,7 @@ def _findings(number: int, check: dict, claim: dict, name: str, material: Materi
     if not issubclass(kind.Options, OfRuns):
         found = kind.findings(check, claim, material)
         return [_Judged(number, check, primary, condition, words, None, finding) for condition, words, finding in found]
-    if _is_timed(check) and check.get("scale") != "relative":
+    if _is_timed(check) and option(check, "scale") != "relative":
         raise Untestable("absolute seconds say nothing about another machine")
     return [
         _Judged(
@@ -246,7 +246,7 @@ def _in_words(each: _Judged, deciding: list[_Judged]) -> verdicts.Marked:
 
 def _group_in_words(check: dict, group: Any) -> Any:
     """A group's name; for a number, with its column."""
-    return group if isinstance(group, str) else f"{group:g} {check.get('across', 'method').replace('_', ' ')}"
+    return group if isinstance(group, str) else f"{group:g} {option(check, 'across').replace('_', ' ')}"
 
 
 def _disagreement(judged: list[_Judged]) -> str:
@@ -277,7 +277,7 @@ def _shown(deciding: list[_Judged], holds: str) -> _Judged:
     against = [each for each in deciding if each.mark_family == "-"]
     if against:
         first = [each for each in against if each.number == against[0].number]
-        return max(first, key=lambda each: np.nan_to_num(abs(each.finding.effect - each.check.get("target", 0)), nan=np.inf))
+        return max(first, key=lambda each: np.nan_to_num(abs(each.finding.effect - (option(each.check, "target") or 0)), nan=np.inf))
     return max(deciding, key=p)
 
 
@@ -364,7 +364,7 @@ def _check_row(each: _Judged, material: Material) -> dict:
         "primary": each.primary,
         "test": check["test"],
         "metric": check.get("metric", ""),
-        "statistic": check.get("statistic", "rank") if "statistic" in kind_of(check).Options.model_fields else "",
+        "statistic": option(check, "statistic") or "rank" if "statistic" in kind_of(check).Options.model_fields else "",
         "unit": _unit(check, material),
         "condition": each.condition,
         "comparison": each.name,
@@ -386,5 +386,5 @@ def _unit(check: dict, material: Material) -> str:
     """The unit of a check's metric, or of the effect of a function; empty if neither is known."""
     if "effect_unit" in check:
         return check["effect_unit"]
-    experiments = [name for name in one_or_list(check.get("experiment", [])) if name in material.results]
+    experiments = [name for name in one_or_list(option(check, "experiment") or []) if name in material.results]
     return comparisons.unit_of(check["metric"], experiments, material) if experiments else ""

@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.claims import effects
+from bezierplan.analysis.claims.kinds import option
 
 # Statistics for a check that names none: the first that is printed for every cell is used.
 _ANY_STATISTIC = ("mean", "median", "unstated", "share", "count", "min", "max")
@@ -36,8 +37,8 @@ def printed(check: dict, found: Sequence[Sequence[Printed | None]]) -> tuple[np.
     rows = [(each.table, row) for each in found for row, _, _ in each.statistics.values()]
     if len(set(rows)) < len(rows):
         return nothing
-    named = check.get("statistic", "rank")
-    for statistic in _ANY_STATISTIC if named == "rank" else (named, "unstated"):
+    named = option(check, "statistic")
+    for statistic in _ANY_STATISTIC if named in (None, "rank") else (named, "unstated"):
         if all(statistic in each.statistics for each in found):
             values, runs = np.array([each.statistics[statistic][1:] for each in found]).T
             numbers = (values / runs if statistic == "count" else values).reshape(-1, cells).mean(axis=0)

@@ -3,7 +3,7 @@
 import itertools
 from typing import Any
 
-from bezierplan.analysis.claims.kinds import GROUP_KEYS
+from bezierplan.analysis.claims.kinds import GROUP_KEYS, option
 from bezierplan.study.model import one_or_list
 
 
@@ -31,7 +31,7 @@ def _places(check: dict, column: str) -> list[str]:
     """The keys of a check that hold values of a column."""
     if column in ("metric", "experiment"):
         return [column]
-    return list(GROUP_KEYS) if column == check.get("across", "method") else []
+    return list(GROUP_KEYS) if column == option(check, "across") else []
 
 
 def _names(check: dict, column: str) -> set:

@@ -72,7 +72,7 @@ def printed_over_bound(check: dict, results: dict[str, Results], published: dict
     """
     ratios, explained, fields = [], [], 0
     for name, table in (("fields100", "table2"), ("fields200", "table3")):
-        problems = select(results[name].runs, check.get("where", {})).drop_duplicates("problem")
+        problems = select(results[name].runs, check["where"]).drop_duplicates("problem")
         fields += len(problems)
         least = problems.groupby(["route", "obstacles"])["octile_bound"].mean()
         rivals = published[table][published[table]["method"] != "mga"]

@@ -139,7 +139,7 @@ def continuous_curvature(
 
     The effect is the largest jump of curvature at the joints of pieces; a path of one piece has no joints.
     """
-    runs = select(results[check["experiment"]].runs, check.get("where", {}))
+    runs = select(results[check["experiment"]].runs, check["where"])
     paths = [path_of(run) for _, run in runs[runs["feasible"].astype(bool)].iterrows()]
     jump = max((curves.curvature_jump(path) for path in paths), default=math.nan)
     moving = all(_least_speed(curves.bezier_pieces(path)) > STILL for path in paths)

@@ -167,7 +167,7 @@ def bowl_with_local_minima(
     from scipy import stats
 
     found = results[check["experiment"]]
-    surface = _landscape(found._replace(runs=select(found.runs, check.get("where", {}))))
+    surface = _landscape(found._replace(runs=select(found.runs, check["where"])))
     best = surface.loc[surface["fitness"].idxmin()]
     distance = np.hypot(surface["x"] - best["x"], surface["y"] - best["y"])
     correlation = float(stats.spearmanr(surface["fitness"], distance).statistic)
@@ -325,7 +325,7 @@ def several_homotopy_classes(
     A class counts if two or more runs end within 1 % of the shortest path that any run has in it: they have reached the same optimum.
     """
     found = results[check["experiment"]]
-    runs = select(found.runs, check.get("where", {}))
+    runs = select(found.runs, check["where"])
     classes = metrics.values(runs, "homotopy", found.problems)
     least = runs.groupby(classes)["length"].transform("min")
     converged = classes[runs["length"] <= least * (1 + CONVERGED)].value_counts()
@@ -342,7 +342,7 @@ def least_above(
     The effect is the share of bootstrap draws from our repeats in which it does; repeats with equal numbers start alike and are drawn
     together.
     """
-    runs = select(results[check["experiment"]].runs, check.get("where", {}))
+    runs = select(results[check["experiment"]].runs, check["where"])
     values = runs.pivot_table(index="repeat", columns="particles", values=check["metric"]).dropna()
     rng = generator("tharwat2018/C3")
     means = values.to_numpy()[rng.integers(len(values), size=(statistics.DRAWS, len(values)))].mean(axis=1)
@@ -357,7 +357,7 @@ def outliers_of_others_alone(
 
     The effect is the share of draws of `runs_drawn` runs of each map, in both variants, that do. With many runs, some are always outliers.
     """
-    runs = select(results[check["experiment"]].runs, check.get("where", {}))
+    runs = select(results[check["experiment"]].runs, check["where"])
     rng = generator("tharwat2018/C20")
     singer, others = np.zeros(statistics.DRAWS, dtype=bool), np.zeros(statistics.DRAWS, dtype=bool)
     for variant, name in itertools.product(("cpso1", "cpso2"), CHAOTIC):

@@ -4,8 +4,10 @@ Options are read at every start of the workflow, so these files import libraries
 need them.
 """
 
+import functools
 import importlib
-from functools import cache
+import inspect
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -24,6 +26,7 @@ from bezierplan.study.model import (
     Where,
     Whole,
     Workspace,
+    defaults,
     wrong,
 )
 
@@ -52,6 +55,18 @@ class Panel(Model):
     def place(self) -> str:
         """Where it stands in the list of panels in the file: the keys that lead to it."""
         return self._place
+
+    @classmethod
+    def filled(cls, data: Callable) -> Callable:
+        """The function `data` of a kind, called with the defaults of the options that a call leaves out."""
+        options = [name for name, each in inspect.signature(data).parameters.items() if each.kind is each.KEYWORD_ONLY]
+        left_out = {name: default for name, default in defaults(cls).items() if name in options}
+        return functools.wraps(data)(lambda *source, **given: data(*source, **(left_out | given)))
+
+    @classmethod
+    def complete(cls, panel: dict[str, Any]) -> dict[str, Any]:
+        """A panel as `draw` takes it: with the defaults of its kind, but without keys that have none."""
+        return {name: default for name, default in defaults(cls).items() if default is not None} | panel
 
 
 class RunsPanel(Panel):
@@ -103,7 +118,7 @@ def exactly_one(panel: Model, *keys: str) -> None:
         raise wrong(f"{' and '.join(given) or 'neither'}: expected either {' or '.join(keys)}")
 
 
-@cache
+@functools.cache
 def kinds() -> dict[str, type[Panel]]:
     """Kind of panel -> the options of its panels."""
     names = sorted(file.stem for file in Path(__file__).parent.glob("[!_]*.py"))

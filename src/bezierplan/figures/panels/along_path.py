@@ -36,7 +36,8 @@ class Options(RunsPanel):
     limit: Number = Field(None, description="the published limit, a number")
 
 
-def data(results: Results, *, pick: dict[str, Any], quantity: Literal["curvature"], limit: float | None = None) -> pd.DataFrame:
+@Options.filled
+def data(results: Results, *, pick: dict[str, Any], quantity: Literal["curvature"], limit: float | None) -> pd.DataFrame:
     """One row per sample of a path, uniform in its parameter; columns: those of `paths.picked`, quantity, limit, t (0 to 1), value.
 
     The value of curvature is its magnitude in 1/unit, empty where the speed is zero. Without a path, one row without t and value.

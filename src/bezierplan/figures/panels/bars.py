@@ -41,14 +41,15 @@ class Options(RunsPanel):
     )
 
 
+@Options.filled
 def data(
     results: Results,
     *,
     x: str,
     hue: str,
     metric: str,
-    statistic: Literal["mean", "median", "share"] = "mean",
-    below: Literal["share", "count"] = "share",
+    statistic: Literal["mean", "median", "share"],
+    below: Literal["share", "count"],
 ) -> pd.DataFrame:
     """One row per bar; columns: those of `lines.summary`, with x and hue by their own names, and bound.
 
@@ -74,17 +75,17 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     for number, (bar, look) in enumerate(zip(bars, style.bars(len(bars)))):
         own = frame[frame[hue] == bar]
         at = own[x].map(groups.index).to_numpy() + (number - (len(bars) - 1) / 2) * width
-        _draw_bars(axes, own, at, width, panel.get("below", "share"), look | {"label": style.printed(bar, hue, scene.labels)})
+        _draw_bars(axes, own, at, width, panel["below"], look | {"label": style.printed(bar, hue, scene.labels)})
     axes.set_xlim(-0.5, len(groups) - 0.5)
     names = [scene.labels.get(group, group) if isinstance(group, str) else f"{group:g}" for group in groups]
     if sum(map(len, names)) > _ONE_LINE:
         names = [name.replace(" ", "\n") for name in names]
     axes.set_xticks(range(len(groups)), names)
-    axes.tick_params(axis="x", length=0, pad=32 if panel.get("below") != "count" else 18)  # below the text under the bars
+    axes.tick_params(axis="x", length=0, pad=32 if panel["below"] != "count" else 18)  # below the text under the bars
     axes.set_xlabel(style.column_name(x, scene.labels))
-    axes.set_ylabel(axis_label(panel["metric"], scene, panel.get("statistic", "mean")))
+    axes.set_ylabel(axis_label(panel["metric"], scene, panel["statistic"]))
     axes.grid(visible=True, axis="y")
-    return f"below each bar: {panel.get('below', 'share')} of feasible runs"
+    return f"below each bar: {panel['below']} of feasible runs"
 
 
 def _draw_bars(axes: Axes, frame: pd.DataFrame, at: np.ndarray, width: float, counted: str, look: dict) -> None:

@@ -42,7 +42,8 @@ class Options(RunsPanel):
     limit: Number = Field(None, description="the published limit of the metric, a number")
 
 
-def data(results: Results, *, metric: str, by: str = "method", limits: bool = False, limit: float | None = None) -> pd.DataFrame:
+@Options.filled
+def data(results: Results, *, metric: str, by: str, limits: bool, limit: float | None) -> pd.DataFrame:
     """One row per part of a box; columns: those of `lines.constants`, `by` by its own name, runs and feasible_runs (counts), part, value.
 
     Parts: low and high (where the whiskers end), quartile1, median, quartile3; beyond, a value beyond the whiskers; mean; published, the
@@ -83,7 +84,7 @@ def _box(values: np.ndarray) -> list[tuple[str, float]]:
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     """Draw the rows of `data`, the first box on top; returns the note below the panel's title."""
-    by = panel.get("by", "method")
+    by = panel["by"]
     groups = style.in_order(frame[by], panel)
     own = [frame[frame[by] == group].groupby("part")["value"].apply(list).to_dict() for group in groups]
     _draw_boxes(axes, own)
@@ -96,7 +97,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     marks = {
         "beyond": {"color": style.BLUE, "marker": ".", "markersize": 1.6, "label": f"beyond {_REACH} interquartile ranges", "zorder": 1},
         "mean": {"color": style.RED, "marker": "x", "markersize": 4, "label": "mean", "zorder": 4},
-        "published_end": {"color": style.BLACK, "marker": "|", "markersize": 9, "label": "published least and largest value", "zorder": 5},
+        "published_end": {"color": style.BLACK, "marker": "|", "markersize": 9, "label": "published minimum and maximum", "zorder": 5},
         "published": {**style.PUBLISHED_MARK, "label": "published mean", "zorder": 5},
     }
     for part, look in marks.items():
@@ -112,7 +113,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 
 
 def _draw_far(axes: Axes, groups: list[dict[str, list[float]]], limits: list[float]) -> set[float]:
-    """Mark published means that would squeeze the boxes at the edge that they lie beyond, and return them.
+    """Mark published means that would compress the boxes at the edge of the scale that they lie beyond, and return them.
 
     groups: values by part. limits: other values that are shown.
     """
@@ -130,7 +131,7 @@ def _draw_far(axes: Axes, groups: list[dict[str, list[float]]], limits: list[flo
             above = value > high
             at = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "center", "ha": "right" if above else "left"}
             axes.annotate(f"{value:.4g}", (1.0 if above else 0.0, height), xytext=(-7 if above else 7, 0), zorder=5, **at)
-            edge = style.PUBLISHED_MARK | {"marker": ">" if above else "<", "label": "published mean, beyond the scale"}
+            edge = style.PUBLISHED_MARK | {"marker": ">" if above else "<", "label": "published mean, off the scale"}
             axes.plot(1.0 if above else 0.0, height, transform=axes.get_yaxis_transform(), clip_on=False, zorder=5, **edge)
     if far:
         # Ends of the scale: the threshold for far means, if there are any; otherwise everything shown, with a small margin.

@@ -27,7 +27,8 @@ class Options(RunsPanel):
     repeat: Whole = Field(0, description="which run of each method is shown, a whole number; left out: 0")
 
 
-def data(results: Results, *, repeat: int = 0) -> pd.DataFrame:
+@Options.filled
+def data(results: Results, *, repeat: int) -> pd.DataFrame:
     """One row per step; columns: problem, method, run (its id), step (its end), clearance (least distance to an obstacle in it, in units,
     negative inside a circle), arrived. Raises ValueError for runs of several problems.
     """

@@ -60,15 +60,16 @@ class Options(RunsPanel):
         return self
 
 
+@Options.filled
 def data(
     results: Results,
     *,
-    pick: dict[str, Any] | None = None,
-    hue: str | None = None,
-    statistic: Literal["mean", "median"] = "mean",
-    reference: bool = False,
-    until: int | None = None,
-    printed: str | None = None,
+    pick: dict[str, Any] | None,
+    hue: str | None,
+    statistic: Literal["mean", "median"],
+    reference: bool,
+    until: int | None,
+    printed: str | None,
 ) -> pd.DataFrame:
     """One row per generation, and with `hue` also per value of it. A run that stopped early keeps its last objective.
 
@@ -171,7 +172,7 @@ def _draw_one_run(axes: Axes, frame: pd.DataFrame) -> None:
 
 
 def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    hue, statistic = panel["hue"], panel.get("statistic", "mean")
+    hue, statistic = panel["hue"], panel["statistic"]
     groups = style.in_order(frame[hue], panel)
     looks = style.lines(groups)
     lines = [frame.loc[frame[hue] == group] for group in groups]
@@ -181,7 +182,7 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> st
         axes.plot(own["generation"], own["objective"], markevery=(number * step // len(groups), step), **look)
         if "printed" in own and np.isfinite(own["printed"].iloc[-1]):
             place = own["generation"].iloc[-1] * (1 - _MARK_STEP * (len(groups) - 1 - number))
-            mark = {"marker": look["marker"], "markerfacecolor": look["color"], "label": "published final mean, in the mark of its line"}
+            mark = {"marker": look["marker"], "markerfacecolor": look["color"], "label": "published final mean, with the mark of its line"}
             axes.plot(place, own["printed"].iloc[-1], clip_on=False, zorder=5, **(style.PUBLISHED_MARK | mark))
     axes.set_ylabel(f"{statistic} objective ({scene.unit})")
     axes.set_box_aspect(style.HIGH_PANEL_HEIGHT)

@@ -37,7 +37,8 @@ class Options(RunsPanel):
     printed: Line = Field(None, description="the name of a published table whose mean ranks are shown besides")
 
 
-def data(results: Results, *, metric: str = "objective", printed: str | None = None) -> pd.DataFrame:
+@Options.filled
+def data(results: Results, *, metric: str, printed: str | None) -> pd.DataFrame:
     """One row per rank; columns: method, part, value, until, methods and units (counts), chi2, p_value, difference.
 
     Parts: rank (the mean rank of a method, 1 for the lowest values; ties share the mean of their ranks), published (that of the

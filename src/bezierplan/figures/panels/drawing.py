@@ -61,7 +61,8 @@ class Options(TablePanel):
     y_label: Line = Field(None, description="what the panel's height shows, with its unit")
 
 
-def data(marks: pd.DataFrame, *, x_label: str | None = None, y_label: str | None = None) -> pd.DataFrame:
+@Options.filled
+def data(marks: pd.DataFrame, *, x_label: str | None, y_label: str | None) -> pd.DataFrame:
     """One row per mark, or per point of a line or arrow, with `COLUMNS` and the function's own extra columns, in drawing order.
 
     mark: cell (a box about x, y of a width and a height), circle (about x, y, of a radius), line and arrow (through the points of a group),

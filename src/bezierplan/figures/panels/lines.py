@@ -47,15 +47,16 @@ class Options(TablePanel):
         return self
 
 
+@Options.filled
 def data(
     source: Results | pd.DataFrame,
     *,
     x: str,
     metric: str,
-    statistic: Literal["mean", "median", "share"] = "mean",
-    hue: str | None = None,
-    repeats: Sequence[int] = (),
-    joined: bool = True,
+    statistic: Literal["mean", "median", "share"],
+    hue: str | None,
+    repeats: Sequence[int],
+    joined: bool,
 ) -> pd.DataFrame:
     """One row per point; columns: hue (if one is given) and x, both by their own names; part (statistic, repeat or value), value.
 
@@ -161,12 +162,12 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     """Draw the rows of `data`; returns the note below the panel's title."""
     x, hue = panel["x"], panel.get("hue")
     of_runs = "experiment" in panel
-    statistic = panel.get("statistic", "mean") if of_runs else ""
+    statistic = panel["statistic"] if of_runs else ""
     groups = [None] if hue is None else style.in_order(frame[hue], panel)
     for number, (group, look) in enumerate(zip(groups, style.lines(groups))):
         own = frame if hue is None else frame[frame[hue] == group]
         label = statistic if hue is None else style.printed(group, hue, scene.labels)
-        if of_runs and not panel.get("joined", True):
+        if of_runs and not panel["joined"]:
             aside = _SPREAD * ((number + 0.5) / len(groups) - 0.5)
             _draw_apart(axes, own[own["part"] == "statistic"], x, aside, look | {"label": label})
         elif of_runs:
@@ -174,7 +175,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
             _draw_repeats(axes, own[own["part"] == "repeat"], x, None if hue is None else look["color"])
         else:
             axes.plot(own[x], own["value"], label=label or None, **_joined(look, len(own)))
-    if not panel.get("joined", True):
+    if not panel["joined"]:
         axes.set_xticks(sorted(frame[x].unique()))
     elif (frame[x] % 1 == 0).all():
         axes.xaxis.get_major_locator().set_params(integer=True)

@@ -57,7 +57,7 @@ _LOOK = {
     },
     "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull of the control points", "zorder": 2},
     "bound": {**style.BOUND, "label": "exact shortest path", "zorder": 4},
-    "optimum": {"color": style.BLACK, "linestyle": (0, (5, 1.5)), "linewidth": 0.9, "label": "shortest from cell to cell", "zorder": 4},
+    "optimum": {"color": style.BLACK, "linestyle": (0, (5, 1.5)), "linewidth": 0.9, "label": "shortest between cell centres", "zorder": 4},
     "collision": {"color": style.BLACK, "linestyle": "", "marker": "X", "markersize": 8, "label": "first collision", "zorder": 6},
     "start": workspaces.START,
     "target": workspaces.TARGET,
@@ -160,20 +160,21 @@ class Options(RunsPanel):
         return self
 
 
+@Options.filled
 def data(
     results: Results | None,
     *,
-    pick: dict[str, Any] | None = None,
-    explicit: dict[str, Any] | None = None,
-    hue: str | None = None,
-    control: Literal["all", "points", "none"] = "all",
-    measure: str = "length",
-    bare: bool = False,
-    letters: Sequence[str] | None = None,
-    changed_from: str | None = None,
-    cell_optimum: bool = False,
-    printed: str | None = None,
-    view: Sequence[float] | None = None,
+    pick: dict[str, Any] | None,
+    explicit: dict[str, Any] | None,
+    hue: str | None,
+    control: Literal["all", "points", "none"],
+    measure: str,
+    bare: bool,
+    letters: Sequence[str] | None,
+    changed_from: str | None,
+    cell_optimum: bool,
+    printed: str | None,
+    view: Sequence[float] | None,
 ) -> pd.DataFrame:
     """What is drawn of a path: one row per point, in the order in which points are joined.
 
@@ -311,7 +312,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     if "hue" in panel:
         note = _draw_side_by_side(axes, frame, scene, panel)
     else:
-        note = "" if "explicit" in panel or panel.get("bare") else _note(frame, workspace.unit, scene.narrow)
+        note = "" if "explicit" in panel or panel["bare"] else _note(frame, workspace.unit, scene.narrow)
         draw_parts(axes, frame, narrow=scene.narrow, clip="view" in panel)
     for part, letter in zip(("start", "target"), panel.get("letters", ())):
         _write_letter(axes, frame.loc[frame["part"] == part, ["x", "y"]].iloc[0].to_numpy(dtype=float), letter)
@@ -348,7 +349,6 @@ def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict)
     """Draw the paths of all values of hue, each in its own style, and what belongs to their problem once; returns their measures."""
     hue = panel["hue"]
     values = style.in_order(frame[hue], panel)
-    measure = panel.get("measure", "length")
     given = []
     # The first path is the widest, so that paths on top do not hide it.
     widths = np.linspace(_WIDEST, _NARROWEST, len(values))
@@ -361,7 +361,7 @@ def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict)
         given.append(f"{name} {_decimal(own['measure'].iloc[0])}" if len(path) else f"{name} no path")
     once = frame[frame["part"].isin(["start", "target", "bound"])].drop_duplicates(["part", "x", "y"])
     draw_parts(axes, once, narrow=scene.narrow, clip="view" in panel)
-    return f"{axis_label(measure, scene)}: {', '.join(given)}"
+    return f"{axis_label(panel['measure'], scene)}: {', '.join(given)}"
 
 
 def draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> None:
@@ -390,7 +390,7 @@ def _note(frame: pd.DataFrame, unit: str, narrow: bool) -> str:
         lines.append(f"shortest printed {row['printed']:.2f} {unit}")
     if (frame["part"] == "optimum").any():
         cells, bound = (_joined(frame[frame["part"] == part]) for part in ("optimum", "bound"))
-        lines.append(f"shortest from cell to cell {cells:.2f}, at any angle {bound:.2f}")
+        lines.append(f"shortest between cell centres {cells:.2f}, at any angle {bound:.2f}")
     return run_note(frame, *lines)
 
 

@@ -120,7 +120,7 @@ def show(axes: Axes, frame: pd.DataFrame) -> None:
         axes.plot(own["x"], own["y"], color="0.55", linewidth=0.8, linestyle=(0, (3, 1.5)), zorder=2.5, label="dropped plan")
     looks = {
         "plan": {"color": style.BLUE, "linewidth": 1.2, "linestyle": (0, (5, 1.5)), "zorder": 3, "label": "current plan"},
-        "way": {"color": style.RED, "linewidth": 1.8, "zorder": 3.5, "label": "way driven"},
+        "way": {"color": style.RED, "linewidth": 1.8, "zorder": 3.5, "label": "path driven"},
         "start": workspaces.START,
         "target": workspaces.TARGET,
         "robot": {"color": style.RED, "linestyle": "", "marker": "o", "markersize": 5, "zorder": 5, "label": "robot"},

@@ -44,7 +44,8 @@ class Options(RunsPanel):
     point: Whole = Field(None, description="the number of the control point whose way is drawn, at least 0; left out: first and last path")
 
 
-def data(source: Results | tuple[Results, pd.DataFrame], *, by: str, runs: int, point: int | None = None) -> pd.DataFrame:
+@Options.filled
+def data(source: Results | tuple[Results, pd.DataFrame], *, by: str, runs: int, point: int | None) -> pd.DataFrame:
     """What is drawn, one row per place; columns: problem, method, candidates (feasible runs), groups (values of the metric among them),
     part, run (its id), length (of the run's path, in units), iteration, x, y (in the workspace's unit), objective (of nodes, in units).
 

@@ -50,7 +50,8 @@ class Options(Panel):
     embed: Flag = Field(False, description="whether a grid is put into one of a power of two of rows and columns, true or false")
 
 
-def data(workspace: Workspace, *, numbers: Literal["all", "free", "none"] = "none", embed: bool = False) -> pd.DataFrame:
+@Options.filled
+def data(workspace: Workspace, *, numbers: Literal["all", "free", "none"], embed: bool) -> pd.DataFrame:
     """What is drawn of a workspace, in its unit: one row per corner of its bounds, cell, circle, or point of a ring.
 
     Columns: part (corner, free, occupied, surplus, circle, ring), x, y (a cell's or circle's centre), size (a cell's side, a circle's

@@ -33,6 +33,7 @@ from bezierplan.study.model import (
     Model,
     Positive,
     Where,
+    defaults,
     is_number,
     listed,
     mapping_or,
@@ -145,7 +146,17 @@ def kind_of(check: Mapping[str, Any]) -> ModuleType:
 def cell_column(check: Mapping[str, Any]) -> str | None:
     """The column whose values are the cells; None for a kind with one cell."""
     key = kind_of(check).Options.cells_key
-    return check.get(key, "method") if key else None
+    return option(check, key) if key else None
+
+
+def option(check: Mapping[str, Any], key: str) -> Any:
+    """The value of a key of a check: as written, or the default of its kind of test; None if there is neither."""
+    return check[key] if key in check else _defaults(check["test"]).get(key)
+
+
+@cache
+def _defaults(test: str) -> dict[str, Any]:
+    return defaults(kinds()[test])
 
 
 @cache

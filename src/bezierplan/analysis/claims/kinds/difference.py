@@ -28,7 +28,7 @@ from bezierplan.analysis.claims.effects import (
     too_few,
     units,
 )
-from bezierplan.analysis.claims.kinds import PAIRED, SECONDARY, Comparing, Group, lower
+from bezierplan.analysis.claims.kinds import PAIRED, SECONDARY, Comparing, Group, lower, option
 from bezierplan.study.model import Flag, listed
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ def _range(check: dict, points: np.ndarray, cells: tuple) -> np.ndarray:
     """The range of more than two groups, relative to their mean if so asked; the difference of two."""
     if len(cells) == 2:
         return BETWEEN_GROUPS.of(check, points, cells)
-    return np.ptp(points, axis=-1) / (points.mean(axis=-1) if check.get("scale") == "relative" else 1)
+    return np.ptp(points, axis=-1) / (points.mean(axis=-1) if option(check, "scale") == "relative" else 1)
 
 
 def _gradient(check: dict, ours: np.ndarray, cells: tuple) -> np.ndarray | None:

@@ -30,7 +30,7 @@ from bezierplan.analysis.claims.effects import (
     units,
     why_none,
 )
-from bezierplan.analysis.claims.kinds import GROUPS, POOL, SECONDARY, THAN, Columns, Comparing, Groups
+from bezierplan.analysis.claims.kinds import GROUPS, POOL, SECONDARY, THAN, Columns, Comparing, Groups, option
 from bezierplan.analysis.statistics import WITHOUT_INTERVAL
 from bezierplan.study.model import Number
 
@@ -58,7 +58,7 @@ def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
 
 def claimed(check: dict, effects: np.ndarray, margin: float) -> np.ndarray:
     """Whether the effect, less the target, lies within the margin."""
-    return np.abs(effects - check.get("target", 0)) <= margin
+    return np.abs(effects - option(check, "target")) <= margin
 
 
 EFFECT = BETWEEN_GROUPS._replace(claimed=claimed)
@@ -76,11 +76,11 @@ def find(check: dict, comparison: Comparison, name: str) -> Finding:
     draws = drawn_effects(check, comparison, name)
     low, high = interval(draws)
     toward = 1 if bool(claimed(check, ours, margin)) else -1
-    beyond = draws - check.get("target", 0)
+    beyond = draws - option(check, "target")
     if math.isnan(low):
         p = math.nan
     elif toward > 0:
         p = float(max(np.mean(beyond <= -margin), np.mean(beyond >= margin)))
     else:
-        p = min(1.0, 2 * float(np.mean(beyond <= margin) if ours > check.get("target", 0) else np.mean(beyond >= -margin)))
+        p = min(1.0, 2 * float(np.mean(beyond <= margin) if ours > option(check, "target") else np.mean(beyond >= -margin)))
     return Finding(ours, "difference", ours, low, high, n, p, toward, margin, reason=why_none(ours))

@@ -11,7 +11,7 @@ import math
 from pydantic import Field
 
 from bezierplan.analysis.claims.effects import Finding
-from bezierplan.analysis.claims.kinds import EXPERIMENT, Check
+from bezierplan.analysis.claims.kinds import EXPERIMENT, Check, option
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.study.checked import Fault, closest
 from bezierplan.study.model import ARGUMENTS, Arguments, Experiment, Function, Line, Metric, Where, listed, one_or_list
@@ -31,11 +31,12 @@ class Options(Check):
 
 def findings(check: dict, claim: dict, material: Material) -> list[tuple[str, str, Finding]]:
     """The function's finding. Raises Untestable if the experiment was not run, Fault if there is no function of that name."""
-    for experiment in one_or_list(check.get("experiment", [])):
+    for experiment in one_or_list(option(check, "experiment") or []):
         if experiment not in material.results:
             raise Untestable(f"the experiment {experiment} was not run")
     if check["name"] not in material.functions:
         raise Fault(f"claim {claim['id']}: function {check['name']}: unknown{closest(check['name'], material.functions)}")
-    mark, effect, interval, n = material.functions[check["name"]](check, material.results, material.published, **check.get("arguments", {}))
+    given = check | {"where": option(check, "where")}, material.results, material.published
+    mark, effect, interval, n = material.functions[check["name"]](*given, **option(check, "arguments"))
     low, high = interval or (math.nan, math.nan)
     return [("", check["name"], Finding(effect, check["effect"], effect, low, high, n, mark=mark))]

@@ -58,6 +58,7 @@ from bezierplan.analysis.claims.kinds import (
     Comparing,
     Group,
     Groups,
+    option,
 )
 from bezierplan.analysis.claims.ranks import rank_test, wins
 from bezierplan.analysis.statistics import WITHOUT_INTERVAL
@@ -110,7 +111,7 @@ def find(check: dict, comparison: Comparison, name: str) -> Finding:
     if point_statistic(check) in WITHOUT_INTERVAL:
         found = by_draws(check, comparison, name)
         return found if abs(ours) >= found.margin else found._replace(mark="?")
-    side, least = SIDES[check["direction"]], check.get("least", 0)
+    side, least = SIDES[check["direction"]], option(check, "least") or 0
     margin = margin_of(check, comparison)
     draws = drawn_effects(check, comparison, name)
     low, high = interval(draws)
@@ -119,8 +120,8 @@ def find(check: dict, comparison: Comparison, name: str) -> Finding:
         toward = 0
     (stratum, *others) = comparison.strata.values()
     group, other = counted(stratum, comparison.paired)
-    named = check.get("statistic", "rank")
-    if others or named not in ("rank", "mean") or (comparison.boolean and "least" in check):
+    named = option(check, "statistic")
+    if others or named not in (None, "rank", "mean") or (comparison.boolean and "least" in check):
         p = two_sided(side * draws - least)
     elif comparison.boolean:
         p = _boolean_test(group, other, comparison.paired)
@@ -156,8 +157,8 @@ def _shifted(check: dict, group: np.ndarray, other: np.ndarray) -> tuple[np.ndar
     finite = np.concatenate([values[np.isfinite(values)] for values in (group, other)])
     worst = finite.max() + 2 * np.ptp(finite) + 1
     group, other = (np.where(np.isinf(values), worst, values) for values in (group, other))
-    move = SIDES[check["direction"]] * check.get("least", 0)
-    return group, other * (1 + move) if check.get("scale") == "relative" else other + move
+    move = SIDES[check["direction"]] * (option(check, "least") or 0)
+    return group, other * (1 + move) if option(check, "scale") == "relative" else other + move
 
 
 def _boolean_test(group: np.ndarray, other: np.ndarray, paired: bool) -> float:

@@ -32,7 +32,7 @@ from bezierplan.analysis.claims.effects import (
     two_sided,
     why_none,
 )
-from bezierplan.analysis.claims.kinds import MARGIN, PAIRED, SCALE, WORK, Margin, OfRuns
+from bezierplan.analysis.claims.kinds import MARGIN, PAIRED, SCALE, WORK, Margin, OfRuns, option
 from bezierplan.analysis.claims.ranks import signed_rank_test
 from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED
 from bezierplan.study.model import Column, Flag, Metric
@@ -70,11 +70,11 @@ def _weights(x: np.ndarray) -> np.ndarray:
 def _change(check: dict, points: np.ndarray, cells: tuple) -> np.ndarray:
     """The change from the lowest x to the highest; if relative, as a share of the value at the lowest."""
     change = points @ _weights(np.array(cells, dtype=float))
-    return change / points[..., 0] if check.get("scale") == "relative" else change
+    return change / points[..., 0] if option(check, "scale") == "relative" else change
 
 
 def _gradient(check: dict, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
-    reference = ours[0] if check.get("scale") == "relative" else 1.0
+    reference = ours[0] if option(check, "scale") == "relative" else 1.0
     return _weights(np.array(cells, dtype=float)) / reference if reference else None
 
 
@@ -97,7 +97,7 @@ def find(check: dict, comparison: Comparison, name: str) -> Finding:
     if statistic == "mean":
         slope = float(slopes.mean())
         changes = slopes * np.ptp(x)
-        if check.get("scale") == "relative":
+        if option(check, "scale") == "relative":
             changes = changes / ours[0] if ours[0] else np.full(n, np.nan)
         change = float(changes.mean())
         if n > MOST_RESAMPLED:

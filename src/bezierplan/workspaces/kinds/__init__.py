@@ -1,0 +1,116 @@
+"""One file per kind of workspace: `Options`, the keys of its description, and how it is made.
+
+| name | means |
+| --- | --- |
+| `Options` | the keys that a description of this kind may have |
+| `load(description, folder)` | the workspace of a description, if it is fixed; files are looked up in a folder |
+| `sources(description, folder)` | the files from which it is read, if they are more than those that its keys name |
+| `draw(description, problem, name)` | the workspace of a problem, if it is random; seeded by the name of study and workspace |
+| `candidates(description, problem, name)` | in place of `draw`, workspaces of which the first with a suitable lattice path is taken |
+
+A description is a mapping, as written in experiments.yaml; coordinates are in its unit, at most 1e5 in absolute value. Worlds are made from
+their descriptions in `running.worlds`, since some need shortest paths. All faults are ValueErrors of one line.
+"""
+
+import importlib
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import cache
+from pathlib import Path
+from types import ModuleType
+from typing import Annotated, Any, ClassVar
+
+from pydantic import Field
+
+from bezierplan.study.model import Line, Model, NotNegative, Number, Positive, after, keys, value, wrong
+from bezierplan.workspaces.text_file import read_text
+
+_IS_FILE = value(lambda given: isinstance(given, str) and given.isprintable() and 0 < len(given) <= 200, "the name of a file")
+File = Annotated[str, _IS_FILE]
+
+
+def of_length(length: int, expected: str) -> Any:
+    """A type of list of so many numbers."""
+
+    def check(given: list) -> list:
+        if len(given) != length:
+            raise wrong(f"{given!r}: expected {expected}")
+        return given
+
+    return Annotated[list[Number], after(check)]
+
+
+Bounds = of_length(4, "[x low, x high, y low, y high]")
+CircleCount = Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")]
+
+# Descriptions of keys shared by several kinds.
+REFLECTED = "[x low, x high, y low, y high]; centres of circles that move are reflected there"
+CIRCLES = "how many circles a layout has, a whole number from 1 to 10000"
+
+
+class Workspace(Model):
+    """Keys common to all workspaces. drawn: for a random workspace, the kind that planners see; made: for one converted from files of
+    another format, the kind that planners see; with_side: whether its problems have a `side`; moves: whether it is a world, in which runs
+    are simulated drives.
+    """
+
+    drawn: ClassVar[str | None] = None
+    made: ClassVar[str | None] = None
+    with_side: ClassVar[bool] = False
+    moves: ClassVar[bool] = False
+
+    kind: Line = Field(description="the name of a file in `src/bezierplan/workspaces/kinds`")
+    unit: Line = Field(description="the name of the unit of length")
+
+
+class World(Workspace):
+    """Keys common to all worlds."""
+
+    moves: ClassVar[bool] = True
+
+    pace: Positive = Field(description="how far a robot drives in a step, in units, a number above 0")
+    steps: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")] = Field(
+        description="when a world ends and with it every drive, in steps, a whole number from 1 to 10000"
+    )
+
+
+class RandomMoving(World):
+    """Keys common to worlds with circles that move from random places in random directions."""
+
+    clear_ends: NotNegative = Field(description="how far start and target are from a circle at first, at least 0")
+    speed: NotNegative = Field(
+        description="how far every circle moves in a step, in units, a number of at least 0; their directions are random"
+    )
+
+
+def kind_of(description: dict) -> ModuleType:
+    """The file of a description's kind of workspace."""
+    return importlib.import_module(f"{__name__}.{description['kind']}")
+
+
+@cache
+def kinds() -> dict[str, type[Workspace]]:
+    """Kind of workspace -> the keys of its descriptions; fixed ones first, then random ones, then worlds."""
+    names = [file.stem for file in Path(__file__).parent.glob("[!_]*.py")]
+    found = {name: kind_of({"kind": name}).Options for name in names}
+    return dict(sorted(found.items(), key=lambda each: (each[1].moves, bool(each[1].drawn), each[0])))
+
+
+def file_keys(options: type[Workspace]) -> list[str]:
+    """The keys of a kind that name files."""
+    return [key for key, field in keys(options).items() if _IS_FILE in field.metadata]
+
+
+def text(description: dict, key: str, folder: Path) -> str:
+    """The text of the file that a key of a description names. Raises ValueError, naming key and file."""
+    with naming(f"{key}: {description[key]}"):
+        return read_text(folder / description[key])
+
+
+@contextmanager
+def naming(file: str) -> Iterator[None]:
+    """Prefix the message of a ValueError with the name of a file, or with a key and the file."""
+    try:
+        yield
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from None

@@ -1,0 +1,40 @@
+"""Circles in a rectangle."""
+
+from pathlib import Path
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.kinds import Bounds, Workspace, of_length
+from bezierplan.workspaces.limits import check_bounds, check_gaps, check_numbers
+
+MOST_CIRCLES = 10_000
+"""Most circles of a workspace: their gaps are looked at in pairs."""
+
+
+class Options(Workspace):
+    """Keys of a workspace."""
+
+    bounds: Bounds = Field(description="[x low, x high, y low, y high]")
+    circles: list[of_length(3, "[x, y, radius]")] = Field(description="a list of [x, y, radius]")
+
+
+def load(description: dict, folder: Path) -> Circles:
+    """The circles that a description lists."""
+    circles = description["circles"]
+    if len(circles) > MOST_CIRCLES:
+        raise ValueError(f"circles: {len(circles):,}; expected at most {MOST_CIRCLES:,}")
+    limits = tuple(map(float, description["bounds"]))
+    check_numbers(np.array(limits), "bounds")
+    check_bounds(limits)
+    table = np.array(circles, dtype=float).reshape(-1, 3)
+    check_numbers(table, "circles")
+    centres, radii = table[:, :2], table[:, 2]
+    for i, (x, y, radius) in enumerate(table):
+        if radius <= 0:
+            raise ValueError(f"circles: circle {i}: radius {radius:g}; expected above 0")
+        gaps = np.hypot(*(centres[i + 1 :] - (x, y)).T) - radii[i + 1 :] - radius
+        gaps = np.append(gaps, [x - radius - limits[0], limits[1] - x - radius, y - radius - limits[2], limits[3] - y - radius])
+        check_gaps(gaps, f"circles: circle {i}")
+    return Circles(limits, centres, radii, description["unit"])

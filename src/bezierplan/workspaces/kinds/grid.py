@@ -1,0 +1,34 @@
+"""A map of cells."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.study.model import Positive
+from bezierplan.workspaces import grid
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.kinds import File, Workspace, naming, text
+from bezierplan.workspaces.limits import check_numbers
+
+
+class Options(Workspace):
+    """Keys of a workspace."""
+
+    file: File = Field(description="a map file in the study's folder")
+    cell: Positive = Field(description="the side of a cell, a number above 0")
+    heights: File = Field(description="a file of heights in the study's folder", default=None)
+
+
+def load(description: dict, folder: Path) -> Grid:
+    """The cells of a file of . and #, the top row first; optionally with the heights of a file of numbers, likewise."""
+    lines = text(description, "file", folder).splitlines()
+    with naming(description["file"]):
+        flat = grid.from_lines(lines, float(description["cell"]), description["unit"])
+        check_numbers(np.array(flat.bounds), f"cell: {description['cell']}: the border")
+    if "heights" not in description:
+        return flat
+    lines = text(description, "heights", folder).splitlines()
+    with naming(description["heights"]):
+        return replace(flat, heights=grid.heights_from_lines(lines, flat.occupied.shape))

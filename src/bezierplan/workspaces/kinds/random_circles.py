@@ -1,0 +1,26 @@
+"""Layouts of circles at random places."""
+
+from typing import ClassVar
+
+from pydantic import Field
+
+from bezierplan.study.model import Positive
+from bezierplan.workspaces import random_circles
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.kinds import CIRCLES, Bounds, CircleCount, Workspace
+
+
+class Options(Workspace):
+    """Keys of a workspace."""
+
+    drawn: ClassVar[str] = "circles"
+
+    bounds: Bounds = Field(description="[x low, x high, y low, y high]")
+    radius: Positive = Field(description="the radius of every circle, a number above 0")
+    circles: CircleCount = Field(description=CIRCLES)
+
+
+def draw(description: dict, problem: dict, name: str) -> Circles:
+    """The first so many circles of a layout. Raises ValueError if no free place is found."""
+    ends = [tuple(map(float, problem[end])) for end in ("start", "target")]
+    return random_circles.first(random_circles.layout(description, name, problem["layout"], ends), problem["obstacles"])

@@ -1,0 +1,22 @@
+"""Fields of cells with circles at random places."""
+
+from typing import ClassVar
+
+from pydantic import Field
+
+from bezierplan.study.model import NotNegative, Positive
+from bezierplan.workspaces import random_field
+from bezierplan.workspaces.kinds import Workspace
+
+
+class Options(Workspace):
+    """Keys of a workspace."""
+
+    drawn: ClassVar[str] = "grid"
+    with_side: ClassVar[bool] = True
+
+    radius: Positive = Field(description="the radius of every circle as a share of the field's side, a number above 0")
+    clear_ends: NotNegative = Field(description="how many cells stay free between a circle and start or target, at least 0")
+
+
+draw = random_field.field

@@ -1,0 +1,32 @@
+"""Cells rasterized from polygons."""
+
+from pathlib import Path
+from typing import ClassVar, Literal
+
+from pydantic import Field
+
+from bezierplan.study.model import Positive
+from bezierplan.workspaces import raster
+from bezierplan.workspaces.geojson import polygons_from_geojson
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.kinds import File, Workspace, naming, text
+
+
+class Options(Workspace):
+    """Keys of a workspace."""
+
+    made: ClassVar[str] = "grid"
+
+    file: File = Field(description="a GeoJSON file in the study's folder")
+    cell: Positive = Field(description="the side of a cell, a number above 0")
+    rule: Literal["overlap", "centre"] = Field(
+        description="which cells are occupied: those that overlap an obstacle, or whose centre lies in one"
+    )
+
+
+def load(description: dict, folder: Path) -> Grid:
+    """The cells that the polygons of a GeoJSON file occupy."""
+    content = text(description, "file", folder)
+    with naming(description["file"]):
+        polygons = polygons_from_geojson(content, description["unit"])
+        return raster.from_polygons(polygons, float(description["cell"]), description["rule"])
