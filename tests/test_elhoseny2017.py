@@ -107,6 +107,26 @@ def test_the_title_has_a_dynamic_field_and_no_table_obstacles_that_move(rows):
     assert broken(rows, "dynamic field") == {"title"}
 
 
+def test_printed_lengths_have_the_level_of_the_counting_rule_and_not_its_growth(rows):
+    growth = rows[rows["rule"].str.contains("chi-square")].iloc[0]
+    assert (growth["printed"], growth["limit"], bool(growth["consistent"])) == (22.4, 9.5, False)
+    digits = rows[rows["rule"].str.contains("can be such")].iloc[0]
+    assert (digits["printed"], digits["limit"], bool(digits["consistent"])) == (4, 20, False)
+
+
+def test_lengths_of_the_counting_rule_pass():
+    """Five in ten diagonals blocked at five obstacles, and so on, as nearly as ten fields can."""
+    means = {"table2": (165, 175, 185, 190, 190), "table3": (330, 350, 370, 380, 380)}
+    given = dict(PUBLISHED)
+    for name, values in means.items():
+        own = given[name].copy()
+        lengths = own["obstacles"].map(dict(zip((5, 10, 15, 20, 25), values)))
+        own.loc[own["method"] == "mga", "value"] = lengths
+        given[name] = own
+    rows = audit.table("elhoseny2017", elhoseny2017.audit(given))
+    assert rows.loc[rows["rule"].str.contains("chi-square|can be such"), "consistent"].all()
+
+
 # The claim on printed lengths over the bounds.
 
 
