@@ -11,10 +11,10 @@ LOCK      = $(RUN) -m uv pip compile --quiet --universal --python-version 3.11 -
 # A killed run leaves its lock behind. A clone has one user, so these targets may break it; plain `snakemake` keeps it.
 UNLOCK = if [ -n "$$(ls .snakemake/locks 2>/dev/null)" ]; then $(SNAKEMAKE) --unlock >/dev/null 2>&1 || true; fi
 
-.PHONY: help reproduce smoke extended test lint benchmark mutants compare outcome lock clean distclean anew
+.PHONY: help reproduce smoke extended test lint benchmark mutants compare archive cluster outcome verify-outcome lock clean distclean anew
 
 help: ## list these targets
-	@sed -n 's/^\([a-z]*\):.*## \(.*\)/make \1|\2/p' Makefile | awk -F '|' '{ printf "%-15s %s\n", $$1, $$2 }'
+	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1|\2/p' Makefile | awk -F '|' '{ printf "%-15s %s\n", $$1, $$2 }'
 
 reproduce: .venv/ready ## every table and figure at the papers' own numbers of repeats, into results/full
 	@$(UNLOCK)
@@ -50,15 +50,29 @@ mutants: .venv/ready ## plant each fault of tests/mutants, and see that its test
 compare: .cache/comparison/ready ## the chaotic swarm of tharwat2018 beside pyswarms, pymoo and DEAP
 	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare.py'
 
+cluster: .venv/ready ## add Snakemake's plugins for Slurm and other schedulers, for profiles/slurm and profiles/cluster
+	@$(PIP) -r environment-cluster.txt
+
+archive: .cache/archive/ready ## results/full with code and environment as an RO-Crate, checked and zipped, into archive (ARGS: another scale)
+	$(<D)/bin/python workflow/archive/archive.py $(ARGS)
+
+# Pages show the alternatives and readings that are there, so these come first.
 outcome: .venv/ready ## everything at scales full and extended with alternatives and readings, then docs/outcome and the README's table
 	@$(UNLOCK)
-	$(SNAKEMAKE) alternatives $(ARGS)
-	$(SNAKEMAKE) all extended readings $(ARGS)
+	$(SNAKEMAKE) alternatives readings $(ARGS)
+	$(SNAKEMAKE) all extended $(ARGS)
 	$(RUN) -m bezierplan outcome
+
+verify-outcome: .venv/ready ## is this installation sound? minutes of runs, tested against docs/outcome
+	@$(UNLOCK)
+	$(SNAKEMAKE) $$($(RUN) -m bezierplan verify-outcome --targets) $(ARGS)
+	$(RUN) -m bezierplan verify-outcome
 
 lock: .venv/ready ## renew environment.txt from pyproject.toml (newest versions: ARGS=--upgrade)
 	$(LOCK) $(ARGS) --group build -o environment-build.txt
 	$(LOCK) $(ARGS) --group dev pyproject.toml -o environment.txt
+	$(LOCK) $(ARGS) --group archive -o workflow/archive/requirements.txt
+	$(LOCK) $(ARGS) --group cluster -c environment.txt -o environment-cluster.txt
 	$(LOCK) $(ARGS) --group comparison -c environment.txt -o tests/benchmark/requirements.txt
 
 clean: ## remove results and caches
@@ -87,8 +101,10 @@ found = $(firstword $(foreach p,$(PYTHON),$(shell $(p) -c '$(fits)' >/dev/null 2
 	@$(RUN) -c 'import sysconfig; open(sysconfig.get_path("purelib") + "/bezierplan.pth", "w").write("../../../../src\n")'
 	@touch $@
 
-# Libraries to compare with, apart from what the workflow runs on.
-.cache/comparison/ready: tests/benchmark/requirements.txt | .venv/ready
+# Libraries to compare with and to archive with, apart from what the workflow runs on.
+.cache/comparison/ready: tests/benchmark/requirements.txt
+.cache/archive/ready: workflow/archive/requirements.txt
+.cache/comparison/ready .cache/archive/ready: | .venv/ready
 	@rm -rf $(@D)
 	@$(RUN) -m venv $(@D)
 	@$(@D)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes --only-binary :all: -r $<

@@ -77,11 +77,41 @@ def study(claims: list[content.Claim], numbers: list[content.Number]) -> content
         claims=claims,
         tables=[table, listing],
         figures=[],
-        audit=[content.Audited(item="table1", place=HOSTILE, rule="sum", printed=4, limit=3.5, consistent=False)],
+        audit=[content.Audited(item="table1", place=HOSTILE, rule="sum", printed=4, limit=3.5, consistent=False, arithmetic=HOSTILE)],
         assumptions=[content.Assumption(address="one/O1", id="O1", claims=["C1"], choices=claims[0].choices, **open_choice)],
-        shown=[content.Shown(problem="p", best="one/first/p/a/0", worst="one/first/p/a/1", **shown)],
+        shown=[content.Shown(problem="p", best="one/first/p/a/0", worst="one/first/p/a/1", **shown), *drives()],
+        worth=[worth("a", 1.25), worth("c", None)],
+        worth_in_words=HOSTILE,
+        explanations=[explanation("O1=8", 3), explanation("in force", 1)],
+        readings_tried=7,
+        explained=[content.Explained(table="table1", numbers=3, in_force=1, best=3, never=0)],
         labels={"a": HOSTILE, "p": "the room"},
     )
+
+
+def worth(method: str, curvature: float | None) -> content.Worth:
+    given = {"baseline": "rounded", "conditions": 3, "feasible": 0.9, "feasible_baseline": 1.0, "length": 1.1, "cpu": 20.0}
+    return content.Worth(address=f"one/worth/{method}", method=method, curvature=curvature, cornered=curvature is None, **given)
+
+
+def explanation(reading: str, count: int) -> content.Explanation:
+    return content.Explanation(reading=reading, in_range=count, numbers=3, by_chance=1.2)
+
+
+def drives() -> list[content.Shown]:
+    """Two experiments in worlds that move: a drive among circles, and a failed one among cells that change."""
+    given = {"problem": "p", "method": "a", "count": 1}
+    return [
+        content.Shown(experiment="circles", feasible=1, best="one/circles/p/a/0", median=None, worst=None, failed=[], **given),
+        content.Shown(experiment="cells", feasible=0, best=None, median=None, worst=None, failed=["one/cells/p/a/0"], **given),
+    ]
+
+
+def drive(world: str, feasible: bool) -> content.Run:
+    """Two units to the right and one up, in three and a half steps, the first of which is spent waiting."""
+    more = {"problem": f"one/{world}/p", "path": [0.5, 0.5, 2.5, 0.5, 2.5, 1.0], "control": [], "curve": "polyline", "stop": "arrived"}
+    more |= {"steps": 3.5, "driven": [0.0, 0.0, 1.0, 2.0, 2.5], "collision": None if feasible else (1.5, 0.5)}
+    return run(feasible).model_copy(update=more | {"collision_step": None if feasible else 2.0})
 
 
 def run(feasible: bool) -> content.Run:
@@ -98,11 +128,24 @@ def run(feasible: bool) -> content.Run:
 
 
 def page() -> content.Page:
-    """A study `one` with three claims, four numbers, two tables, an open choice, a check, and three runs."""
+    """A study `one` with three claims, four numbers, two tables, an open choice, a check, three runs and two drives."""
     numbers = [number("a/length", "reproduced"), number("b/length", "not reproduced"), number("a/objective", "not told apart")]
     numbers.append(number("c/length", "", published=None, primary=False, counted=False))
     own = {"one": study([claim("C1", "supported"), claim("C2", "contradicted"), claim("C3", "undecided", finding=True)], numbers)}
     workspace = {"kind": "grid", "unit": "unit", "cell": 1, "rows": ["....", ".##.", "...."], "bounds": [0, 4, 0, 3]}
-    problem = content.Problem(workspace=workspace, start=(0.5, 0.5), target=(3.5, 2.5), bound=4.13, bound_path=[0.5, 0.5, 1, 2, 3.5, 2.5])
+    ends = {"start": (0.5, 0.5), "target": (3.5, 2.5)}
+    problem = content.Problem(workspace="one/first/p", bound=4.13, bound_path=[0.5, 0.5, 1, 2, 3.5, 2.5], **ends)
+    round_things = {"kind": "circles", "unit": "unit", "circles": [[3.0, 1.0, 0.25]], "bounds": [0, 4, 0, 3]}
+    worlds = {
+        # Reflected at x = 3.5 after half a step.
+        "circles": content.World(walls=[0.5, 3.5, 0.5, 2.5], circles=[[3.0, 1.0, 1.0, 0.0, 0.25]]),
+        "cells": content.World(moments=[2.0], changed=[[5, 11]]),
+    }
+    moving = {
+        f"one/{name}/p": problem.model_copy(update={"workspace": place, "world": worlds[name]})
+        for name, place in (("circles", "one/circles/p"), ("cells", "one/first/p"))
+    }
     runs = {f"one/first/p/a/{n}": run(feasible=n < 2) for n in range(3)}
-    return content.Page(scale="smoke", answer=answer.answer(own), studies=own, problems={"one/first/p": problem}, runs=runs)
+    runs |= {"one/circles/p/a/0": drive("circles", True), "one/cells/p/a/0": drive("cells", False)}
+    made = {"problems": {"one/first/p": problem} | moving, "workspaces": {"one/first/p": workspace, "one/circles/p": round_things}}
+    return content.Page(scale="smoke", answer=answer.answer(own), studies=own, runs=runs, **made)

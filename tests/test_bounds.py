@@ -403,18 +403,27 @@ def blocks(side, share, largest, rng):
     return occupied
 
 
-def test_the_search_of_large_grids_gives_the_path_of_the_whole_graph(monkeypatch):
+@pytest.mark.parametrize("place", ["cells", "lattice", "anywhere"])
+def test_the_search_of_large_grids_gives_the_path_of_the_whole_graph(monkeypatch, place):
+    """Single cells and blocks, contacts and dead ends, from points on corners, on edges, in cells and in obstacles."""
     rng = np.random.default_rng(1)
-    for _ in range(25):
-        grid = Grid(blocks(30, 0.25, 4, rng), 0.5, "m", (1.0, -2.0))
-        problem = Problem("", grid, (1.25, -1.75), (15.75, 12.75))
+    found_none = 0
+    for _ in range(150):
+        rows, columns = rng.integers(1, 15, 2)
+        single = rng.random((rows, columns)) < rng.choice([0.1, 0.3, 0.5])
+        grid = Grid(blocks(15, 0.25, 4, rng)[:rows, :columns] if rng.random() < 0.3 else single, 0.5, "m", (1.0, -2.0))
+        parts = {"cells": rng.integers(0, 2 * rows + 1, 4) / 2, "lattice": rng.integers(0, 61, 4) / 4, "anywhere": 15 * rng.random(4)}
+        x, y, to_x, to_y = 0.5 * np.minimum(parts[place], [columns, rows, columns, rows]) + [1.0, -2.0, 1.0, -2.0]
+        problem = Problem("", grid, (x, y), (to_x, to_y))
         whole = shortest_path(problem)
         with monkeypatch.context() as patched:
             patched.setattr("bezierplan.geometry.shortest_paths.grid.MOST_NODES", 0)
             found = shortest_path(problem)
-        assert found.length == whole.length
-        if math.isfinite(whole.length):
+        assert found.length == pytest.approx(whole.length, rel=1e-14)
+        found_none += math.isinf(found.length)
+        if math.isfinite(found.length):
             assert_is_path(found, problem)
+    assert 10 < found_none < 120
 
 
 def test_the_search_among_many_polygons_gives_the_path_of_the_whole_graph(monkeypatch):
@@ -423,8 +432,12 @@ def test_the_search_among_many_polygons_gives_the_path_of_the_whole_graph(monkey
         assert shortest_path(imr_problem(row["map"])).length == pytest.approx(float(row["value"]), abs=1e-5)
 
 
-def test_a_grid_of_a_million_cells_is_ordinary():
-    grid = Grid(blocks(1000, 0.2, 30, np.random.default_rng(2)), 1.0, "cell")
+@pytest.mark.parametrize("largest", [1, 30])
+def test_a_grid_of_a_million_cells_is_ordinary(largest):
+    rng = np.random.default_rng(2)
+    occupied = blocks(1000, 0.2, largest, rng) if largest > 1 else rng.random((1000, 1000)) < 0.2
+    occupied[0, 0] = occupied[-1, -1] = False
+    grid = Grid(occupied, 1.0, "cell")
     problem = on_cells(grid.occupied, (0.5, 0.5), (999.5, 999.5))
     begin = time.process_time()
     bound = shortest_path(problem)

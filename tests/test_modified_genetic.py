@@ -418,8 +418,8 @@ def batch(seed, pool, field_, **changed):
     filled_pool = gene_lists.empty_pool(200, planner._ROOM)
     for place, ones in enumerate(pool):
         gene_lists.put(np.array(ones), len(ones), 100.0, True, filled_pool, place)
-    child = np.empty(planner._ROOM, dtype=np.int64)
-    arguments = (filled_pool, len(pool), np.cumsum(np.ones(len(pool))), 0.8, child, field_, rules(population=20, **changed))
+    child, memory = np.empty(planner._ROOM, dtype=np.int64), gene_lists.empty_memory(planner._ROOM)
+    arguments = (filled_pool, len(pool), np.cumsum(np.ones(len(pool))), 0.8, child, memory, field_, rules(population=20, **changed))
     filled, tried, invalid = planner._add_offspring(np.random.default_rng(seed), *arguments)
     return [filled_pool.ones[place, : filled_pool.count[place]].tolist() for place in range(len(pool), filled)], tried, invalid
 

@@ -20,12 +20,14 @@ from hypothesis import strategies as st
 sys.path.insert(0, str(Path(__file__).parent))
 from page_content import HOSTILE, comparison, number, page
 
-from bezierplan.figures.page import HERE, addresses, answer, build, content, gather, pictures, runs
+from bezierplan.figures.page import HERE, addresses, answer, build, content, gather, job, other, pictures, runs, search
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
+from bezierplan.running import worlds as world_files
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path as Curve
 from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.worlds import ChangingCells
 
 
 class Reader(HTMLParser):
@@ -60,7 +62,7 @@ def read(text):
 
 def test_hostile_words_stay_words(read):
     assert not [tag for tag, attributes in read.elements if tag == "img" or "onerror" in attributes]
-    assert sum(tag == "script" for tag, _ in read.elements) == 5
+    assert sum(tag == "script" for tag, _ in read.elements) == 6
     assert json.loads(read.blocks["page-data"])["studies"]["one"]["title"] == HOSTILE
 
 
@@ -194,6 +196,32 @@ def test_unknown_effect_leaves_the_strip_empty():
     assert (forest.strips[0].effect, forest.strips[0].low) == (None, None)
 
 
+def outline(text):
+    """Places of an outline in absolute steps (M L Q C z) or relative ones (also h v), control points among them."""
+    places, at, first = [], np.zeros(2), np.zeros(2)
+    for name, numbers in re.findall("([A-Za-z])([^A-Za-z]*)", text):
+        values = [float(each) for each in re.findall(r"-?(?:\d+\.?\d*|\.\d+)", numbers)]
+        values = [values[0], 0.0] if name == "h" else [0.0, values[0]] if name == "v" else values
+        if name in "zZ":
+            at = first
+            continue
+        steps = np.reshape(values, (-1, 2)) + (at if name.islower() else 0.0)
+        places += steps.tolist()
+        at = steps[-1]
+        first = at if name in "mM" else first
+    return places
+
+
+def test_outlines_in_short_words():
+    assert pictures._stepwise("M 1.5 2 \nL 1.5 0.126 \nL -0.5 .13 \nz \nM 3 3 \nQ 4 3 4 4.004 \n") == "m1.5 2v-1.87h-2zm1.5 1q1 0 1 1"
+
+
+@given(st.lists(st.tuples(*[st.integers(-(10**6), 10**6)] * 4), min_size=1, max_size=30))
+def test_relative_steps_add_up_without_drift(steps):
+    text = "M 0.5 0.25 " + "".join(f"Q {a / 1000} {b / 1000} {c / 1000} {d / 1000} L {d / 1000} {b / 1000} " for a, b, c, d in steps) + "z"
+    assert np.allclose(outline(text), outline(pictures._stepwise(text)), atol=0.00501, rtol=0)
+
+
 def test_figure_in_the_page_keeps_its_words_and_its_shape(tmp_path):
     import matplotlib.pyplot as plt
     from matplotlib.figure import Figure
@@ -209,10 +237,11 @@ def test_figure_in_the_page_keeps_its_words_and_its_shape(tmp_path):
     small = unquote(uri.removeprefix("data:image/svg+xml,"))
     assert not set('"#&') & set(uri)
     assert "a &amp; b &lt; 'c' 1.23456" in small
-    was = [float(each) for each in re.findall(r"[ML] (\S+)", (tmp_path / "a.svg").read_text())]
-    now = [float(each) for each in re.findall(r"[ML] (\S+)", small)]
-    assert len(was) == len(now)
-    assert np.allclose(was, now, atol=0.0051, rtol=0)
+    was = [outline(each) for each in re.findall(r' d="([^"]*)"', (tmp_path / "a.svg").read_text())]
+    now = [outline(each) for each in re.findall(r" d='([^']*)'", small)]
+    assert [len(each) for each in now] == [len(each) for each in was] != []
+    assert all(np.allclose(one, other, atol=0.0051, rtol=0) for one, other in zip(was, now, strict=True))
+    assert len(re.findall("clip-path:", small)) == 1
     assert pictures.size(tmp_path / "a.svg") == (144, 72)
 
 
@@ -256,6 +285,34 @@ def test_column_that_the_page_does_not_know_is_kept_with_the_claim():
     (found,) = gather._claims("one", pd.DataFrame([row | {"verdict_at_paper_size": "undecided"}]), None, [], {})
     assert found.more == {"verdict_at_paper_size": "undecided"}
     assert found.shown_in == ["one/table1", "one/figure2"]
+
+
+def test_best_readings_and_the_one_in_force_are_shown_with_what_they_explain():
+    tried = pd.DataFrame({"reading": [*(f"O1={n}" for n in range(20)), "in force"], "in_range": range(21, 0, -1), "numbers": 30})
+    explained = pd.DataFrame(
+        {"table": ["a", "a", "b"], "in_force": [True, False, False], "best": [True, True, False], "readings": [9, 2, 0]}
+    )
+    found = other.of_readings(tried.assign(by_chance=np.nan), explained)
+    assert [each.reading for each in found["explanations"]] == [*(f"O1={n}" for n in range(10)), "in force"]
+    assert found["readings_tried"] == 21
+    assert [tuple(each.model_dump().values()) for each in found["explained"]] == [("a", 2, 1, 2, 0), ("b", 1, 0, 0, 1)]
+
+
+def test_method_with_corners_has_no_number_of_curvature():
+    row = {"study": "one", "method": "a", "baseline": "rounded", "conditions": 2, "feasible": 0.5, "feasible_baseline": 1.0}
+    measured = pd.DataFrame([row | {"compared": 2, "length": 1.5, "bent": 2, "curvature": math.inf, "cpu": 3.0}])
+    found = other.of_worth("one", measured)
+    assert [(each.cornered, each.curvature, each.length) for each in found["worth"]] == [(True, None, 1.5)]
+    assert found["worth_in_words"].startswith("1 method: feasible in 50 %")
+    assert other.of_worth("two", measured) == {}
+
+
+def test_search_finds_every_published_number_and_every_run_shown_by_its_words():
+    found = {entry.address: entry for entry in search.entries(page())}
+    assert found["one/table1/a/objective/mean"].text == "a: objective, mean: 10.51 → 10.71 not told apart"
+    assert found["one/circles/p/a/0"].text.startswith("best feasible run of ")
+    assert found["one/worth/a"].more == "one a"
+    assert "one/table1/c/length/mean" not in found
 
 
 def test_alternative_judged_beside_another_verdict_is_out_of_date():
@@ -312,6 +369,36 @@ def test_repeats_that_a_chunk_has_beyond_those_wanted_are_not_shown(tmp_path):
 def test_method_without_a_feasible_run_has_failed_ones_only(tmp_path):
     (shown,) = runs.chosen("s", "e", stored(tmp_path, [5.0, 4.0], [False, False])).shown
     assert (shown.best, shown.median, shown.worst, len(shown.failed)) == (None, None, None, 2)
+
+
+def test_place_of_a_drive_is_found_where_its_way_crosses_itself():
+    # To the right, back through the same places, then up; the robot waits at the first place.
+    path = np.array([[0.0, 0.0], [3.0, 0.0], [0.0, 0.0], [0.0, 1.5]])
+    places = [(0, 0), (0, 0), (1, 0), (2, 0), (3, 0), (2, 0), (1, 0), (0, 0), (0, 1), (0, 1.5)]
+    assert np.allclose(runs._driven(path, np.array(places, dtype=float), 1.0), [0, 0, 1, 2, 3, 4, 5, 6, 7, 7.5])
+
+
+def test_drive_is_shown_with_its_time_and_the_place_of_its_collision(tmp_path):
+    described = stored(tmp_path, [3.0], [False])
+    rows = [{**row, "collision_at": 1.5, "steps": 2.5} for row in parquet.read_table(described["runs"][0]).to_pylist()]
+    parquet.write_table(pa.Table.from_pylist(rows), described["runs"][0])
+    empty = from_lines(["....", "....", "...."], cell=1.0, unit="m")
+    later = from_lines(["#...", "....", "...#"], cell=1.0, unit="m")
+    room = {"room": Problem("room", empty, (0.5, 0.5), (3.5, 0.5))}
+    world_files.write(room, {"room": "room"}, {"room": ChangingCells((empty, later), np.array([2.0]), 1.0, 9)}, described["problems"])
+    trace = [{"id": "s/e/room/m/0", "x": [0.5, 1.5, 2.5, 3.5], "y": [0.5] * 4}]
+    parquet.write_table(pa.Table.from_pylist(trace), tmp_path / "0.traces.parquet")
+    found = runs.chosen("s", "e", described | {"traces": [str(tmp_path / "0.traces.parquet")]})
+    (drive,) = found.runs.values()
+    assert (drive.steps, drive.driven, drive.collision, drive.collision_step, drive.control) == (2.5, [0, 1, 2, 3], (2.0, 0.5), 1.5, [])
+    assert found.problems["s/e/room"].world == content.World(moments=[2.0], changed=[[0, 11]])
+
+
+def test_equal_workspaces_stand_once():
+    problem = page().problems["one/first/p"]
+    found = job._once({"a": {"x": 1}, "b": {"x": 2}, "c": {"x": 1}}, {n: problem.model_copy(update={"workspace": n}) for n in "abc"})
+    assert found["workspaces"] == {"a": {"x": 1}, "b": {"x": 2}}
+    assert {name: each.workspace for name, each in found["problems"].items()} == {"a": "a", "b": "b", "c": "a"}
 
 
 @given(

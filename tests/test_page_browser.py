@@ -1,6 +1,7 @@
 """The page in a real browser, opened from disk: a small page with every kind of content, and that of scale smoke."""
 
 import os
+import re
 import shutil
 import sys
 from pathlib import Path
@@ -184,6 +185,72 @@ def test_address_of_a_run_opens_it_in_the_viewer(visit, small):
     assert tab.locator("#viewer select[name=run] option:checked").inner_text() == "worst"
     tab.evaluate("location.hash = 'one/first/p/a/77'")
     assert tab.locator("#viewer-note", has_text="does not hold run one/first/p/a/77").count() == 1
+
+
+def circle(tab):
+    shape = tab.locator("#viewer-map .obstacle")
+    return round(float(shape.get_attribute("cx")), 6), round(-float(shape.get_attribute("cy")), 6)
+
+
+def way(tab):
+    return [round(float(each), 6) for each in re.findall(r"[-.\d]+", tab.locator("#viewer-map .path").get_attribute("d"))]
+
+
+def at(tab, time):
+    tab.locator("#viewer-clock").evaluate(
+        "(clock, time) => { clock.step = 'any'; clock.value = time; clock.dispatchEvent(new Event('input')); }", str(time)
+    )
+
+
+def test_circles_move_and_the_way_grows_with_the_slider(visit, small):
+    tab = visit(small, "one/circles/p/a/0")
+    assert tab.locator("#viewer-step").inner_text() == "step 3 of 4"
+    assert tab.locator("#viewer-map .path").get_attribute("d") == "M0.5 -0.5L2.5 -0.5L2.5 -1"
+    at(tab, 0)
+    assert circle(tab) == (3.0, 1.0)
+    at(tab, 2)
+    assert circle(tab) == (2.0, 1.0)
+    at(tab, 2.45)
+    assert circle(tab) == (1.55, 1.0)
+    assert way(tab) == [0.5, -0.5, 1.95, -0.5]
+    at(tab, 3.15)
+    assert way(tab) == [0.5, -0.5, 2.5, -0.5, 2.5, -0.65]
+
+
+def test_cells_change_at_their_moment_and_the_collision_shows_from_its_time(visit, small):
+    tab = visit(small, "one/cells/p/a/0")
+    at(tab, 1.96)
+    assert tab.locator("#viewer-map .cells").get_attribute("d") == "M1 -2h2v1h-2z"
+    assert tab.locator("#viewer-map .hit").count() == 0
+    at(tab, 2.03)
+    assert tab.locator("#viewer-map .cells").get_attribute("d") == "M2 -2h1v1h-1zM3 -1h1v1h-1z"
+    assert tab.locator("#viewer-map .hit").count() == 1
+    assert "first collision at step 2" in tab.locator("#viewer-facts").inner_text()
+
+
+def test_drive_plays_by_keyboard_pauses_and_ends(visit, small):
+    tab = visit(small, "one/circles/p/a/0")
+    tab.locator("#viewer-play").focus()
+    tab.keyboard.press("Enter")
+    tab.wait_for_function(
+        "document.getElementById('viewer-play').textContent === 'Play' && viewer.querySelector('#viewer-clock').value === '3.5'"
+    )
+    tab.locator("#viewer-clock").focus()
+    tab.keyboard.press("Home")
+    assert tab.locator("#viewer-step").inner_text() == "step 0 of 4"
+    tab.locator("#viewer-clock").evaluate("(clock) => { clock.max = 1000; }")
+    tab.keyboard.press("Tab")
+    tab.locator("#viewer-play").click()
+    assert tab.locator("#viewer-play").inner_text() == "Pause"
+    tab.wait_for_function("document.getElementById('viewer-clock').value > 0.5")
+    tab.locator("#viewer-play").click()
+    stood = tab.locator("#viewer-clock").input_value()
+    tab.wait_for_timeout(200)
+    assert tab.locator("#viewer-clock").input_value() == stood
+
+
+def test_run_that_is_no_drive_has_no_clock(visit, small):
+    assert visit(small, "one/first/p/a/1").locator("#viewer-time").is_hidden()
 
 
 def test_page_of_the_smallest_scale_shows_its_studies(visit, smoke):

@@ -19,6 +19,8 @@ TARGETS = {
     "benchmark",
     "compare",
     "outcome",
+    "verify-outcome",
+    "cluster",
     "lock",
     "clean",
     "distclean",

@@ -167,6 +167,30 @@ FAULTS = {
         "table1.csv: line 3: value: '225.4982 m'; expected a number",
     ),
     "published number that is none": (TABLE, ",225.4982", ",nan", "table1.csv: line 3: value: 'nan'; expected a number"),
+    "published number with an exponent of three digits": (
+        TABLE,
+        ",225.4982",
+        ",1e-999",
+        "table1.csv: line 3: value: '1e-999'; expected a number",
+    ),
+    "order along a column that the published file lacks": (
+        ARTEFACTS,
+        "    published: table1.csv\n",
+        "    published: table1.csv\n    monotone: [{metric: objective, statistic: unstated, along: genes, direction: up, because: x}]\n",
+        "table1.csv: line 1: column genes is missing; the table's key monotone has numbers in order along it",
+    ),
+    "order of a table without published numbers": (
+        ARTEFACTS,
+        "    published: table1.csv\n",
+        "    monotone: [{metric: objective, statistic: unstated, along: problem, direction: up, because: x}]\n",
+        "tables: table1: monotone: the table has no published numbers",
+    ),
+    "order in no direction": (
+        ARTEFACTS,
+        "    published: table1.csv\n",
+        "    published: table1.csv\n    monotone: [{metric: objective, statistic: unstated, along: problem, direction: upp, because: x}]\n",
+        "monotone: 0: direction: upp: unknown; did you mean up?",
+    ),
     "published row that is too short": (
         TABLE,
         "unstated,,generation,26",

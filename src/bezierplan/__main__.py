@@ -10,13 +10,15 @@ COMMANDS = {
     "digest": "one hash a run table, over sorted rows without times: what `same content` means",
     "check-planner": "the contract tests of a planner, on small and degenerate problems",
     "plan": "one path on a map, checked by exact geometry",
+    "forecast": "how long a target takes on some cores, how much disk, and its longest jobs",
+    "verify-outcome": "numbers made here beside those of docs/outcome: is this installation sound?",
     "outcome": "copy the outcome of results/extended and results/full to docs/outcome and into the README",
 }
 
 
 def main(words: list[str]) -> None:
     """Do what the words of a command line say; a fault ends the process with one line."""
-    listed = "\n".join(f"  {name:15}{text}" for name, text in COMMANDS.items())
+    listed = "\n".join(f"  {name:16}{text}" for name, text in COMMANDS.items())
     parser = argparse.ArgumentParser(
         prog="python -m bezierplan", epilog=f"commands:\n{listed}", formatter_class=argparse.RawDescriptionHelpFormatter
     )

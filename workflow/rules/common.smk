@@ -17,7 +17,7 @@ sys.executable = shlex.quote(sys.executable)
 from bezierplan.study import alternatives, checked, experiments, page, reading, targets
 
 try:
-    STUDIES = reading.load(reading.read_config(config))
+    STUDIES = reading.load(reading.read_config(config, alone=workflow.modifier.namespace is not None))
     reading.check_folder()
 except checked.Fault as fault:
     sys.exit(str(fault))

@@ -14,7 +14,8 @@ with log.job(snakemake) as output:
     published = {Path(file).stem: audit.read_published(file) for file in files.published}
     bounds = {name: pd.read_parquet(file).set_index("problem") for name, file in zip(job["experiments"], files.bounds, strict=True)}
     of_tables = {table: bounds[experiment] for table, experiment in job["tables"].items()}
-    rows = audit.below_bound({table: published[table] for table in of_tables}, of_tables, job["primary"])
+    compared = {table: published[table] for table in of_tables}
+    rows = audit.below_bound(compared, of_tables, job["primary"]) + audit.of_any_paper(compared, job["layouts"])
     if job["module"]:
         rows += importlib.import_module(job["module"]).audit(published)
     audit.table(job["study"], rows).to_csv(output[0], index=False, float_format="%.10g", lineterminator="\n")

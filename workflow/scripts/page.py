@@ -7,5 +7,4 @@ with log.job(snakemake) as output:
 
     from bezierplan.figures.page import job
 
-    numbers, claims = snakemake.input.summary or (None, None)
-    job.write(snakemake.params.job, Path("results", snakemake.wildcards.scale), numbers, claims, output.page)
+    job.write(snakemake.params.job, Path("results", snakemake.wildcards.scale), list(snakemake.input.summary), output.page)

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from bezierplan.analysis import measures
+from bezierplan.analysis import measures, running_time
 from bezierplan.analysis.measures import BENDING_PART, CURVATURE_SAMPLES, FINE_SAMPLES
 
 if TYPE_CHECKING:
@@ -30,6 +30,8 @@ class Metric(NamedTuple):
     among_rows: it compares the methods of a table with each other, so variants and baselines outside the table have none.
     least: the smallest value that a run can have, or the column of the runs table that holds it. most: the largest.
     bound, gap: the column with the bound for this kind of length, and the metric of the gap to it.
+    step: the distance between possible values of a run, 1 for whole numbers; None if there is none. of_group: all runs of a method under a
+    condition share it, so resampling them does not show how certain it is.
     """
 
     unit: str
@@ -41,6 +43,8 @@ class Metric(NamedTuple):
     most: float = np.inf
     bound: str = "bound"
     gap: str = "gap"
+    step: float | None = None
+    of_group: bool = False
 
 
 def values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Series:
@@ -74,28 +78,48 @@ _CELLS8 = {"bound": "octile_bound", "gap": "gap8"}
 METRICS: dict[str, Metric] = {
     "objective": Metric("u", "the planner's own final value, in its own rule", False),
     "length": Metric("u", "exact arc length", True, least="bound"),
-    "claimed_feasible": Metric("-", "the planner's own test of the path", False),
-    "feasible": Metric("-", "the certified checker's test of the path", False),
-    "failed": Metric("-", "without a path that the certified checker accepts", False, measures.failed),
-    "falsely_claimed": Metric("-", "free by the planner's own test, colliding by the checker's", False, partial(measures.disagrees, True)),
-    "wrongly_rejected": Metric("-", "free by the checker's test, not by the planner's own", False, partial(measures.disagrees, False)),
+    "certified_length": Metric(
+        "u", "exact arc length, infinite unless the certified checker accepts the path", False, running_time.certified_length, least="bound"
+    ),
+    "claimed_feasible": Metric("-", "the planner's own test of the path", False, step=1.0),
+    "feasible": Metric("-", "the certified checker's test of the path", False, step=1.0),
+    "failed": Metric("-", "without a path that the certified checker accepts", False, measures.failed, step=1.0),
+    "falsely_claimed": Metric(
+        "-", "free by the planner's own test, colliding by the checker's", False, partial(measures.disagrees, True), step=1.0
+    ),
+    "wrongly_rejected": Metric(
+        "-", "free by the checker's test, not by the planner's own", False, partial(measures.disagrees, False), step=1.0
+    ),
     "obstacle_clearance": Metric(
         "u", "least distance to the occupied cells of a grid, its border not counted", True, measures.obstacle_clearance
     ),
-    "keeps_distance": Metric("-", "whether the planner's safety distance from the occupied cells is kept", True, measures.keeps_distance),
+    "keeps_distance": Metric(
+        "-", "whether the planner's safety distance from the occupied cells is kept", True, measures.keeps_distance, step=1.0
+    ),
     "collision_depth": Metric("u", "largest depth of the path in obstacles or beyond the border", False),
     "clearance": Metric("u", "least distance to the obstacles and the border", False),
-    "evaluations": Metric("-", "paths whose objective the planner asked for", False, least=0.0),
-    "points_evaluated": Metric("-", "control points of all paths evaluated", False, measures.points_evaluated, least=0.0),
-    "generations": Metric("-", "generations really done", False),
+    "evaluations": Metric("-", "paths whose objective the planner asked for", False, least=0.0, step=1.0),
+    "points_evaluated": Metric("-", "control points of all paths evaluated", False, measures.points_evaluated, least=0.0, step=1.0),
+    "generations": Metric("-", "generations really done", False, step=1.0),
     "rank": Metric(
-        "-", "rank of the objective among the rows of the table, within one unit", False, measures.rank, among_rows=True, least=1.0
+        "-",
+        "rank of the objective among the rows of the table, within one unit",
+        False,
+        measures.rank,
+        among_rows=True,
+        least=1.0,
+        step=0.5,
     ),
     "cpu_s": Metric("s", "CPU seconds of the run alone", False, least=0.0),
     "gap": Metric("-", "length / exact shortest length of the problem - 1", True, measures.gap, least=0.0),
     "gap_best": Metric("-", "length / length of the best feasible run of the same method and condition - 1", True, measures.gap_best),
     "generation_improved": Metric(
-        "generation", "last generation that improved the objective", False, partial(measures.first_generation_within, 0.0), least=0.0
+        "generation",
+        "last generation that improved the objective",
+        False,
+        partial(measures.first_generation_within, 0.0),
+        least=0.0,
+        step=1.0,
     ),
     "generation_1pct": Metric(
         "generation",
@@ -103,6 +127,7 @@ METRICS: dict[str, Metric] = {
         False,
         partial(measures.first_generation_within, 0.01),
         least=0.0,
+        step=1.0,
     ),
     "generation_5pct": Metric(
         "generation",
@@ -110,15 +135,16 @@ METRICS: dict[str, Metric] = {
         False,
         partial(measures.first_generation_within, 0.05),
         least=0.0,
+        step=1.0,
     ),
     "improvement_30": Metric(
         "-", "share of the improvement of the objective made by generation 30", False, partial(measures.improvement_by, 30)
     ),
     "objective_best": Metric("u", "lowest objective of any generation", False, measures.lowest_objective),
     "optimum": Metric("u", "least objective of all feasible paths of the planner's kind", False),
-    "optimal": Metric("-", "whether the final path is feasible and optimal, by the planner's own test", False),
-    "near_optimal": Metric("-", "whether the final path is feasible but not optimal, by the planner's own test", False),
-    "infeasible": Metric("-", "whether the final path is infeasible, by the planner's own test", False),
+    "optimal": Metric("-", "whether the final path is feasible and optimal, by the planner's own test", False, step=1.0),
+    "near_optimal": Metric("-", "whether the final path is feasible but not optimal, by the planner's own test", False, step=1.0),
+    "infeasible": Metric("-", "whether the final path is infeasible, by the planner's own test", False, step=1.0),
     "feasible_last": Metric("-", "share of feasible paths in the last population", False),
     "made_infeasible": Metric("-", "share of the mutated feasible paths that mutation made infeasible", False),
     "node_diversity": Metric("-", "mean over generations of the chance that a path's inner node is no node of another", False),
@@ -136,6 +162,7 @@ METRICS: dict[str, Metric] = {
         f"samples of {CURVATURE_SAMPLES} where the curve stands still and curvature is not defined",
         True,
         partial(measures.of_path, measures.zero_speed_points),
+        step=1.0,
     ),
     "heading_max": Metric(
         "rad", "largest change of heading between neighbouring chords", True, partial(measures.of_path, measures.heading_max)
@@ -150,15 +177,25 @@ METRICS: dict[str, Metric] = {
     "max_turn": Metric(
         "degrees", f"largest change of heading between parts of {BENDING_PART:g} u", True, partial(measures.of_path, measures.max_turn)
     ),
-    "corners": Metric("-", "joints of a path's pieces at which its heading changes", True, partial(measures.of_path, measures.corners)),
+    "corners": Metric(
+        "-", "joints of a path's pieces at which its heading changes", True, partial(measures.of_path, measures.corners), step=1.0
+    ),
     "length_over_polygon": Metric(
         "-", "length / length of the control polygon", True, partial(measures.of_path, measures.length_over_polygon)
     ),
     "distinct_points": Metric(
-        "-", "control points that differ from each other", False, partial(measures.of_path, measures.distinct_points)
+        "-",
+        "control points that differ from each other",
+        False,
+        partial(measures.of_path, measures.distinct_points),
+        step=1.0,
     ),
     "occupied_points": Metric(
-        "-", "control points in occupied cells of a grid", True, partial(measures.of_path_on_grid, measures.occupied_points)
+        "-",
+        "control points in occupied cells of a grid",
+        True,
+        partial(measures.of_path_on_grid, measures.occupied_points),
+        step=1.0,
     ),
     "gap_reference": Metric("-", "length / length of the best known path of the same kind - 1", True, measures.gap_reference),
     "excess_reference": Metric("u", "length - length of the best known path of the same kind", True, measures.excess_reference),
@@ -179,14 +216,24 @@ METRICS: dict[str, Metric] = {
         **_CELLS8,
     ),
     "octile_bound": Metric("u", "least length of a path of free cells, 1.5 for a diagonal step", False),
-    "homotopy": Metric("-", "class of the path: the sum of 2^k over the circles k that it leaves to its left", True, measures.homotopy),
+    "homotopy": Metric(
+        "-", "class of the path: the sum of 2^k over the circles k that it leaves to its left", True, measures.homotopy, step=1.0
+    ),
     "best_corridor": Metric(
-        "-", "whether the path is free and passes each circle where the shortest one does", False, measures.best_corridor
+        "-",
+        "whether the path is free and passes each circle where the shortest one does",
+        False,
+        measures.best_corridor,
+        step=1.0,
     ),
     "gap4": Metric("-", "cells4 / octile_bound - 1", True, partial(measures.gap_cells, "length4"), least=0.0, **_CELLS4),
     "gap8": Metric("-", "cells8 / octile_bound - 1", True, partial(measures.gap_cells, "length8"), least=0.0, **_CELLS8),
     "straight_blocked": Metric(
-        "-", "whether the straight line from start to target touches an occupied cell", False, measures.straight_blocked
+        "-",
+        "whether the straight line from start to target touches an occupied cell",
+        False,
+        measures.straight_blocked,
+        step=1.0,
     ),
     "history_mean": Metric("u", "mean over the generations of the best objective so far", False, measures.history_mean),
     "deviation": Metric(
@@ -194,37 +241,60 @@ METRICS: dict[str, Metric] = {
     ),
     "distinct_chromosomes": Metric("-", "different chromosomes in the population, mean over the generations", False),
     "mean_q": Metric("-", "mean Q statistic of the pool, mean over the generations", False),
-    "extra_batches": Metric("-", "further batches of offspring that the rule for diversity asked for", False),
+    "extra_batches": Metric("-", "further batches of offspring that the rule for diversity asked for", False, step=1.0),
     "valid_share": Metric("-", "share of the children that the planner kept", False),
-    "outlier": Metric("-", "whether the objective lies beyond the whiskers of its method's box", False, measures.outlier),
+    "outlier": Metric("-", "whether the objective lies beyond the whiskers of its method's box", False, measures.outlier, step=1.0),
     "violation": Metric("-", "mean depth of the samples below the circles, as a share of the radius, summed over circles", False),
     "collisions_a": Metric("particles", "colliding particles an iteration, of 20, the first swarm included", False, least=0.0, most=20.0),
     "collisions_b": Metric("samples", "colliding samples a path that was evaluated, summed over circles", False),
-    "collisions_c": Metric("samples", "colliding samples of the best path, added over iterations", False),
-    "collisions_d": Metric("iterations", "iterations whose best path collides", False),
-    "collisions_e": Metric("-", "whether the final path collides, by the planner's own test", False),
-    "collisions_f": Metric("-", "paths evaluated that collide", False),
-    "bad_samples": Metric("-", "samples of the path that the planner punished", False),
+    "collisions_c": Metric("samples", "colliding samples of the best path, added over iterations", False, step=1.0),
+    "collisions_d": Metric("iterations", "iterations whose best path collides", False, step=1.0),
+    "collisions_e": Metric("-", "whether the final path collides, by the planner's own test", False, step=1.0),
+    "collisions_f": Metric("-", "paths evaluated that collide", False, step=1.0),
+    "bad_samples": Metric("-", "samples of the path that the planner punished", False, step=1.0),
     # Of drives in worlds that move.
     "arrival": Metric("steps", "when the robot arrives", True, least=0.0),
     "steps": Metric("steps", "how long the robot drives and waits", False, least=0.0),
     "travelled": Metric("u", "length of the way driven, whether or not it is free", False, least=0.0),
     "first_plan": Metric("u", "length of the first plan", False, least=0.0),
     "last_plan": Metric("u", "length of the last plan", False, least=0.0),
-    "replans": Metric("-", "plans after the first", False, least=0.0),
+    "replans": Metric("-", "plans after the first", False, least=0.0, step=1.0),
     "waits": Metric("steps", "how long the robot waits", False, least=0.0),
-    "collision_steps": Metric("-", "steps in which the robot is in an obstacle", False, least=0.0),
-    "collided": Metric("-", "whether the robot is in an obstacle at any time", False, measures.collided),
-    "hit_waiting": Metric("-", "whether the robot first collides while it waits", False),
+    "collision_steps": Metric("-", "steps in which the robot is in an obstacle", False, least=0.0, step=1.0),
+    "collided": Metric("-", "whether the robot is in an obstacle at any time", False, measures.collided, step=1.0),
+    "hit_waiting": Metric("-", "whether the robot first collides while it waits", False, step=1.0),
     "clearance_least": Metric("u", "least distance to an obstacle, negative inside a circle", False),
     "gap_arrival": Metric("-", "arrival / earliest arrival found with the future known - 1", True, measures.gap_arrival),
     "clairvoyant_arrival": Metric("steps", "earliest arrival found with the future known", False),
     "clairvoyant_length": Metric("u", "length of the way with the earliest arrival found with the future known", False),
     "replan_mean_s": Metric("s", "CPU seconds of a plan after the first, mean of a drive", False, least=0.0),
     "replan_95_s": Metric("s", "CPU seconds of a plan after the first, 95th percentile of a drive", False, least=0.0),
-    "replans_late": Metric("-", "plans after the first that took longer than a step", False, least=0.0),
+    "replans_late": Metric("-", "plans after the first that took longer than a step", False, least=0.0, step=1.0),
     "replan_max_s": Metric("s", "CPU seconds of a plan after the first, largest of a drive", False, least=0.0),
     "fine_bad": Metric(
-        "-", f"samples of {FINE_SAMPLES} in occupied cells of a grid", False, partial(measures.of_path_on_grid, measures.fine_bad)
+        "-",
+        f"samples of {FINE_SAMPLES} in occupied cells of a grid",
+        False,
+        partial(measures.of_path_on_grid, measures.fine_bad),
+        step=1.0,
     ),
 }
+
+for _within in running_time.TARGETS:
+    _percent = f"{100 * _within:.0f}"
+    METRICS[f"within_{_percent}pct"] = Metric(
+        "-",
+        f"whether the path is certified and at most {_percent} % longer than the exact shortest one",
+        False,
+        partial(running_time.solved, _within),
+        step=1.0,
+    )
+    for _cost, _unit in (("evaluations", "-"), ("cpu_s", "s")):
+        METRICS[f"{_cost}_to_{_percent}pct"] = Metric(
+            _unit,
+            f"{_cost} of all runs of the same method and condition over the number of those within {_percent} %: expected running time",
+            False,
+            partial(running_time.work_to, _cost, _within),
+            least=0.0,
+            of_group=True,
+        )

@@ -11,6 +11,7 @@ from pathlib import Path
 import pandas as pd
 
 from bezierplan.analysis import summary
+from bezierplan.commands import forecast
 from bezierplan.study import reading
 from bezierplan.study.checked import Fault
 
@@ -21,6 +22,7 @@ BLOCK = "outcome"
 # Tables of each study at scale full.
 SENSITIVITY, READINGS = "sensitivity.csv", ("readings.csv", "explained.csv", "held_out.csv")
 WORTH = "worth.csv"
+NUMBERS_FULL = "numbers_papers_size.csv"
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
@@ -34,7 +36,8 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
 
 def write() -> None:
     """Copy the outcome, and insert its table into the README. Raises FileNotFoundError if results are missing."""
-    titles = {key: study.title for key, study in reading.load(reading.read_config({})).items()}
+    studies = reading.load(reading.read_config({}))
+    titles = {key: study.title for key, study in studies.items()}
     of_studies = {name: {key: pd.read_csv(FULL / key / name) for key in titles} for name in (SENSITIVITY, *READINGS)}
     claims = summary.with_readings(pd.read_csv(RESULTS / "claims.csv"), pd.concat(of_studies[SENSITIVITY].values()))
     claims = summary.with_papers_size(claims, pd.read_csv(FULL / "claims.csv"))
@@ -43,12 +46,14 @@ def write() -> None:
     KEPT.mkdir(parents=True, exist_ok=True)
     numbers.to_csv(KEPT / "numbers.csv", index=False)
     claims.to_csv(KEPT / "claims.csv", index=False)
+    shutil.copyfile(FULL / "numbers.csv", KEPT / NUMBERS_FULL)
     found = tuple(pd.concat(of_studies[name].values()) for name in READINGS)
     (KEPT / "summary.md").write_text(summary.report(numbers, claims, measured, titles, RESULTS.name, found), encoding="utf-8")
     for name in of_studies:
         for key in titles:
             shutil.copyfile(FULL / key / name, KEPT / f"{key}_{name}")
     shutil.copyfile(RESULTS / WORTH, KEPT / WORTH)
+    forecast.keep(studies, Path())
     shutil.copyfile(FULL / PICTURE, KEPT / PICTURE.replace("/figures/", "_"))
     README.write_text(summary.with_block(README.read_text(encoding="utf-8"), BLOCK, table(KEPT)), encoding="utf-8")
 

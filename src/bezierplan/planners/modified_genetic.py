@@ -232,7 +232,7 @@ def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarr
     size = rules.population
     children = 2 * rules.pairs * (2 if rules.unmutated else 1)
     pool, spare = gene_lists.empty_pool(size + batches * children, _ROOM), gene_lists.empty_pool(size, _ROOM)
-    child = np.empty(_ROOM, dtype=np.int64)
+    child, memory = np.empty(_ROOM, dtype=np.int64), gene_lists.empty_memory(_ROOM)
     history, distinct = np.empty(rules.iterations + 1), np.empty(rules.iterations + 1)
     q = np.full(rules.iterations, np.nan)
     best, best_cost = np.empty(0, dtype=np.int64), np.inf
@@ -264,7 +264,7 @@ def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarr
             break
 
         wheel = np.cumsum(1.0 / pool.cost[:size])
-        filled, tried, invalid = _add_offspring(rng, pool, size, wheel, eta, child, field, rules)
+        filled, tried, invalid = _add_offspring(rng, pool, size, wheel, eta, child, memory, field, rules)
         evaluations += tried
         bred += children
         lost += invalid
@@ -274,7 +274,7 @@ def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarr
                 if pairs / (filled * (filled - 1) / 2) <= eta:
                     break
                 before = filled
-                filled, tried, invalid = _add_offspring(rng, pool, before, wheel, eta, child, field, rules)
+                filled, tried, invalid = _add_offspring(rng, pool, before, wheel, eta, child, memory, field, rules)
                 pairs += gene_lists.sum_of_q(pool, before, filled, len(field.points))
                 evaluations += tried
                 bred += children
@@ -288,11 +288,11 @@ def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarr
 
 
 @njit(cache=True)
-def _add_offspring(rng, pool, filled, wheel, eta, child, field, rules):
+def _add_offspring(rng, pool, filled, wheel, eta, child, memory, field, rules):
     """Add a batch of offspring of the pool's first chromosomes (Algorithm 2, lines 6 and 7) after those already in it.
 
-    wheel: (population,) running sum of the parents' fitness. Returns the number of chromosomes now in the pool, of chromosomes validated,
-    and of invalid children.
+    wheel: (population,) running sum of the parents' fitness. memory: of validated children, changed in place. Returns the number of
+    chromosomes now in the pool, of chromosomes validated, and of invalid children.
     """
     tried = invalid = 0
     for _ in range(rules.pairs):
@@ -304,7 +304,7 @@ def _add_offspring(rng, pool, filled, wheel, eta, child, field, rules):
                 count = gene_lists.cross(pool, head, tail, cut, child) if crossed else gene_lists.cross(pool, head, head, 0, child)
                 if mutated:
                     count = _mutate(rng, child, count, field, rules)
-                cost, free = _validated(child[:count], pool, head, tail, field, rules)
+                cost, free = _validated(child[:count], memory, field, rules)
                 tried += 1
                 invalid += cost == np.inf
                 for _ in range(rules.replacements):
@@ -326,12 +326,13 @@ def _add_offspring(rng, pool, filled, wheel, eta, child, field, rules):
 
 
 @njit(cache=True)
-def _validated(ones, pool, head, tail, field, rules):
-    """`validate`, without the work for a child that equals one of its parents."""
-    for parent in (head, tail):
-        if pool.cost[parent] < 1.0 / _UNFIT and gene_lists.same(ones, pool.ones[parent, : pool.count[parent]]):
-            return pool.cost[parent], pool.free[parent]
-    return validate(ones, field, rules)
+def _validated(ones, memory, field, rules):
+    """`validate`, without the work for a child that has been there before, as most have once the population is alike."""
+    place, known = gene_lists.entry(ones, memory)
+    if not known:
+        cost, free = validate(ones, field, rules)
+        gene_lists.put(ones, len(ones), cost, free, memory, place)
+    return memory.cost[place], memory.free[place]
 
 
 @njit(cache=True)

@@ -5,6 +5,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, PlainValidator, TypeAdapter, ValidationError
 
 from bezierplan.figures.panels import EACH, Panel, kinds
+from bezierplan.study.experiments import Settings
 from bezierplan.study.model import (
     ARGUMENTS,
     Arguments,
@@ -16,11 +17,13 @@ from bezierplan.study.model import (
     Model,
     Name,
     Names,
+    Setting,
     Statistic,
     Where,
     Whole,
     first_fault,
     listed,
+    mapping_or,
     one_of,
     one_or_list,
     wrong,
@@ -58,6 +61,16 @@ class TableValue(Model):
         return one_or_list(self.statistic)
 
 
+class Monotone(Model):
+    """An entry of a table's `monotone`."""
+
+    metric: Metric = Field(description="the name of a metric")
+    statistic: Statistic = Field(description="the name of a statistic")
+    along: Column = Field(description="a column of the published file, along which the numbers must rise or fall")
+    direction: Literal["up", "down"] = Field(description="up or down; equal numbers are accepted")
+    because: Line = Field(description="why they must, in words")
+
+
 class Pivot(Table):
     """A table of runs, compared with published numbers."""
 
@@ -76,6 +89,10 @@ class Pivot(Table):
         None,
         description="the column of which all runs behind a published number share one value, such as layout: predictions are then for "
         "experiments within one of ours; left out: none",
+    )
+    monotone: list[Monotone] = Field(
+        [],
+        description="orders that the published numbers must keep, which the audit checks: {metric, statistic, along, direction, because}",
     )
     primary: Where = Field({}, description="column → the value whose rows count as the paper's reading in the summary; left out: all rows")
 
@@ -179,3 +196,6 @@ class ConfigFile(Model):
     """The file `config/config.yaml`, or what `--config` gives."""
 
     studies: listed(Line) = Field(description="a list of studies, each the name of a folder in `config/studies` or a path")
+    settings: dict[Name, dict[Name, Annotated[Any, mapping_or(Settings, Setting)]]] = Field(
+        {}, description="study → settings that take the place of those of the same name in its `experiments.yaml`"
+    )

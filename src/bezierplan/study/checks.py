@@ -280,6 +280,8 @@ def _check_table(design: Design, functions: dict[str, Callable], table: Table, p
     _check_names(design, functions, table, place)
     if isinstance(table, Pivot) and table.published:
         published.check(design, table)
+    elif isinstance(table, Pivot) and table.monotone:
+        raise Fault(f"{place}: monotone: the table has no published numbers, which it is about; leave it out")
 
 
 def _check_claim(design: Design, functions: dict[str, Callable], claim: Claim, place: str) -> None:

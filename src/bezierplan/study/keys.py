@@ -32,6 +32,7 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
         ("The file", artefacts.ArtefactsFile),
         ("A **table** has `kind`, and by kind", artefacts.TABLES),
         ("An entry of a table's `values`", artefacts.TableValue),
+        ("An entry of a table's `monotone`", artefacts.Monotone),
         ("A **figure**", artefacts.Figure),
         ("A panel has `kind`, and by kind", panels.kinds()),
     ],

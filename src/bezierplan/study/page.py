@@ -18,20 +18,29 @@ def inputs(given: Studies, scale: str) -> dict[str, list[str]]:
     """Input files of the page: everything that is made at the scale, and the runs behind it."""
     made, runs = _made(given, scale), [_runs(given, scale, key) for key in given]
     summary = f"results/{scale}/summary.md"
-    named = [f"results/{scale}/{name}.csv" for name in ("numbers", "claims")] if summary in made else []
-    merged = {name: list(dict.fromkeys(each for files in runs for each in files[name])) for name in ("runs", "problems", "bounds")}
+    named = [f"results/{scale}/{name}.csv" for name in ("numbers", "claims", "worth")] if summary in made else []
+    merged = {
+        name: list(dict.fromkeys(each for files in runs for each in files[name])) for name in ("runs", "problems", "bounds", "traces")
+    }
     return {"made": made, "summary": named} | merged
 
 
 def params(given: Studies, scale: str) -> dict[str, Any]:
-    """Params of the page. Alternatives are shown if they have been tried: the page does not ask for them."""
-    tried = {key: name for key in given if Path(name := f"results/{scale}/{key}/sensitivity.csv").is_file()}
+    """Params of the page. Alternatives and readings are shown if they have been tried: the page does not ask for them."""
+    tried = {key: _tried(f"results/{scale}/{key}") for key in given}
     return {
-        "job": {"scale": scale, "studies": {key: _study(given, scale, key, tried.get(key)) for key in given}},
-        "tried": content_digest(*tried.values()),
+        "job": {"scale": scale, "studies": {key: _study(given, scale, key, tried[key]) for key in given}},
+        "tried": content_digest(*(file for files in tried.values() for file in files.values())),
         "look": content_digest(*page.files()),
         "code": source_digest(str(targets.SCRIPTS / "page.py")),
     }
+
+
+def _tried(folder: str) -> dict[str, str]:
+    """Tables in the folder of a study that are made only if asked for; those of readings are made together."""
+    files = {name: f"{folder}/{name}.csv" for name in ("sensitivity", "readings", "explained")}
+    there = {name: file for name, file in files.items() if Path(file).is_file()}
+    return there if {"readings", "explained"} <= there.keys() else {name: file for name, file in there.items() if name == "sensitivity"}
 
 
 def _artefacts(given: Studies, scale: str) -> list[tuple[str, str]]:
@@ -48,7 +57,7 @@ def _made(given: Studies, scale: str) -> list[str]:
 
 
 def _runs(given: Studies, scale: str, key: str) -> dict[str, list[str]]:
-    """The runs, problems and bounds behind what is made of a study at a scale."""
+    """The runs, problems and bounds behind what is made of a study at a scale, and the traces of those runs that are drives."""
     found: dict[str, list[str]] = {"runs": [], "problems": [], "bounds": []}
     for own, name in _artefacts(given, scale):
         if own == key:
@@ -56,7 +65,12 @@ def _runs(given: Studies, scale: str, key: str) -> dict[str, list[str]]:
             _add(found, targets.artefact_inputs(given, scale, key, **{kind: name}))
     if scale != "smoke" and given[key].claims:
         _add(found, targets.claims_inputs(given, scale, key))
-    return found
+    return found | {"traces": [str(Path(run).with_suffix(".traces.parquet")) for run in found["runs"] if given[key].moves(_of(run))]}
+
+
+def _of(run: str) -> str:
+    """The experiment of a file of runs."""
+    return Path(run).parts[-3]
 
 
 def _add(found: dict[str, list[str]], more: dict[str, list[str]]) -> None:
@@ -64,7 +78,7 @@ def _add(found: dict[str, list[str]], more: dict[str, list[str]]) -> None:
         files += [each for each in more[name] if each not in files]
 
 
-def _study(given: Studies, scale: str, key: str, tried: str | None) -> dict[str, Any]:
+def _study(given: Studies, scale: str, key: str, tried: dict[str, str]) -> dict[str, Any]:
     """What the page needs to know of a study beside its results."""
     study, folder = given[key], f"results/{scale}/{key}"
     made = [name for own, name in _artefacts(given, scale) if own == key]
@@ -77,7 +91,7 @@ def _study(given: Studies, scale: str, key: str, tried: str | None) -> dict[str,
         "tables": {name: described[name] | {"spec": study.tables[name].plain()} for name in made if name in study.tables},
         "figures": {name: described[name] for name in made if name in study.figures},
         "assumptions": [each.plain() for each in study.assumptions],
-        "files": files | ({"sensitivity": tried} if tried and judged else {}),
+        "files": files | (tried if judged else {}),
         "experiments": _experiments(given, scale, key),
     }
 
@@ -92,9 +106,9 @@ def _experiments(given: Studies, scale: str, key: str) -> dict[str, dict[str, An
     experiments = {}
     for problems, bounds in zip(found["problems"], found["bounds"], strict=True):
         name = Path(problems).stem
-        runs = [each for each in found["runs"] if Path(each).parts[-3] == name]
+        runs, traces = ([each for each in found[kind] if _of(each) == name] for kind in ("runs", "traces"))
         methods = [method for method in study.methods_of(name) if method not in study.baselines]
-        files = {"runs": runs, "problems": problems, "bounds": bounds}
+        files = {"runs": runs, "problems": problems, "bounds": bounds, "traces": traces}
         if runs:
             experiments[name] = {"methods": methods, "repeats": study.experiments[name].repeats[scale]} | files
     return experiments

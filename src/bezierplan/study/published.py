@@ -35,6 +35,9 @@ def check(design: Design, table: Pivot) -> None:
         "method": study.methods_of(experiment),
         "problem": study.problems_of(experiment, "full"),
     }
+    for rule in table.monotone:
+        if rule.along not in keys:
+            raise Fault(f"{place}: line 1: column {rule.along} is missing; the table's key monotone has numbers in order along it")
     lines: dict[tuple, int] = {}
     try:
         rows = [(reader.line_num, row) for row in reader]
@@ -68,6 +71,9 @@ def _check_numbers(row: dict[str, str], place: str) -> None:
 
 
 def _is_number(text: str) -> bool:
+    # An exponent of three digits is no measurement, and would take exact arithmetic for ever.
+    if len(text.lower().partition("e")[2].strip("+-0")) > 2:
+        return False
     try:
         return abs(float(text)) < float("inf") and text.isascii()
     except ValueError:

@@ -2,6 +2,7 @@
 one line (`checked.Fault`).
 """
 
+import json
 import os
 import re
 from collections.abc import Iterable, Mapping
@@ -22,43 +23,63 @@ from bezierplan.study.model import Model, parsed
 M = TypeVar("M", bound=Model)
 
 
-def read_config(given: Mapping[str, Any]) -> list[Path]:
-    """Folders of the studies that a configuration names: config/config.yaml in the working folder, updated with the given values.
+Folders = dict[Path, dict[str, Any]]
+"""Folders of studies, with the settings that take the place of a study's own."""
 
-    Raises Fault.
+
+def read_config(given: Mapping[str, Any], alone: bool = False) -> Folders:
+    """The studies that a configuration names: config/config.yaml in the working folder, updated with the given values, or these alone.
+
+    Alone they count in a workflow that includes this one: config/config.yaml is its own there. Raises Fault.
     """
     file = Path("config/config.yaml")
-    place = f"{file} or --config"
-    content = parsed(ConfigFile, (checked.read(file) if file.is_file() else {}) | dict(given), place)
+    place = "config of the module" if alone else f"{file} or --config"
+    content = parsed(ConfigFile, (checked.read(file) if file.is_file() and not alone else {}) | dict(given), place)
     root = PACKAGE.parents[1] / "config" / "studies"
-    folders = []
+    folders: Folders = {}
     for name in content.studies:
         folder = root / name if "/" not in name else Path(name)
         if not (folder / "experiments.yaml").exists():
             known = [place.parent.name for place in root.glob("*/experiments.yaml")]
             raise Fault(f"{place}: studies: {name}: no experiments.yaml in {relative(folder)}{closest(name, known)}")
-        folders.append(folder)
+        folders[folder] = content.settings.get(folder.resolve().name, {})
+    names = [folder.resolve().name for folder in folders]
+    for name in content.settings:
+        if name not in names:
+            raise Fault(f"{place}: settings: {name}: not one of the studies to run{closest(name, names)}")
     return folders
 
 
-def load(folders: list[Path]) -> dict[str, Study]:
+def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
     """The studies in folders, by name, read and checked; one whose content was checked before is only read. Raises Fault."""
     studies = {}
     for folder in folders:
-        study = read_study(folder)
-        if study.key in studies:
-            raise Fault(f"{relative(folder)}: a study of the name {study.key} is there already; rename the folder")
-        stamp = stamps.stamp_of(folder)
-        if stamp is None or not stamp.exists():
-            check(study)
-            stamps.remember(stamp)
+        changed = folders[folder] if isinstance(folders, dict) else {}
+        try:
+            study = read_study(folder, changed)
+            if study.key in studies:
+                raise Fault(f"{relative(folder)}: a study of the name {study.key} is there already; rename the folder")
+            stamp = stamps.stamp_of(folder, json.dumps(changed, sort_keys=True) if changed else "")
+            if stamp is None or not stamp.exists():
+                check(study)
+                stamps.remember(stamp)
+        except Fault as fault:
+            if not changed:
+                raise
+            raise Fault(f"{fault} (with the configuration's settings: {json.dumps(changed)[:300]})") from None
         studies[study.key] = study
     return studies
 
 
-def read_study(folder: Path) -> Study:
-    """The study in a folder, with each of its files checked on its own. Raises Fault."""
+def read_study(folder: Path, changed: Mapping[str, Any] | None = None) -> Study:
+    """The study in a folder, with each of its files checked on its own. Raises Fault.
+
+    changed: settings that take the place of those of the same name in experiments.yaml; those of one planner are taken one by one.
+    """
     experiments = _read(folder, "experiments", ExperimentsFile)
+    for name, value in (changed or {}).items():
+        own = experiments.settings.get(name)
+        experiments.settings[name] = own | value if isinstance(own, dict) and isinstance(value, dict) else value
     artefacts = _read(folder, "artefacts", ArtefactsFile) or ArtefactsFile()
     claims, assumptions = _read(folder, "claims", ClaimsFile), _read(folder, "assumptions", AssumptionsFile)
     for name in experiments.baselines:

@@ -18,10 +18,13 @@ STAMPS = PACKAGE.parents[1] / ".cache" / "studies"
 MOST_READ = 100_000_000
 
 
-def stamp_of(folder: Path) -> Path | None:
-    """Where the stamp of a study's folder lies; None if its content cannot be known: links, other special files, or too much of it."""
+def stamp_of(folder: Path, changed: str = "") -> Path | None:
+    """Where the stamp of a study's folder lies; None if its content cannot be known: links, other special files, or too much of it.
+
+    changed: what a configuration puts in the place of the study's own, as text.
+    """
     digest = hashlib.sha256(_package().encode())
-    digest.update(folder.resolve().name.encode())
+    digest.update(f"{folder.resolve().name}{changed}".encode())
     read = 0
     try:
         for place, folders, names in os.walk(folder):

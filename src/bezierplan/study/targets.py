@@ -273,6 +273,15 @@ def _audited(study: Study) -> dict[str, Pivot]:
     return {Path(table.published).stem: table for table in study.compared().values() if table.published}
 
 
+def _layout(table: Pivot) -> dict:
+    """What the audit needs to know of a table: columns within whose values rows are ranked, metrics of only some runs, required orders."""
+    return {
+        "columns": [name for name in table.columns if name not in ("value", "statistic")],
+        "selected": sorted({entry.metric for entry in table.values if entry.where}),
+        "monotone": [rule.plain() for rule in table.monotone],
+    }
+
+
 def _audited_experiments(study: Study) -> list[str]:
     return sorted({table.experiment for table in _audited(study).values()})
 
@@ -291,6 +300,7 @@ def audit_params(given: Studies, scale: str, study: str) -> dict:
             "module": own.module(),
             "tables": {name: table.experiment for name, table in _audited(own).items()},
             "primary": {name: table.primary for name, table in _audited(own).items()},
+            "layouts": {name: _layout(table) for name, table in _audited(own).items()},
             "experiments": _audited_experiments(own),
         },
         "published": content_digest(*own.published_files()),

@@ -6,7 +6,7 @@ from importlib import resources
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from bezierplan.figures.page import HERE, content, pictures
+from bezierplan.figures.page import HERE, content, pictures, search
 from bezierplan.figures.page.gather import printed_key
 
 # Verdict -> the class that colours it and its symbol; another verdict gets the last one.
@@ -43,6 +43,7 @@ def html(page: content.Page, folder: Path) -> str:
         "forests": pictures.forests,
         "grid": grid,
         "counts": counts,
+        "entries": search.entries,
         "tip": tip,
         "marks": MARKS,
         "picture": lambda figure: Markup(pictures.data_uri(folder / figure.svg)),

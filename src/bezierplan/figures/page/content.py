@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 from pydantic import BaseModel, ConfigDict, Field
 
-FORMAT = 1
+FORMAT = 2
 """Number of the format; a change that breaks a reader of the JSON raises it."""
 
 Address = Annotated[str, Field(description="what follows # in a link to this place of the page")]
@@ -162,6 +162,41 @@ class Audited(Record):
     printed: Cell
     limit: Cell
     consistent: bool | None
+    arithmetic: str = Field(description="how it was checked, for rules that hold for any paper; otherwise empty")
+
+
+class Worth(Record):
+    """A method beside a baseline that needs no search: medians over conditions of its median over the baseline's."""
+
+    address: Address
+    method: str
+    baseline: str
+    conditions: int = Field(description="conditions under which both have runs")
+    feasible: float = Field(description="share of its runs whose path the certified checker accepts")
+    feasible_baseline: float
+    length: float | None = Field(description="length over the baseline's, feasible runs only")
+    curvature: float | None = Field(description="largest curvature over the baseline's; null also for paths with corners")
+    cornered: bool = Field(description="whether its paths have corners, where the curvature is infinite")
+    cpu: float | None = Field(description="CPU time over the baseline's")
+
+
+class Explanation(Record):
+    """How many published numbers a reading of what the paper leaves open explains."""
+
+    reading: str = Field(description="its choices; `in force` without any")
+    in_range: int = Field(description="numbers in the central 95 % of what experiments of the paper's size would print")
+    numbers: int = Field(description="of how many")
+    by_chance: float | None = Field(description="how many would be on average if each were exchanged with another of its kind")
+
+
+class Explained(Record):
+    """Numbers of a table that readings explain."""
+
+    table: str
+    numbers: int
+    in_force: int = Field(description="explained under the reading in force")
+    best: int = Field(description="explained under the best reading")
+    never: int = Field(description="explained under no reading")
 
 
 class Shown(Record):
@@ -189,14 +224,29 @@ class Study(Record):
     figures: list[Figure]
     audit: list[Audited]
     assumptions: list[Assumption]
+    worth: list[Worth] = []
+    worth_in_words: str = Field("", description="what follows from `worth`")
+    explanations: list[Explanation] = Field([], description="the best readings tried, the best first, and the one in force")
+    readings_tried: int = 0
+    explained: list[Explained] = []
     shown: list[Shown]
     labels: dict[str, str] = Field(description="name -> how it is printed")
+
+
+class World(Record):
+    """How obstacles move while a robot drives: circles, or cells that change. Time is counted in steps."""
+
+    walls: list[float] = Field([], description="lowest and highest x, lowest and highest y of centres, which are reflected there")
+    circles: list[list[float]] = Field([], description="x, y, velocity in x and in y per step, radius; a straight line within a step")
+    moments: list[float] = Field([], description="when cells change, in steps")
+    changed: list[list[int]] = Field([], description="the cells that change at each moment, row by row from the top left one")
 
 
 class Problem(Record):
     """A workspace with start, target and the exact shortest path."""
 
-    workspace: dict[str, Any] = Field(description="its kind, unit and shapes")
+    workspace: str = Field(description="key in `workspaces`; of a world that moves, the workspace at its beginning")
+    world: World | None = Field(None, description="how the obstacles move, if they do")
     start: tuple[float, float]
     target: tuple[float, float]
     bound: float | None = Field(description="length of the exact shortest path")
@@ -218,7 +268,10 @@ class Run(Record):
     curve: str
     path: list[float] = Field(description="x0, y0, x1, y1, ... along the path")
     control: list[float] = Field(description="control points; empty if some are tangents")
-    history: list[tuple[int, float]] = Field(description="generation and best objective, where it changes")
+    history: list[tuple[int, float]] = Field(description="generation and best objective, where it changes; of a drive, each plan's")
+    steps: float | None = Field(None, description="of a drive: time until its end, in steps")
+    driven: list[float] = Field([], description="of a drive: length of the way along `path` at step 0, 1, ... and at the end")
+    collision_step: float | None = Field(None, description="of a drive: time of the first collision, in steps")
 
 
 class Page(Record):
@@ -228,5 +281,6 @@ class Page(Record):
     scale: str
     answer: list[list[Part]] = Field(description="sentences, each in parts")
     studies: dict[str, Study]
+    workspaces: dict[str, dict[str, Any]] = Field(description="kind, unit, bounds and shapes, by the first problem in each")
     problems: dict[str, Problem]
     runs: dict[str, Run]

@@ -7,7 +7,7 @@ import pandas as pd
 
 from bezierplan.analysis import summary
 from bezierplan.figures import style
-from bezierplan.figures.page import content
+from bezierplan.figures.page import content, other
 from bezierplan.figures.page.addresses import address, of_cells
 from bezierplan.study.model import one_or_list
 
@@ -50,18 +50,22 @@ def _flag(row: pd.Series, column: str) -> bool:
     return str(row.get(column)) == "True"
 
 
-def studies(job: dict[str, dict], folder: Path, numbers: pd.DataFrame | None, claims: pd.DataFrame | None) -> dict[str, content.Study]:
+def studies(
+    job: dict[str, dict], folder: Path, numbers: pd.DataFrame | None, claims: pd.DataFrame | None, measured: pd.DataFrame | None
+) -> dict[str, content.Study]:
     """All studies without the runs that the viewer shows, from the csv files in the folder of a scale.
 
     job: study -> `title`, `labels`, `tables` and `figures` (name -> `title`, `caption` and, of tables, `spec`), `assumptions`, `files` (its
-    claims, comparisons of claims, audit and alternatives, as far as there are any). numbers, claims: those of all studies
-    (`analysis.summary`), if the scale has them.
+    claims, comparisons of claims, audit, alternatives and readings, as far as there are any). numbers, claims, measured: those of all
+    studies (`analysis.summary`, `analysis.worth`), if the scale has them.
     """
     outcome = summary.outcome(numbers, claims).to_dict("index") if numbers is not None and claims is not None else {}
-    return {key: _study(key, own, folder, numbers, outcome.get(key, {})) for key, own in job.items()}
+    return {key: _study(key, own, folder, numbers, measured, outcome.get(key, {})) for key, own in job.items()}
 
 
-def _study(key: str, job: dict, folder: Path, numbers: pd.DataFrame | None, outcome: dict[str, int]) -> content.Study:
+def _study(
+    key: str, job: dict, folder: Path, numbers: pd.DataFrame | None, measured: pd.DataFrame | None, outcome: dict[str, int]
+) -> content.Study:
     files = {name: read(file) for name, file in job["files"].items()}
     judged = files.get("claims", pd.DataFrame(columns=["study", "id", "primary", "verdict"]))
     choices = _choices(files.get("sensitivity"), judged)
@@ -77,6 +81,8 @@ def _study(key: str, job: dict, folder: Path, numbers: pd.DataFrame | None, outc
         assumptions=[_assumption(key, each, choices) for each in job["assumptions"]],
         shown=[],
         labels=job["labels"],
+        **(other.of_worth(key, measured) if measured is not None else {}),
+        **(other.of_readings(files["readings"], files["explained"]) if "readings" in files else {}),
     )
 
 
@@ -142,7 +148,8 @@ def _status(table: str, keys: list[str], numbers: pd.DataFrame | None) -> dict[s
         return {}
     own = numbers[numbers["table"] == table.partition("/")[2]]
     columns = [*keys, "metric", "statistic"]
-    return {address(*row[columns]): (_flag(row, "primary"), _flag(row, "counted")) for _, row in own.iterrows()}
+    flags = zip(own["primary"].astype(str) == "True", own["counted"].astype(str) == "True", strict=True)
+    return {address(*place): flag for place, flag in zip(own[columns].itertuples(index=False, name=None), flags, strict=True)}
 
 
 def printed_key(column: str, value: content.Cell, labels: dict[str, str]) -> str:
@@ -270,4 +277,5 @@ def _audited(row: pd.Series) -> content.Audited:
         printed=cell(row["printed"]),
         limit=cell(row["limit"]),
         consistent=None if checked is None else str(checked) == "True",
+        arithmetic=_text(row, "arithmetic"),
     )

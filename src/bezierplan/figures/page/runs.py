@@ -4,6 +4,7 @@ Runs are ranked by their length over the exact bound of their problem, so that t
 """
 
 import json
+from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,8 +15,10 @@ from bezierplan.analysis import results
 from bezierplan.figures.page import content
 from bezierplan.geometry import curves
 from bezierplan.running import problems as problem_files
-from bezierplan.workspaces import files
+from bezierplan.running import worlds as world_files
+from bezierplan.workspaces import files, grid
 from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.workspaces.worlds import MovingCircles, World
 
 # An experiment with more problems than this is shown as a whole only. Failed runs shown of a method.
 MOST_PROBLEMS, MOST_FAILED = 8, 2
@@ -28,21 +31,23 @@ _DRAWN = ["claimed_feasible", "collision_at", "collision_depth", "clearance", "e
 
 
 class Chosen(NamedTuple):
-    """What the viewer shows of an experiment."""
+    """What the viewer shows of an experiment; a workspace for each problem, by the same name."""
 
     shown: list[content.Shown]
     runs: dict[str, content.Run]
+    workspaces: dict[str, dict[str, Any]]
     problems: dict[str, content.Problem]
 
 
 def chosen(study: str, experiment: str, described: dict[str, Any]) -> Chosen:
     """The runs of an experiment that the viewer shows.
 
-    described: `methods`, those that are shown; `repeats`; and the files `runs`, `problems` and `bounds`. Of the runs that are not shown
-    only the lengths are kept.
+    described: `methods`, those that are shown; `repeats`; and the files `runs`, `problems`, `bounds` and, of drives, `traces`. Of the runs
+    that are not shown only the lengths are kept.
     """
     bounds = parquet.read_table(described["bounds"]).to_pandas().set_index("problem")
-    tables = {file: parquet.read_table(file, columns=[*_RANKED, *_DRAWN]) for file in described["runs"]}
+    columns = [*_RANKED, *_DRAWN, *(["steps"] if described.get("traces") else [])]
+    tables = {file: parquet.read_table(file, columns=columns) for file in described["runs"]}
     ranked = pd.concat([table.select(_RANKED).to_pandas().assign(file=file) for file, table in tables.items()])
     ranked = ranked[(ranked["repeat"] < described["repeats"]) & ranked["method"].isin(described["methods"])]
     ranked["gap"] = ranked["length"] / ranked["problem"].map(bounds["bound"]) - 1
@@ -58,11 +63,23 @@ def chosen(study: str, experiment: str, described: dict[str, Any]) -> Chosen:
     named = {name for each in shown for name in (each.best, each.median, each.worst, *each.failed) if name}
     kept = [_drawn(tables[file], rows.index) for file, rows in ranked[ranked["id"].isin(named)].groupby("file", sort=False)]
     rows = pd.concat(kept) if kept else ranked
-    made = problem_files.read(described["problems"])
+    made, moving = problem_files.read(described["problems"]), world_files.read(described["problems"])
+    traces = _traces(described.get("traces", []), rows["id"].tolist())
     prefix = f"{study}/{experiment}/"
     runs = {row["id"]: _run(row, made[row["problem"]].workspace.bounds, prefix + row["problem"]) for _, row in rows.iterrows()}
-    problems = {prefix + name: _problem(made[name], bounds.loc[name]) for name in rows["problem"].unique()}
-    return Chosen(shown, runs, problems)
+    for name, trace in traces.items():
+        row = rows[rows["id"] == name].iloc[0]
+        runs[name] = _drive(runs[name], trace, row, moving[row["problem"]].pace)
+    named = rows["problem"].unique()
+    workspaces = {prefix + name: _shapes(made[name]) for name in named}
+    problems = {prefix + name: _problem(prefix + name, made[name], moving.get(name), bounds.loc[name]) for name in named}
+    return Chosen(shown, runs, workspaces, problems)
+
+
+def _traces(named: list[str], ids: list[str]) -> dict[str, np.ndarray]:
+    """Places (steps + 1, 2) of some drives at step 0, 1, ... and at their end."""
+    tables = [parquet.read_table(file, columns=["id", "x", "y"], filters=[("id", "in", ids)]) for file in named]
+    return {row["id"]: np.column_stack([row["x"], row["y"]]) for table in tables for row in table.to_pylist()}
 
 
 def _drawn(table: Any, rows: pd.Index) -> pd.DataFrame:
@@ -80,12 +97,17 @@ def _shown(experiment: str, problem: str, method: str, runs: pd.DataFrame) -> co
     )
 
 
-def _problem(problem: Problem, bound: pd.Series) -> content.Problem:
+def _shapes(problem: Problem) -> dict[str, Any]:
+    shapes = json.loads(files.to_json(problem.workspace), parse_float=lambda text: float(f"{float(text):.7g}"))
+    return shapes | {"bounds": list(problem.workspace.bounds)}
+
+
+def _problem(workspace: str, problem: Problem, world: World | None, bound: pd.Series) -> content.Problem:
     size = _size(problem.workspace.bounds)
     path = np.asarray(bound["bound_path"], dtype=float)
-    shapes = json.loads(files.to_json(problem.workspace), parse_float=lambda text: float(f"{float(text):.7g}"))
     return content.Problem(
-        workspace=shapes | {"bounds": list(problem.workspace.bounds)},
+        workspace=workspace,
+        world=None if world is None else _world(world),
         start=problem.start,
         target=problem.target,
         bound=float(bound["bound"]) if np.isfinite(bound["bound"]) else None,
@@ -93,10 +115,51 @@ def _problem(problem: Problem, bound: pd.Series) -> content.Problem:
     )
 
 
+def _world(world: World) -> content.World:
+    if isinstance(world, MovingCircles):
+        table = np.column_stack([world.centres, world.velocities, world.radii])
+        return content.World(walls=list(world.walls), circles=[[float(f"{value:.7g}") for value in circle] for circle in table])
+    cells = ["".join(grid.to_lines(each)) for each in world.maps]
+    changed = [[n for n, (was, now) in enumerate(zip(before, after, strict=True)) if was != now] for before, after in pairwise(cells)]
+    return content.World(moments=world.moments.tolist(), changed=changed)
+
+
+def _drive(run: content.Run, trace: np.ndarray, row: pd.Series, pace: float) -> content.Run:
+    """A run with what belongs to a drive; the place of its first collision is where the robot was then."""
+    size = float(np.ptp(trace, axis=0).max()) or 1.0
+    driven, steps, collision = _driven(np.reshape(run.path, (-1, 2)), trace, pace), float(row["steps"]), None
+    if np.isfinite(row["collision_at"]):
+        times = np.append(np.arange(len(trace) - 1), steps)
+        collision = tuple(float(np.interp(row["collision_at"], times, along)) for along in trace.T)
+    more = {
+        "control": [],
+        "driven": _rounded(driven, size),
+        "steps": steps,
+        "collision": collision,
+        "collision_step": _finite(row["collision_at"]),
+    }
+    return run.model_copy(update=more)
+
+
+def _driven(path: np.ndarray, trace: np.ndarray, pace: float) -> np.ndarray:
+    """Length of the way (n,) along a path (m, 2) at each place (n, 2) of a drive on it, which covers at most a pace from one to the next.
+
+    A way may cross itself, so each place is looked for within a pace of the one before.
+    """
+    import shapely
+    from shapely.ops import substring
+
+    line, found = shapely.LineString(path if len(path) > 1 else np.repeat(path, 2, axis=0)), [0.0]
+    for place in shapely.points(trace[1:].astype(float)):
+        ahead = substring(line, found[-1], found[-1] + pace)
+        found.append(found[-1] + shapely.line_locate_point(ahead, place) if ahead.length > 0 else found[-1])
+    return np.array(found)
+
+
 def _run(row: pd.Series, bounds: tuple[float, float, float, float], problem: str) -> content.Run:
     path, size = results.path_of(row), _size(bounds)
     collision = None
-    if path is not None and not row["feasible"] and np.isfinite(row["collision_at"]):
+    if path is not None and "steps" not in row and not row["feasible"] and np.isfinite(row["collision_at"]):
         collision = tuple(float(value) for value in curves.point_at(path, row["collision_at"]))
     return content.Run(
         problem=problem,

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
 
-from bezierplan.analysis import metrics
+from bezierplan.analysis import metrics, running_time
 from bezierplan.figures import style
 from bezierplan.figures.panels import RunsPanel
 from bezierplan.study.model import Line, Metric
@@ -35,15 +35,19 @@ class Options(RunsPanel):
 
     metric: Metric = Field("objective", description="what is ranked, the name of a metric; left out: objective")
     printed: Line = Field(None, description="the name of a published table whose mean ranks are shown besides")
+    unit: Literal["repeat", "problem"] = Field(
+        "repeat", description="in what methods are ranked: each repeat of a condition (left out: this), or each problem, by the median run"
+    )
 
 
 @Options.filled
-def data(results: Results, *, metric: str, printed: str | None) -> pd.DataFrame:
+def data(results: Results, *, metric: str, printed: str | None, unit: Literal["repeat", "problem"]) -> pd.DataFrame:
     """One row per rank; columns: method, part, value, until, methods and units (counts), chi2, p_value, difference.
 
     Parts: rank (the mean rank of a method, 1 for the lowest values; ties share the mean of their ranks), published (that of the
-    paper), alike (from one rank to another, between which no two differ by more than the critical difference). A unit is a repeat of a
-    condition, in which every method is ranked. chi2 and p_value: Friedman's test; difference: Nemenyi's critical difference at 5 %.
+    paper), alike (from one rank to another, between which no two differ by more than the critical difference). In a unit every method
+    is ranked: a repeat of a condition or, with `problem`, a condition, by the lower median of its repeats. chi2 and p_value: Friedman's
+    test; difference: Nemenyi's critical difference at 5 %.
 
     metric: what is ranked. printed: the published table whose mean ranks are also shown. Raises ValueError for fewer than three
     methods, and if a unit lacks one.
@@ -52,7 +56,10 @@ def data(results: Results, *, metric: str, printed: str | None) -> pd.DataFrame:
     from scipy import stats
 
     runs = results.runs.assign(value=metrics.values(results.runs, metric, results.problems))
-    table = runs.pivot_table(index=["condition", "repeat"], columns="method", values="value", dropna=False)
+    if unit == "problem":
+        table = running_time.by_problem(runs, runs["value"].to_numpy())
+    else:
+        table = runs.pivot_table(index=["condition", "repeat"], columns="method", values="value", dropna=False)
     units, methods = table.shape
     if methods < 3 or table.isna().any(axis=None):
         raise ValueError(f"mean ranks need at least three methods with a {metric} in every repeat; found {methods} in {units}")
@@ -102,7 +109,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     axes.set_ylim(top - half, _ABOVE)
     axes.set_box_aspect(min(1.2, 0.055 * (_ABOVE - top + half)))
     chance = f"p = {tested['p_value']:.2g}" if tested["p_value"] >= 1e-4 else "p below 0.0001"
-    words = f"{tested['units']:g} repeats; Friedman chi2 {tested['chi2']:.1f}, {chance}"
+    units = "problems" if panel.get("unit") == "problem" else "repeats"
+    words = f"{tested['units']:g} {units}; Friedman chi2 {tested['chi2']:.1f}, {chance}"
     return words if printed.empty else f"{words}\nin parentheses: the published mean rank"
 
 

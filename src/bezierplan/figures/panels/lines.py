@@ -94,7 +94,9 @@ def summary(results: Results, keys: list[str], metric: str, statistic: str) -> p
         numbers = np.sort(own["value"].dropna().to_numpy())
         named = dict(zip(keys, key))
         name = "/".join([metric, statistic, *(f"{column}={value}" for column, value in named.items())])
-        low, high = statistics.interval(statistic, numbers, generator(name))
+        low, high = np.nan, np.nan
+        if not metrics.METRICS[metric].of_group:
+            low, high = statistics.interval(statistic, numbers, generator(name))
         counts = {"runs": len(own), "feasible_runs": int(own["feasible"].sum()), "n": len(numbers)}
         rows.append(constants(runs) | named | counts | {"value": statistics.statistic(statistic, numbers), "low95": low, "high95": high})
     return pd.DataFrame(rows)

@@ -7,8 +7,8 @@ import numpy as np
 from numba import njit
 
 from bezierplan.geometry.region import GridRegion, from_origin, occupied_around, walled
-from bezierplan.geometry.shortest_paths.graph import Bound, along, moved, no_path, shortest_in_graph, way_back
-from bezierplan.geometry.shortest_paths.lattice import lattice_path
+from bezierplan.geometry.shortest_paths import shadows
+from bezierplan.geometry.shortest_paths.graph import Bound, along, moved, no_path, shortest_in_graph
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 
@@ -39,14 +39,15 @@ def shortest_on_grid(problem: Problem, blocked: GridRegion, corner_cutting: str)
     ends = from_origin(np.array([problem.start, problem.target], dtype=float), blocked)
     scale = _lattice(ends / blocked.cell, min(_FINEST_LATTICE, _LARGEST_WHOLE // max(cells.shape)))
     lattice = np.concatenate([np.rint(ends / blocked.cell * scale).astype(np.int64), corners * scale])
-    slopes = np.concatenate([[0, 0], slopes])
     if len(lattice) > MOST_NODES and corner_cutting == "open":
-        most = _least_over_cells(problem)
-        if math.isinf(most):
+        if not _joined(cells, lattice[0], lattice[1], scale):
             return no_path()
-        nodes = _search_grid(np.concatenate([ends / blocked.cell, corners]), lattice, slopes, cells, scale, most)
+        direct = bool((lattice[0] == lattice[1]).all()) or _sees(lattice[0], lattice[1], cells, scale, False)
+        points = np.concatenate([ends / blocked.cell, corners])
+        nodes = shadows.search(shadows.scene(cells, corners, slopes, scale), lattice[:2], points, direct)
         return moved(along(np.concatenate([ends, corners * blocked.cell]), nodes), blocked.origin)
     refuse_large(len(lattice))
+    slopes = np.concatenate([[0, 0], slopes])
     quadrants = np.concatenate([np.zeros((2, 2), dtype=np.int64), quadrants])
     visible = _visible_on_grid(lattice, slopes, quadrants, cells, scale, corner_cutting == "closed")
     return moved(shortest_in_graph(np.concatenate([ends, corners * blocked.cell]), visible), blocked.origin)
@@ -120,53 +121,15 @@ def _lattice(points: np.ndarray, finest: int) -> int:
     return scale if exact and scale <= finest else finest
 
 
-def _least_over_cells(problem: Problem) -> float:
-    """Length in cells of the shortest path over the centres of free cells, with start and target joined to the centres of their own cells:
-    an upper bound of the shortest path. Infinite if there is none, since then there is no path at all; the largest float if start or target
-    lies on the side of an occupied cell.
-    """
-    grid = problem.workspace
-    start, target = (grid.cell_of(*end) for end in (problem.start, problem.target))
-    if grid.occupied[start] or grid.occupied[target]:
-        return np.finfo(float).max
-    ends = sum(
-        math.dist(end, grid.centre(row * grid.occupied.shape[1] + column)) for end, (row, column) in zip(problem[2:], (start, target))
-    )
-    return lattice_path(grid.occupied, start, target, math.sqrt(2), "free").length + ends / grid.cell
+def _joined(cells: np.ndarray, start: np.ndarray, target: np.ndarray, scale: int) -> bool:
+    """Whether free cells lead from one free point of the lattice to another; they may meet at a corner only."""
+    from scipy import ndimage
 
-
-@njit(cache=True)
-def _search_grid(points, lattice, slopes, cells, scale, most):
-    """The nodes of a shortest path from node 0 to node 1 by the algorithm A*, empty if there is no path; pairs are tested only when needed.
-
-    points: (n, 2) in cells, lattice: (n, 2) the same in integers. most: in cells, a length that the path does not exceed.
-    """
-    ahead = np.hypot(points[:, 0] - points[1, 0], points[:, 1] - points[1, 1])
-    length = np.full(len(points), np.inf)
-    before = np.full(len(points), -1)
-    left = np.flatnonzero(np.hypot(points[:, 0] - points[0, 0], points[:, 1] - points[0, 1]) + ahead <= most * (1 + 1e-9))
-    length[0] = 0.0
-    while len(left) > 0:
-        best = 0
-        for k in range(len(left)):
-            if length[left[k]] + ahead[left[k]] < length[left[best]] + ahead[left[best]]:
-                best = k
-        i = left[best]
-        if i == 1 or length[i] == np.inf:
-            break
-        left[best] = left[-1]
-        left = left[:-1]
-        for j in left:
-            dx, dy = lattice[j, 0] - lattice[i, 0], lattice[j, 1] - lattice[i, 1]
-            if slopes[i] * dx * dy < 0 or slopes[j] * dx * dy < 0:
-                continue
-            so_far = length[i] + math.sqrt((points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2)
-            if so_far >= length[j] or so_far + ahead[j] > most * (1 + 1e-9):
-                continue
-            if (dx == 0 and dy == 0) or _sees(lattice[i], lattice[j], cells, scale, False):
-                length[j] = so_far
-                before[j] = i
-    return way_back(before, length[1])
+    parts, _ = ndimage.label(~cells, np.ones((3, 3)))
+    # All free cells around a point are in the same part.
+    around = (parts[-(-y // scale) : y // scale + 2, -(-x // scale) : x // scale + 2] for x, y in (start, target))
+    one, other = (part.max() for part in around)
+    return one == other
 
 
 @njit(cache=True)

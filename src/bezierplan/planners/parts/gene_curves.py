@@ -57,10 +57,21 @@ def _collides_at_first_sight(points, occupied):
     walk.
     """
     last = parts(points)
-    x, y = sample(points, last, max(1, last // _FIRST_SAMPLES))
-    for s in range(len(x)):
-        column, row = math.floor(x[s]), math.floor(y[s])
-        inside = x[s] - column > _ON_LINE and column + 1 - x[s] > _ON_LINE and y[s] - row > _ON_LINE and row + 1 - y[s] > _ON_LINE
+    stride = max(1, last // _FIRST_SAMPLES)
+    degree = len(points) - 1
+    for s in range(last // stride + 1):
+        # The terms of `sample` in the same order, one sample at a time: most curves collide at one of the first.
+        t = s * stride / last
+        x, y, power, binomial = points[0, 0], points[0, 1], 1.0, 1.0
+        for i in range(1, degree + 1):
+            binomial *= (degree - i + 1) / i
+            power *= t
+            x = x * (1.0 - t) + power * (binomial * points[i, 0])
+            y = y * (1.0 - t) + power * (binomial * points[i, 1])
+        if stride == 1 and s == last:
+            x, y = points[degree, 0], points[degree, 1]
+        column, row = math.floor(x), math.floor(y)
+        inside = x - column > _ON_LINE and column + 1 - x > _ON_LINE and y - row > _ON_LINE and row + 1 - y > _ON_LINE
         if inside and occupied[row, column]:
             return True
     return False

@@ -138,18 +138,59 @@ def q(one: np.ndarray, other: np.ndarray, genes: int) -> float:
 def sum_of_q(pool: Pool, first: int, filled: int, genes: int) -> float:
     """Sum of Q over the pairs of the pool whose second chromosome is at a place from `first` on.
 
-    Most pairs share no gene. A word of 64 bits for each chromosome, with the bit of each gene's number modulo 64 set, identifies most of
-    these.
+    A pool holds many copies, so Q is computed once for each pair of distinct chromosomes; the sum is made in the order of the places.
     """
-    marks = np.zeros(filled, dtype=np.uint64)
+    kind, heads, kinds = np.empty(filled, dtype=np.int64), np.empty(filled, dtype=np.int64), 0
     for i in range(filled):
-        for k in range(pool.count[i]):
-            marks[i] |= np.uint64(1) << np.uint64(pool.ones[i, k] & 63)
+        k = 0
+        while k < kinds:
+            head = heads[k]  # equal chromosomes have equal costs
+            if pool.cost[i] == pool.cost[head] and same(pool.ones[i, : pool.count[i]], pool.ones[head, : pool.count[head]]):
+                break
+            k += 1
+        if k == kinds:
+            heads[kinds] = i
+            kinds += 1
+        kind[i] = k
+    values, marked = np.empty((kinds, kinds)), np.zeros(genes, dtype=np.int64)
+    for k in range(kinds):
+        one = heads[k]
+        for gene in pool.ones[one, : pool.count[one]]:
+            marked[gene] = 1
+        for m in range(k + 1):
+            other, both = heads[m], 0
+            for n in range(pool.count[other]):
+                both += marked[pool.ones[other, n]]
+            only_one, only_other = pool.count[one] - both, pool.count[other] - both
+            values[k, m] = values[m, k] = q_statistic(both, genes - both - only_one - only_other, only_one, only_other)
+        for gene in pool.ones[one, : pool.count[one]]:
+            marked[gene] = 0
     total = 0.0
     for j in range(max(first, 1), filled):
+        row = values[kind[j]]
         for i in range(j):
-            if marks[i] & marks[j]:
-                total += q(pool.ones[i, : pool.count[i]], pool.ones[j, : pool.count[j]], genes)
-            else:
-                total += q_statistic(0, genes - pool.count[i] - pool.count[j], pool.count[i], pool.count[j])
+            total += row[kind[i]]
     return total
+
+
+# Entries of a memory of chromosomes.
+_REMEMBERED = 1024
+
+
+@njit(cache=True)
+def empty_memory(room: int) -> Pool:
+    """A memory of the costs of chromosomes of `room` genes each; a newer one can overwrite an older one."""
+    memory = empty_pool(_REMEMBERED, room)
+    memory.count[:] = -1
+    return memory
+
+
+@njit(cache=True)
+def entry(ones: np.ndarray, memory: Pool) -> tuple[int, bool]:
+    """The place of a chromosome in a memory, and whether it is there."""
+    mixed = np.uint64(len(ones))
+    for gene in ones:
+        mixed = (mixed ^ np.uint64(gene)) * np.uint64(0x9E3779B97F4A7C15)
+        mixed ^= mixed >> np.uint64(29)
+    place = np.int64(mixed & np.uint64(_REMEMBERED - 1))
+    return place, memory.count[place] == len(ones) and same(ones, memory.ones[place, : memory.count[place]])

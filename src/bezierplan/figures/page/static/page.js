@@ -1,25 +1,13 @@
 // Links into closed parts, tooltips by keyboard, search, filters, and tables that sort. Without this script the page shows the same content.
-const data = JSON.parse(document.getElementById("page-data").textContent);
 const find = (id) => document.getElementById(id);
 
-// ---------------------------------------------------------------------------------------------------------------------
 // Tables: the library's text is a module of its own, which a blob makes importable from a single file.
 
 let library;
 
 function loadLibrary() {
-  if (!library) {
-    const url = URL.createObjectURL(new Blob([find("page-tables").textContent], { type: "text/javascript" }));
-    library = import(url).finally(() => URL.revokeObjectURL(url));
-  }
+  library ??= import(URL.createObjectURL(new Blob([find("page-tables").textContent], { type: "text/javascript" })));
   return library;
-}
-
-const sortable = new WeakMap();
-
-function makeSortable(table) {
-  if (!sortable.has(table)) sortable.set(table, enhance(table));
-  return sortable.get(table);
 }
 
 async function enhance(table) {
@@ -33,7 +21,7 @@ async function enhance(table) {
 }
 
 function makeVisibleTablesSortable(root) {
-  return Promise.all([...root.querySelectorAll("table.sortable")].filter((table) => table.offsetParent).map(makeSortable));
+  return Promise.all([...root.querySelectorAll("table.sortable")].filter((table) => table.offsetParent).map((table) => (table.made ??= enhance(table))));
 }
 
 document.addEventListener("toggle", (event) => {
@@ -41,7 +29,6 @@ document.addEventListener("toggle", (event) => {
 }, true);
 makeVisibleTablesSortable(document);
 
-// ---------------------------------------------------------------------------------------------------------------------
 // Addresses
 
 function address() {
@@ -80,7 +67,6 @@ addEventListener("afterprint", () => {
   }
 });
 
-// ---------------------------------------------------------------------------------------------------------------------
 // Tooltips: titles appear on hover only, so focus shows them as well.
 
 const tip = find("page-tip");
@@ -114,7 +100,6 @@ addEventListener("scroll", () => {
   else tip.hidden = true;
 }, { passive: true });
 
-// ---------------------------------------------------------------------------------------------------------------------
 // Filters of claims by verdict
 
 for (const filter of document.querySelectorAll(".filter")) {
@@ -130,49 +115,17 @@ for (const filter of document.querySelectorAll(".filter")) {
   });
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
 // Search: every word must occur in an entry.
-
-function* entries() {
-  const digits = (value) => (value === null ? "–" : String(Number(value.toPrecision(4))));
-  for (const [key, study] of Object.entries(data.studies)) {
-    const named = (name) => study.labels[name] ?? name;
-    yield { kind: "paper", address: study.address, text: study.title, more: key };
-    for (const claim of study.claims) {
-      yield { kind: `claim, ${claim.verdict}`, address: claim.address, text: `${claim.id} ${claim.statement}`, more: `${key} ${claim.comparisons.map((each) => each.name).join(" ")}` };
-    }
-    for (const table of study.tables) {
-      const title = `${table.name.replaceAll("_", " ")}: ${table.title}`;
-      yield { kind: "table", address: table.address, text: title, more: key };
-      for (const number of table.numbers) {
-        if (number.published === null) continue;
-        const values = `${digits(number.published)} → ${digits(number.ours)} ${number.verdict}`;
-        yield { kind: `number, ${table.name}`, address: number.address, text: `${number.row}: ${number.column}: ${values}`,
-          more: `${key} ${table.title} ${number.metric} ${number.statistic} ${Object.values(number.keys).join(" ")}`, later: !number.primary };
-      }
-    }
-    for (const figure of study.figures) yield { kind: "figure", address: figure.address, text: `${figure.name.replaceAll("_", " ")}: ${figure.title}`, more: key };
-    for (const open of study.assumptions) yield { kind: "open choice", address: open.address, text: `${open.id} ${open.detail}`, more: `${key} ${open.setting}` };
-    for (const shown of study.shown) {
-      const where = shown.problem ? `on ${named(shown.problem)}` : "on all problems";
-      for (const which of ["best", "median", "worst"]) {
-        if (shown[which]) {
-          yield { kind: "path", address: shown[which], text: `${which} feasible run of ${named(shown.method)} ${where}, ${shown.experiment}`,
-            more: `${key} ${shown.method} ${shown[which]}`, later: Boolean(shown.problem) };
-        }
-      }
-    }
-  }
-}
 
 let index;
 const query = find("page-query"), hits = find("page-hits"), found = find("page-found");
 
 function search() {
   const words = query.value.toLowerCase().split(/\s+/).filter(Boolean);
-  index ??= [...entries()].map((each) => ({ ...each, all: `${each.kind} ${each.address} ${each.text} ${each.more}`.toLowerCase() }));
+  index ??= JSON.parse(find("page-index").textContent).map(([kind, address, text, more, later]) => (
+    { kind, address, text, later, all: `${kind} ${address} ${text} ${more}`.toLowerCase() }));
   const matching = words.length ? index.filter((each) => words.every((word) => each.all.includes(word))) : [];
-  const rank = (each) => (each.later ? 2 : 0) + (words.every((word) => each.text.toLowerCase().includes(word)) ? 0 : 1);
+  const rank = (each) => (each.later ? 2 : 0) + (words.every((word) => each.text.toLowerCase().split(/[^\p{L}\d-]+/u).includes(word)) ? 0 : 1);
   const best = matching.map((each) => [rank(each), each]).sort((one, other) => one[0] - other[0]).slice(0, 30);
   hits.replaceChildren(...best.map(([, each]) => {
     const link = Object.assign(document.createElement("a"), { href: `#${encodeURI(each.address)}`, textContent: each.text });
@@ -185,15 +138,11 @@ function search() {
   found.textContent = words.length ? `${matching.length} found` : "";
 }
 
-function closeSearch() {
-  hits.hidden = true;
-}
-
 function moveAmongHits(event) {
   const links = [...hits.querySelectorAll("a")];
   const at = links.indexOf(document.activeElement);
   if (event.key === "Escape") {
-    closeSearch();
+    hits.hidden = true;
     query.focus();
   } else if (event.key === "ArrowDown") links[Math.min(at + 1, links.length - 1)]?.focus();
   else if (event.key === "ArrowUp") (at > 0 ? links[at - 1] : query).focus();
@@ -209,9 +158,9 @@ document.querySelector(".search").addEventListener("keydown", moveAmongHits);
 hits.addEventListener("click", (event) => {
   const link = event.target.closest("a");
   if (link && link.hash === location.hash) openAddress();
-  closeSearch();
+  hits.hidden = true;
 });
-document.addEventListener("click", (event) => { if (!event.target.closest(".search")) closeSearch(); });
+document.addEventListener("click", (event) => { if (!event.target.closest(".search")) hits.hidden = true; });
 document.addEventListener("keydown", (event) => {
   if (event.key === "/" && !event.target.closest("input, select, textarea")) {
     event.preventDefault();

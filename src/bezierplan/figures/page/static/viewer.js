@@ -1,4 +1,4 @@
-// The path viewer: choose a run, see it in its workspace.
+// The path viewer: choose a run, see it in its workspace; a drive plays.
 const data = JSON.parse(document.getElementById("page-data").textContent);
 const form = document.getElementById("viewer");
 const SVG = "http://www.w3.org/2000/svg";
@@ -18,7 +18,6 @@ function line(flat) {
   return text;
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
 // Workspace and path
 
 function obstacles(workspace) {
@@ -44,29 +43,86 @@ function cells({ rows, cell, origin = [0, 0] }) {
   return text;
 }
 
-function drawMap(problem, run) {
-  const map = document.getElementById("viewer-map");
-  const [left, right, bottom, top] = problem.workspace.bounds;
+// Circles at a time: uniform motion, with centres reflected at walls, to the whole step before and the one after, and straight between.
+function movedCircles({ walls: [left, right, bottom, top], circles }, time) {
+  const step = Math.floor(time);
+  const fold = (at, low, width) => {
+    const along = ((at - low) % (2 * width) + 2 * width) % (2 * width);
+    return low + Math.min(along, 2 * width - along);
+  };
+  const between = (at, speed, low, high) => {
+    const [before, after] = [step, step + 1].map((when) => fold(at + speed * when, low, high - low));
+    return before + (time - step) * (after - before);
+  };
+  return circles.map(([x, y, u, v, radius]) => [between(x, u, left, right), between(y, v, bottom, top), radius]);
+}
+
+function workspaceAt({ workspace: name, world }, time) {
+  const workspace = data.workspaces[name];
+  if (world?.circles.length) return { ...workspace, circles: movedCircles(world, time) };
+  if (!world) return workspace;
+  const width = workspace.rows[0].length, all = [...workspace.rows.join("")];
+  for (const number of world.changed.filter((_, n) => world.moments[n] <= time).flat()) all[number] = all[number] === "#" ? "." : "#";
+  return { ...workspace, rows: workspace.rows.map((_, row) => all.slice(row * width, (row + 1) * width).join("")) };
+}
+
+// The way driven until a time; of a run that is no drive, its path.
+function wayUntil({ path, driven, steps }, time) {
+  if (steps === null || time >= steps) return path;
+  const step = Math.floor(time), share = (time - step) / (Math.min(step + 1, steps) - step);
+  let left = driven[step] + share * (driven[step + 1] - driven[step]), n = 0;
+  for (let piece; n + 3 < path.length && left > (piece = Math.hypot(path[n + 2] - path[n], path[n + 3] - path[n + 1])); n += 2) left -= piece;
+  const [x, y, u = x, v = y] = path.slice(n, n + 4), part = left / (Math.hypot(u - x, v - y) || 1);
+  return [...path.slice(0, n + 2), x + part * (u - x), y + part * (v - y)];
+}
+
+function drawMap(problem, run, time = Infinity) {
+  const map = document.getElementById("viewer-map"), workspace = workspaceAt(problem, Math.min(time, run.steps ?? 0));
+  const [left, right, bottom, top] = workspace.bounds, way = wayUntil(run, time);
   const size = Math.max(right - left, top - bottom), pad = 0.03 * size, mark = 0.011 * size;
   map.setAttribute("viewBox", [left - pad, -top - pad, right - left + 2 * pad, top - bottom + 2 * pad].join(" "));
   const [x, y] = problem.start, [u, v] = problem.target;
-  const parts = [draw("rect", { class: "ground", x: left, y: -top, width: right - left, height: top - bottom }), ...obstacles(problem.workspace)];
+  const parts = [draw("rect", { class: "ground", x: left, y: -top, width: right - left, height: top - bottom }), ...obstacles(workspace)];
   if (run.control.length) parts.push(draw("path", { class: "control", d: line(run.control) }));
-  if (run.path.length) parts.push(draw("path", { class: "path", d: line(run.path) }));
+  if (way.length) parts.push(draw("path", { class: "path", d: line(way) }));
   if (problem.bound_path.length) parts.push(draw("path", { class: "bound", d: line(problem.bound_path) }));
   for (let n = 0; n < run.control.length; n += 2) {
     parts.push(draw("circle", { class: "point", cx: run.control[n], cy: -run.control[n + 1], r: 0.6 * mark }));
   }
   parts.push(draw("rect", { class: "end", x: x - mark, y: -y - mark, width: 2 * mark, height: 2 * mark }));
   parts.push(draw("path", { class: "end", d: `M${u} ${-v - 1.3 * mark}l${1.3 * mark} ${2.2 * mark}h${-2.6 * mark}z` }));
-  if (run.collision) {
+  if (run.steps !== null) parts.push(draw("circle", { class: "robot", cx: way.at(-2), cy: -way.at(-1), r: mark }));
+  if (run.collision && (run.collision_step ?? 0) <= time) {
     const [p, q] = run.collision, arm = 1.2 * mark;
     parts.push(draw("path", { class: "hit", d: `M${p - arm} ${-q - arm}l${2 * arm} ${2 * arm}m0 ${-2 * arm}l${-2 * arm} ${2 * arm}` }));
   }
   map.replaceChildren(...parts);
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
+// Time of a drive, whose state is that of the slider
+
+const STEPS_A_SECOND = 12;
+const [player, clock, play, step] = ["time", "clock", "play", "step"].map((name) => document.getElementById(`viewer-${name}`));
+let drawn;
+
+function showTime(time) {
+  clock.value = time;
+  step.textContent = `step ${Math.floor(time)} of ${Math.ceil(clock.max)}`;
+  drawMap(drawn.problem, drawn.run, time < clock.max ? time : Infinity);
+}
+
+function setPlaying(plays) {
+  play.textContent = plays ? "Pause" : "Play";
+  play.dataset.since = plays ? performance.now() : "";
+  if (plays) requestAnimationFrame(playOn);
+}
+
+function playOn(now) {
+  if (!play.dataset.since) return;
+  showTime(Math.min(clock.max, Number(clock.value) + Math.max(0, now - play.dataset.since) / 1000 * STEPS_A_SECOND));
+  setPlaying(clock.value < Number(clock.max));
+}
+
 // Convergence and facts
 
 function drawHistory(history) {
@@ -84,16 +140,15 @@ function drawHistory(history) {
     draw("text", { x: left, y: 147 }, "generation 0"), draw("text", { x: right, y: 147, "text-anchor": "end" }, String(last)));
 }
 
-function number(value) {
-  return value === null ? "–" : String(Number(value.toPrecision(5)));
-}
+const number = (value) => (value === null ? "–" : String(Number(value.toPrecision(5))));
 
 function showFacts(id, run, problem) {
-  const unit = problem.workspace.unit;
-  const gap = run.length === null || !problem.bound ? "" : `, ${(100 * (run.length / problem.bound - 1)).toFixed(1)} % above the bound`;
+  const { unit } = data.workspaces[problem.workspace], drive = run.steps !== null;
+  const gap = !run.feasible || !problem.bound ? "" : `, ${(100 * (run.length / problem.bound - 1)).toFixed(1)} % above the bound`;
   const facts = [
-    ["Verdict", run.feasible ? "feasible by the certified check" : "not feasible: it collides"],
-    ["Planner's opinion", run.claimed ? "feasible" : "not feasible"],
+    ["Verdict", run.feasible ? "feasible by the certified check" : `not feasible: it ${run.collision ? "collides" : "does not arrive"}`],
+    drive ? ["Drive", `${run.claimed ? "arrives" : "stops"} after ${number(run.steps)} steps` +
+      (run.collision ? `; first collision at step ${number(run.collision_step)}` : "")] : ["Planner's opinion", run.claimed ? "feasible" : "not feasible"],
     ["Length", run.length === null ? "no path" : `${number(run.length)} ${unit}${gap}`],
     ["Exact shortest", problem.bound === null ? "no free path" : `${number(problem.bound)} ${unit}`],
     run.feasible ? ["Clearance", `${number(run.clearance)} ${unit}`] : ["Collision depth", `${number(run.depth)} ${unit}`],
@@ -107,14 +162,11 @@ function showFacts(id, run, problem) {
   document.getElementById("viewer-link").href = `#${encodeURI(id)}`;
 }
 
-// ---------------------------------------------------------------------------------------------------------------------
 // Choices, each of which narrows those after it
 
 const NAMES = ["study", "experiment", "problem", "method"];
 
-function label(study, name) {
-  return data.studies[study]?.labels[name] ?? name.replaceAll("_", " ");
-}
+const label = (study, name) => data.studies[study]?.labels[name] ?? name.replaceAll("_", " ");
 
 function fill(select, options, wanted) {
   select.replaceChildren(...options.map(([value, text]) => new Option(text, value)));
@@ -137,7 +189,12 @@ function narrow(wanted) {
   fill(form.run, [...named, ...shown.failed.map((id, n) => [id, `failed ${n + 1}`])], wanted.run);
   document.getElementById("viewer-note").textContent = `${shown.feasible} of ${shown.count} runs are feasible.`;
   const run = data.runs[form.run.value], problem = data.problems[run.problem];
-  drawMap(problem, run);
+  drawn = { problem, run };
+  player.hidden = run.steps === null;
+  clock.max = run.steps ?? 0;
+  clock.step = clock.max / 100;
+  setPlaying(false);
+  showTime(clock.max);
   drawHistory(run.history);
   showFacts(form.run.value, run, problem);
 }
@@ -162,6 +219,11 @@ if (form) {
   narrow({});
   openRun();
   addEventListener("hashchange", openRun);
-  form.addEventListener("change", () => narrow(chosen()));
+  form.addEventListener("change", (event) => { if (event.target !== clock) narrow(chosen()); });
+  clock.addEventListener("input", () => showTime(Number(clock.value)));
+  play.addEventListener("click", () => {
+    if (Number(clock.value) >= clock.max) showTime(0);
+    setPlaying(!play.dataset.since);
+  });
   form.addEventListener("submit", (event) => event.preventDefault());
 }

@@ -1,0 +1,60 @@
+"""Is an installation sound? Its numbers beside those of the kept outcome, by a test that a sound one fails with a stated probability.
+
+On the platform of the kept outcome the numbers are equal. On another the last bit of a library's `sin` can differ, a search amplifies it,
+and a number is that of other runs of the same distribution. Then two estimates differ by chance: each has a bootstrap interval, from which
+its standard error follows, and Student's t with the degrees of freedom of the smaller sample judges their difference. Bonferroni's
+correction over all numbers limits the probability that any of them fails by chance.
+"""
+
+import numpy as np
+import pandas as pd
+from scipy import stats
+
+ERROR_RATE = 0.01
+"""How often a sound installation fails, at most: equal seeds make its runs more alike than independent ones."""
+ALIKE = 1e-6
+"""Relative difference of numbers that no chance decides, such as lengths of exact paths."""
+TIMES = ("s", "ms")
+"""Units of metrics that differ from machine to machine."""
+
+_WIDTH = 2 * stats.norm.ppf(0.975)
+
+
+def compared(kept: pd.DataFrame, own: pd.DataFrame) -> pd.DataFrame:
+    """The numbers of an installation's comparison beside those kept of the same table: the columns that name one, value_kept, value_own, p.
+
+    p: probability of a difference as large by chance; nan where nothing can be said: times, numbers of fewer than two runs, extremes.
+    """
+    names = [*own.columns[: own.columns.get_loc("unit") + 1], "n_published", "value_published"]
+    kept, own = (frame.assign(**{name: frame[name].astype(str) for name in names}).drop_duplicates(names) for frame in (kept, own))
+    both = kept.merge(own, on=names, suffixes=("_kept", "_own"))
+    values, widths, sizes = (
+        [both[f"{name}_{side}"].to_numpy(dtype=float) for side in ("kept", "own")] for name in ("value_ours", "width", "n_ours")
+    )
+    found = both[names].assign(value_kept=values[0], value_own=values[1], p=p_values(values, widths, sizes))
+    return found.assign(p=found["p"].where(~both["unit"].isin(TIMES)))
+
+
+def with_width(comparison: pd.DataFrame) -> pd.DataFrame:
+    """A comparison with the width of the interval of each number."""
+    return comparison.assign(width=comparison["high95_ours"] - comparison["low95_ours"])
+
+
+def p_values(values: list[np.ndarray], widths: list[np.ndarray], sizes: list[np.ndarray]) -> np.ndarray:
+    """Two-sided p of the difference of pairs of estimates, from the widths of their 95 % bootstrap intervals and their numbers of runs.
+
+    nan without an interval. A bootstrap's standard error is too small by sqrt(1 - 1/n).
+    """
+    least = np.minimum(*sizes)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        errors = [width / _WIDTH / np.sqrt(1 - 1 / size) for width, size in zip(widths, sizes)]
+        difference = np.abs(values[0] - values[1])
+        p = 2 * stats.t.sf(difference / np.hypot(*errors), np.maximum(least - 1, 1))
+    alike = difference <= ALIKE * np.maximum(np.abs(values[0]), np.abs(values[1]))
+    p = np.where(alike, 1.0, p)
+    return np.where((least < 2) | np.isnan(widths[0]) | np.isnan(widths[1]), np.nan, p)
+
+
+def failed(found: pd.DataFrame) -> pd.DataFrame:
+    """The numbers that differ by more than chance, at `ERROR_RATE` for all together, the least probable first."""
+    return found[found["p"] * found["p"].notna().sum() < ERROR_RATE].sort_values("p")

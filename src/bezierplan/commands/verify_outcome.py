@@ -1,0 +1,76 @@
+"""Numbers made here beside those of docs/outcome: is this installation sound? `make verify-outcome` makes the tables first.
+
+These are the tables that are compared with published numbers: minutes, where the whole outcome takes hours.
+"""
+
+import sys
+from argparse import ArgumentParser
+
+import pandas as pd
+
+from bezierplan.analysis import verification
+from bezierplan.commands import outcome
+from bezierplan.running.digest import PACKAGE
+from bezierplan.study import reading
+from bezierplan.study.checked import Fault
+from bezierplan.study.definition import Study
+
+KEPT = PACKAGE.parents[1] / outcome.KEPT / outcome.NUMBERS_FULL
+RESULTS = outcome.FULL
+SHOWN = 10
+"""Numbers of which a failure tells."""
+
+
+def main(parser: ArgumentParser, words: list[str]) -> None:
+    """Print how many numbers agree; exit code 1 if any differs by more than chance. Raises FileNotFoundError without tables."""
+    parser.add_argument("--targets", action="store_true", help="print the tables to be made first, as targets of snakemake")
+    given = parser.parse_args(words)
+    studies = reading.load(reading.read_config({}))
+    if given.targets:
+        print(" ".join(f"{key}_{table}" for key, table in tables(studies)))
+        return
+    found = verified(studies)
+    told = verification.failed(found)
+    print("\n".join(lines(found, told)))
+    sys.exit(1 if len(told) else 0)
+
+
+def tables(studies: dict[str, Study]) -> list[tuple[str, str]]:
+    """The tables compared with published numbers, by study and name."""
+    return [(key, name) for key, study in studies.items() for name, table in study.compared().items() if table.published]
+
+
+def verified(studies: dict[str, Study]) -> pd.DataFrame:
+    """The numbers of all tables, made here and kept (`verification.compared`). Raises FileNotFoundError, and Fault if none are alike."""
+    kept = verification.with_width(pd.read_csv(KEPT))
+    found = []
+    for key, table in tables(studies):
+        file = RESULTS / key / "tables" / f"{table}.comparison.csv"
+        if not file.is_file():
+            raise FileNotFoundError(f"{file}: not there; make verify-outcome makes it")
+        own = verification.with_width(pd.read_csv(file))
+        one = verification.compared(kept[(kept["study"] == key) & (kept["table"] == table)], own)
+        found.append(
+            pd.DataFrame({"number": f"{key}/{table}/" + _named(one, own), **{c: one[c] for c in ("value_kept", "value_own", "p")}})
+        )
+    numbers = pd.concat(found, ignore_index=True) if found else pd.DataFrame(columns=["number", "p"])
+    if numbers["p"].notna().sum() == 0:
+        raise Fault(f"{RESULTS}: no number of {KEPT.relative_to(PACKAGE.parents[1])} is here; expected tables of the configured studies")
+    return numbers
+
+
+def _named(one: pd.DataFrame, own: pd.DataFrame) -> pd.Series:
+    """What each number is, from the columns up to the statistic."""
+    return one[list(own.columns[: own.columns.get_loc("statistic") + 1])].agg("/".join, axis=1)
+
+
+def lines(found: pd.DataFrame, failed: pd.DataFrame) -> list[str]:
+    """The outcome of the verification, one line each."""
+    tested = found[found["p"].notna()]
+    equal = int((tested["value_kept"] == tested["value_own"]).sum())
+    told = [f"{len(tested)} numbers compared, {equal} equal, {len(failed)} different by more than chance"]
+    if failed.empty:
+        return [*told, f"sound: a sound installation fails with a probability of at most {verification.ERROR_RATE:.0%}"]
+    for row in failed.head(SHOWN).itertuples():
+        told.append(f"  {row.number}: {row.value_own:.6g} here, {row.value_kept:.6g} kept, p = {row.p:.2g}")
+    return [*told, f"not sound: chance alone does this with a probability of at most {verification.ERROR_RATE:.0%}"]

@@ -1,0 +1,55 @@
+"""Content of the page from tables beside those of the paper: what the methods are worth, and which readings explain its numbers."""
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from bezierplan.analysis import worth
+from bezierplan.figures.page import content
+from bezierplan.figures.page.addresses import address
+
+# Readings shown of a study, beside the one in force, which readings.csv calls so.
+MOST_READINGS, IN_FORCE = 10, "in force"
+
+
+def of_worth(study: str, measured: pd.DataFrame) -> dict[str, Any]:
+    """Fields `worth` and `worth_in_words` of a study, from worth.csv; none for a study without methods there."""
+    own = measured[measured["study"] == study]
+    if own.empty:
+        return {}
+    rows = [
+        content.Worth(
+            address=address(study, "worth", row["method"]),
+            **{name: row[name] for name in ("method", "baseline", "conditions", "feasible", "feasible_baseline")},
+            length=_known(row["length"]),
+            curvature=_known(row["curvature"]),
+            cornered=bool(np.isinf(row["curvature"])),
+            cpu=_known(row["cpu"]),
+        )
+        for row in own.to_dict("records")
+    ]
+    return {"worth": rows, "worth_in_words": worth.sentence(own)}
+
+
+def of_readings(tried: pd.DataFrame, explained: pd.DataFrame) -> dict[str, Any]:
+    """Fields `explanations`, `readings_tried` and `explained` of a study, from readings.csv, whose best row is first, and explained.csv."""
+    named = tried["reading"] == IN_FORCE
+    shown = pd.concat([tried[:MOST_READINGS], tried[MOST_READINGS:][named[MOST_READINGS:]]])
+    tables = [
+        content.Explained(
+            table=str(table),
+            numbers=len(rows),
+            in_force=int(rows["in_force"].sum()),
+            best=int(rows["best"].sum()),
+            never=int((rows["readings"] == 0).sum()),
+        )
+        for table, rows in explained.groupby("table", sort=False)
+    ]
+    columns = ["reading", "in_range", "numbers", "by_chance"]
+    rows = [content.Explanation(**row | {"by_chance": _known(row["by_chance"])}) for row in shown[columns].to_dict("records")]
+    return {"explanations": rows, "readings_tried": len(tried), "explained": tables}
+
+
+def _known(value: float) -> float | None:
+    return float(value) if np.isfinite(value) else None

@@ -1,0 +1,61 @@
+"""What the search of the page finds: an entry for each paper, claim, number, table, figure, open choice and run shown."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+from bezierplan.figures.page.content import Number, Page, Shown, Study
+
+
+class Entry(NamedTuple):
+    """A place of the page. kind, text: as shown. more: further words that find it. later: whether it stands behind the others."""
+
+    kind: str
+    address: str
+    text: str
+    more: str
+    later: bool = False
+
+
+def entries(page: Page) -> list[Entry]:
+    """All entries, in the order of the page."""
+    return [entry for key, study in page.studies.items() for entry in _of_study(key, study)]
+
+
+def _of_study(key: str, study: Study) -> Iterator[Entry]:
+    yield Entry("paper", study.address, study.title, key)
+    for claim in study.claims:
+        compared = " ".join(each.name for each in claim.comparisons)
+        yield Entry(f"claim, {claim.verdict}", claim.address, f"{claim.id} {claim.statement}", f"{key} {claim.verdict} {compared}")
+    for table in study.tables:
+        yield Entry("table", table.address, f"{_words(table.name)}: {table.title}", key)
+        yield from (_of_number(number, table.name, f"{key} {table.title}") for number in table.numbers if number.published is not None)
+    for row in study.worth:
+        text = f"{study.labels.get(row.method, _words(row.method))} beside the exact shortest path with rounded corners"
+        yield Entry("worth", row.address, text, f"{key} {row.method}", True)
+    for figure in study.figures:
+        yield Entry("figure", figure.address, f"{_words(figure.name)}: {figure.title}", key)
+    for choice in study.assumptions:
+        yield Entry("open choice", choice.address, f"{choice.id} {choice.detail}", f"{key} {choice.setting}")
+    for shown in study.shown:
+        yield from _of_runs(key, shown, study.labels)
+
+
+def _of_number(number: Number, table: str, more: str) -> Entry:
+    values = f"{number.published:.4g} → {'–' if number.ours is None else f'{number.ours:.4g}'} {number.verdict}"
+    column = number.column if number.statistic in number.column else f"{number.column}, {number.statistic}"
+    keys = " ".join(str(value) for value in number.keys.values())
+    more = f"{more} {number.metric} {number.statistic} {keys}"
+    return Entry(f"number, {table}", number.address, f"{number.row}: {column}: {values}", more, not number.primary)
+
+
+def _of_runs(key: str, shown: Shown, labels: dict[str, str]) -> Iterator[Entry]:
+    where = f"on {labels.get(shown.problem, _words(shown.problem))}" if shown.problem else "on all problems"
+    method = labels.get(shown.method, _words(shown.method))
+    for which, run in (("best", shown.best), ("median", shown.median), ("worst", shown.worst)):
+        if run:
+            text = f"{which} feasible run of {method} {where}, {_words(shown.experiment)}"
+            yield Entry("path", run, text, f"{key} {shown.method}", bool(shown.problem))
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")

@@ -1,0 +1,114 @@
+"""Expected running times of methods to paths within 1, 2, 5 and 10 % of the exact shortest one (`analysis.running_time`)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.analysis import running_time
+from bezierplan.figures import style
+from bezierplan.figures.panels import RunsPanel
+from bezierplan.workspaces.seeds import generator
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
+_DRAWS = 1000
+
+# Distance of the marks of one method, as a share of the distance between methods.
+_APART = 0.18
+
+_NAMES = {"evaluations": "expected evaluations", "cpu_s": "expected CPU time (s)"}
+
+
+class Options(RunsPanel):
+    """Keys of a panel."""
+
+    cost: Literal["evaluations", "cpu_s"] = Field(description="what is counted: evaluations or cpu_s")
+
+
+def data(results: Results, *, cost: Literal["evaluations", "cpu_s"]) -> pd.DataFrame:
+    """One row per method and target; columns: method, within, value, low95, high95, problems, reached, runs, successes.
+
+    value: the expected running time, on several problems (conditions) the lower median over them; infinite where at least half of them are
+    never solved. low95, high95: its 95 % bootstrap interval, from runs drawn within each problem or, where each has one run of a method,
+    from problems. reached: problems with a success; runs, successes: counts over all problems.
+
+    Raises ValueError if a method lacks runs on a problem.
+    """
+    import pandas as pd
+
+    runs, rows = results.runs.sort_values("id"), []
+    for within in running_time.TARGETS:
+        marked = runs.assign(done=running_time.solves(runs, within))
+        running_time.by_problem(marked, marked["done"].to_numpy(dtype=float))
+        for method, own in marked.groupby("method"):
+            groups = [(group[cost].to_numpy(dtype=float), group["done"].to_numpy()) for _, group in own.groupby("condition")]
+            values = np.array([running_time.expected(work.sum(), done.sum()) for work, done in groups])
+            low, high = _interval(groups, values, generator(f"expected running time/{cost}/{within}/{method}"))
+            counts = {
+                "problems": len(groups),
+                "reached": int(np.isfinite(values).sum()),
+                "runs": len(own),
+                "successes": int(own["done"].sum()),
+            }
+            rows.append({"method": method, "within": within, "value": _middle(values), "low95": low, "high95": high, **counts})
+    return pd.DataFrame(rows)
+
+
+def _middle(values: np.ndarray) -> np.ndarray:
+    """The lower median along the last axis; infinite numbers are numbers."""
+    return np.quantile(values, 0.5, axis=-1, method="inverted_cdf")
+
+
+def _interval(groups: list[tuple[np.ndarray, np.ndarray]], values: np.ndarray, rng: np.random.Generator) -> tuple[float, float]:
+    """The 95 % percentile interval of the median over problems, each given by the work and the success of its runs."""
+    if max(len(work) for work, _ in groups) == 1:
+        drawn = _middle(values[rng.integers(len(values), size=(_DRAWS, len(values)))]) if len(values) > 1 else np.full(_DRAWS, np.nan)
+    else:
+        again = []
+        for work, done in groups:
+            times = rng.multinomial(len(work), np.full(len(work), 1 / len(work)), size=_DRAWS)
+            again.append(running_time.expected(times @ work, times @ done.astype(float)))
+        drawn = _middle(np.array(again).T)
+    low, high = np.quantile(drawn, [0.025, 0.975], method="inverted_cdf")
+    return float(low), float(high)
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data`, a line of marks per method; returns the note below the panel's title."""
+    methods, targets = style.in_order(frame["method"], panel), sorted(frame["within"].unique())
+    finite = frame["value"][np.isfinite(frame["value"]) & (frame["value"] > 0)]
+    low, high = (finite.min(), finite.max()) if len(finite) else (1.0, 10.0)
+    axes.set_xscale("log")
+    axes.set_xlim(low / 2, high * 3)
+    for number, (target, look) in enumerate(zip(targets, style.lines([str(target) for target in targets]))):
+        own = frame[frame["within"] == target].set_index("method").reindex(methods)
+        heights = np.arange(len(methods)) + _APART * (number - (len(targets) - 1) / 2)
+        known = np.isfinite(own["value"].to_numpy())
+        ends = [own[name].clip(low / 2, high * 3)[known] for name in ("low95", "high95")]
+        axes.hlines(heights[known], *ends, color=look["color"], linewidth=0.8, zorder=2, label="95 % interval")
+        mark = look | {"linestyle": "", "zorder": 3}
+        axes.plot(own["value"][known], heights[known], label=f"within {100 * target:g} %", **mark)
+    for height, method in enumerate(methods):
+        own = frame[frame["method"] == method].sort_values("within")
+        reached = " ".join(f"{count:g}" for count in own["reached" if own["problems"].iloc[0] > 1 else "successes"])
+        axes.text(1.02, height, reached, transform=axes.get_yaxis_transform(), va="center", ha="left")
+    axes.set_yticks(range(len(methods)), [scene.labels.get(method, method) for method in methods])
+    axes.set_ylim(len(methods) - 0.5, -0.5)
+    axes.tick_params(axis="y", length=0)
+    axes.set_box_aspect(min(1.4, 0.14 + 0.12 * len(methods)))
+    axes.set_xlabel(_NAMES[panel["cost"]])
+    axes.grid(visible=True, axis="x")
+    first = frame.iloc[0]
+    targets_named = ", ".join(f"{100 * target:g}" for target in targets)
+    if first["problems"] > 1:
+        return f"median over {first['problems']:g} problems; right: on how many of them any run is within {targets_named} %"
+    fewest, most = frame["runs"].min(), frame["runs"].max()
+    runs = f"{fewest:g}" if fewest == most else f"{fewest:g} to {most:g}"
+    return f"{runs} runs a method; right: how many of them are within {targets_named} %"

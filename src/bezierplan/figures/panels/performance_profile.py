@@ -1,0 +1,119 @@
+"""Performance profiles: the share of problems on which a method is at most so many times worse than the best one (Dolan and More 2002)."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from bezierplan.analysis import running_time
+from bezierplan.figures import style
+from bezierplan.figures.panels import RunsPanel
+from bezierplan.study.model import Positive, wrong
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.analysis.results import Results
+
+# Room beyond the largest ratio, as a factor of the axis, so that the level that a line ends at can be seen.
+_ROOM = 1.15
+
+# Ratios that the axis may name.
+_RATIOS = (1.01, 1.02, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0, 5.0, *(10.0**power for power in range(1, 13)))
+
+_AXES = {
+    "length": "length / shortest length of all methods",
+    "evaluations": "expected evaluations / fewest of all methods",
+    "cpu_s": "expected CPU time / least of all methods",
+}
+
+
+class Options(RunsPanel):
+    """Keys of a panel."""
+
+    cost: Literal["length", "evaluations", "cpu_s"] = Field(
+        description="what is compared: length (of the median run), or the expected evaluations or cpu_s to a path within a share of the "
+        "exact bound"
+    )
+    within: Positive = Field(None, description="with evaluations and cpu_s, that share, a number above 0, such as 0.05")
+
+    @model_validator(mode="after")
+    def _check_within(self) -> Options:
+        if (self.cost == "length") == ("within" in self.model_fields_set):
+            raise wrong(f"within: {'is for evaluations and cpu_s alone' if self.cost == 'length' else f'cost {self.cost} needs it'}")
+        return self
+
+
+@Options.filled
+def data(results: Results, *, cost: Literal["length", "evaluations", "cpu_s"], within: float | None) -> pd.DataFrame:
+    """One row per step of a method's profile; columns: method, ratio, share, problems, reached, solved.
+
+    share: of the problems on which the method's cost is at most ratio times the best one. A problem is a condition. The length is that of
+    the median run, infinite if it is not certified; the other costs are expected running times (`analysis.running_time`), infinite if no
+    run is within the share. problems: all of them; reached: those on which the method's cost is finite; solved: those with a finite cost of
+    any method. The others count for no method.
+
+    Raises ValueError if a method lacks runs on a problem.
+    """
+    import pandas as pd
+
+    runs = results.runs
+    values = (
+        running_time.certified_length(runs, results.problems)
+        if within is None
+        else running_time.work_to(cost, within, runs, results.problems)
+    )
+    table = running_time.by_problem(runs, values)
+    found, rows = running_time.ratios(table), []
+    solved = int(np.isfinite(found).any(axis=1).sum())
+    for method in found:
+        steps = np.sort(found[method][np.isfinite(found[method])].to_numpy())
+        counts = {"problems": len(found), "reached": len(steps), "solved": solved}
+        level = np.searchsorted(steps, np.unique(steps), side="right") / len(found)
+        rows += [{"method": method, "ratio": ratio, "share": share, **counts} for ratio, share in zip(np.unique(steps), level)]
+        if not len(steps):
+            rows.append({"method": method, "ratio": 1.0, "share": 0.0, **counts})
+    return pd.DataFrame(rows)
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data`; returns the note below the panel's title."""
+    end = max(frame["ratio"].max(), 1.01) ** _ROOM
+    methods = style.in_order(frame["method"], panel)
+    for number, (method, look) in enumerate(zip(methods, style.lines(methods))):
+        own = frame[frame["method"] == method]
+        places = np.concatenate([[1.0], own["ratio"], [end]])
+        heights = np.concatenate([[0.0], own["share"], own["share"].iloc[-1:]])
+        # Marks at different steps, because lines may end at one height.
+        marks = look | {"markevery": sorted({1 + number * len(own) // len(methods), len(places) - 1}), "clip_on": False}
+        axes.plot(places, heights, drawstyle="steps-post", label=scene.labels.get(method, method), **marks)
+    axes.set_xscale("log")
+    axes.set_xlim(1, end)
+    _name_ratios(axes, end)
+    axes.set_ylim(0, 1.02)
+    axes.set_xlabel(_AXES[panel["cost"]])
+    axes.set_ylabel("share of problems")
+    axes.grid(visible=True)
+    counts = frame.iloc[0]
+    words = f"{counts['problems']:g} problem{'s' if counts['problems'] != 1 else ''}"
+    if panel["cost"] == "length":
+        return f"{words}; solved by the median run of any method: {counts['solved']:g}"
+    return f"to within {100 * panel['within']:g} % of the exact shortest path; {words}, solved by any method: {counts['solved']:g}"
+
+
+def _name_ratios(axes: Axes, end: float) -> None:
+    """A few ratios as plain numbers, with room for their digits."""
+    from matplotlib.ticker import FixedLocator, NullLocator
+
+    named = [1.0]
+    for value in _RATIOS:
+        # A quarter of the axis holds the longest of them.
+        if value <= end and math.log(value / named[-1]) >= 0.24 * math.log(end):
+            named.append(value)
+    axes.xaxis.set_major_locator(FixedLocator(named))
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.set_xticks(named, [f"{value:,.10g}" for value in named])

@@ -1,0 +1,56 @@
+"""The archive: what it holds, and that the validator refuses a crate that is not complete."""
+
+import importlib.util
+import json
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+SCRIPT, PYTHON = ROOT / "workflow/archive/archive.py", ROOT / ".cache/archive/bin/python"
+
+
+@pytest.fixture(scope="module")
+def archive():
+    spec = importlib.util.spec_from_file_location("archive", SCRIPT)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def tree(folder):
+    results = folder / "results/full"
+    for name in ("one/runs/e/m/0.parquet", "one/logs/page.log", "one/sensitivity/O1/claims.csv", "one/sensitivity.csv", "page.log"):
+        (results / name).parent.mkdir(parents=True, exist_ok=True)
+        (results / name).touch()
+    (results / "index.html").write_text("<!doctype html>")
+    return results
+
+
+def test_results_go_in_without_logs_and_without_runs_of_alternatives(archive, tmp_path):
+    results = tree(tmp_path)
+    names = [str(file.relative_to(results)) for file in archive.result_files(results)]
+    assert names == ["index.html", "one/runs/e/m/0.parquet", "one/sensitivity.csv"]
+
+
+def test_scale_without_a_page_is_one_line(tmp_path):
+    done = subprocess.run(["python3", SCRIPT, "extended"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 1
+    assert done.stderr == "results/extended/index.html: not found; make it with snakemake extended\n"
+
+
+@pytest.mark.skipif(not PYTHON.exists(), reason="no environment of make archive; set it up with make .cache/archive/ready")
+def test_validator_accepts_the_archive_and_refuses_one_whose_run_names_no_workflow(tmp_path):
+    tree(tmp_path)
+    done = subprocess.run([PYTHON, SCRIPT], cwd=tmp_path, capture_output=True, text=True)
+    assert (done.returncode, done.stdout.endswith(".zip: accepted as a Workflow Run Crate\n")) == (0, True), done.stderr
+    (metadata,) = tmp_path.glob("archive/*/ro-crate-metadata.json")
+    crate = json.loads(metadata.read_text())
+    for entity in crate["@graph"]:
+        if entity["@id"] == "#run":
+            del entity["instrument"]
+    metadata.write_text(json.dumps(crate))
+    words = "import archive, pathlib, sys; print(archive.check(pathlib.Path(sys.argv[1])))"
+    done = subprocess.run([PYTHON, "-c", words, metadata.parent], cwd=SCRIPT.parent, capture_output=True, text=True)
+    assert "instrument" in done.stdout

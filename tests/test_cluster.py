@@ -1,0 +1,135 @@
+"""The profiles for clusters: the README's lines on a Slurm of one node, and the generic profile on a stand-in for qsub.
+
+Both must give the bits of a run without a cluster. The copy of the tree has an environment of its own, which sees this one's packages, so
+that `make cluster` can add to it.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import sysconfig
+from pathlib import Path
+
+import pytest
+import slurm
+import yaml
+
+ROOT = Path(__file__).parents[1]
+TREE = (
+    "Snakefile",
+    "Makefile",
+    "environment.txt",
+    "environment-build.txt",
+    "environment-cluster.txt",
+    "workflow",
+    "src",
+    "config",
+    "profiles",
+)
+(LINES,) = re.findall(r"^## From a laptop to a cluster$.*?^```sh\n(.*?)^```$", (ROOT / "README.md").read_text(), flags=re.M | re.S)
+COMMANDS = [re.split(r"\s+# ", line)[0] for line in LINES.splitlines()]
+PROFILES = {name: yaml.safe_load((ROOT / "profiles" / name / "profile.yaml").read_text()) for name in ("default", "slurm", "cluster")}
+RUN = "results/smoke/song2016/runs/routes/smooth/0.parquet"
+
+
+@pytest.fixture(scope="module")
+def tree(tmp_path_factory):
+    """A copy of the tree whose configuration names song2016 alone."""
+    tree = tmp_path_factory.mktemp("cluster") / "tree"
+    tree.mkdir()
+    for name in TREE:
+        (shutil.copytree if (ROOT / name).is_dir() else shutil.copy2)(ROOT / name, tree / name)
+    (tree / "config" / "config.yaml").write_text("studies: [song2016]\n")
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", tree / ".venv"], check=True)
+    (site,) = (tree / ".venv").glob("lib/python*/site-packages")
+    (site / "original.pth").write_text(f"{sysconfig.get_path('purelib')}\n")
+    (site / "bezierplan.pth").write_text("../../../../src\n")
+    (tree / ".venv" / "ready").touch()
+    # pytest may run with modules of its own; the tree's programs stand in its environment as in any other.
+    (tree / ".venv" / "bin" / "snakemake").write_text(f'#!/bin/sh\nexec "{tree}/.venv/bin/python" -m snakemake "$@"\n')
+    (tree / ".venv" / "bin" / "snakemake").chmod(0o755)
+    for name in ("slurm", "cluster"):  # a test need not wait as long between two looks as a cluster of many users
+        file = tree / "profiles" / name / "profile.yaml"
+        file.write_text(re.sub(r"(checks|latency-wait): \d+", r"\1: 2", file.read_text()))
+    done = executed(tree, "make cluster")
+    if done.returncode:
+        pytest.skip(f"Snakemake's plugins for clusters cannot be installed here: {done.stderr.strip().splitlines()[-1]}")
+    return tree
+
+
+def executed(tree, command, **environment):
+    """What a command does in the tree's environment, within ten minutes."""
+    own = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"} | environment
+    words = ["timeout", "--kill-after=5", "600", "bash", "-c", f". .venv/bin/activate && {command}"]
+    return subprocess.run(words, cwd=tree, env=own, capture_output=True, text=True, check=False)
+
+
+def digests(tree):
+    """Hash of each run table at scale smoke, by name."""
+    printed = executed(tree, "python -m bezierplan digest results/smoke").stdout
+    return {name: digest for digest, name in map(str.split, printed.splitlines())}
+
+
+@pytest.fixture(scope="module")
+def local(tree):
+    """Hashes of the runs made without a cluster."""
+    done = executed(tree, "snakemake smoke --workflow-profile profiles/default")
+    assert done.returncode == 0, done.stderr
+    found = digests(tree)
+    shutil.rmtree(tree / "results")
+    assert len(found) == 8
+    return found
+
+
+def test_lines_of_the_readme_work_on_slurm_and_give_the_same_bits(tree, local, tmp_path_factory):
+    if slurm.obstacle():
+        pytest.skip(f"no Slurm: {slurm.obstacle()}")
+    with slurm.running(tmp_path_factory.mktemp("slurm")):
+        for command in COMMANDS[1:]:
+            done = executed(tree, f"{command} --dry-run" if "extended" in command and command.startswith("snakemake") else command)
+            assert done.returncode == 0, done.stdout + done.stderr
+            if command == "snakemake smoke --workflow-profile profiles/slurm":
+                submitted = len(re.findall("submitted with SLURM jobid", done.stdout + done.stderr))
+    assert digests(tree) == local
+    assert submitted == 3  # problems and bounds; runs; what shows them
+    assert (tree / "results/smoke/index.html").stat().st_size > 100_000
+    assert COMMANDS[0] == "make cluster"
+
+
+QSUB = """#!/bin/sh
+# Runs the job's script as a scheduler would, later; its options are those of the profile.
+echo "$@" >> asked.txt
+for script; do :; done
+nohup sh "$script" > /dev/null 2>&1 &
+echo $!
+"""
+
+
+def test_generic_profile_gives_the_same_bits(tree, local):
+    qsub = tree / ".venv" / "bin" / "qsub"
+    qsub.write_text(QSUB)
+    qsub.chmod(0o755)
+    shutil.rmtree(tree / "results", ignore_errors=True)
+    done = executed(tree, f"snakemake {RUN} --workflow-profile profiles/cluster")
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert digests(tree) == {"song2016/routes/smooth": local["song2016/routes/smooth"]}
+    asked = (tree / "asked.txt").read_text().splitlines()
+    assert len(asked) == 2
+    assert all("-l nodes=1:ppn=1,mem=1500mb,walltime=900 " in line for line in asked)
+
+
+@pytest.mark.parametrize("name", ["slurm", "cluster"])
+def test_profile_keeps_what_the_default_one_says(name):
+    own, default = PROFILES[name], PROFILES["default"]
+    assert {key: own[key] for key in default if key != "cores"} == {key: value for key, value in default.items() if key != "cores"}
+
+
+@pytest.mark.parametrize("name", ["slurm", "cluster"])
+def test_every_rule_is_in_a_group_but_the_one_of_hours(name):
+    text = "".join(file.read_text() for file in sorted((ROOT / "workflow/rules").glob("*.smk")))
+    rules = {rule for rule, body in re.findall(r"^rule (\w+):\n(.*?)(?=^\S|\Z)", text, flags=re.M | re.S) if "script:" in body}
+    assert PROFILES[name]["groups"].keys() == rules - {"readings_of"}
+    assert set(PROFILES[name]["groups"].values()) == PROFILES[name]["group-components"].keys()
+    assert PROFILES[name]["groups"] == PROFILES["slurm"]["groups"]

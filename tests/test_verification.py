@@ -1,0 +1,121 @@
+"""`make verify-outcome`: equal numbers pass, chance seldom fails, and a real difference is found."""
+
+import numpy as np
+import pandas as pd
+import pytest
+from studies import studies
+
+from bezierplan.analysis import verification
+from bezierplan.commands import verify_outcome
+from bezierplan.study.checked import Fault
+
+
+def rows(values, unit="m", n=50, width=1.0):
+    """A comparison of some numbers."""
+    values = np.asarray(values, dtype=float)
+    named = pd.DataFrame({"method": [f"m{i}" for i in range(len(values))], "metric": "length", "statistic": "mean", "unit": unit})
+    measured = {"n_published": np.nan, "value_published": 1.0, "n_ours": n, "value_ours": values}
+    return verification.with_width(named.assign(**measured, low95_ours=values - width / 2, high95_ours=values + width / 2))
+
+
+def test_equal_numbers_pass():
+    found = verification.compared(rows([1.0, 2.0]), rows([1.0, 2.0]))
+    assert found["p"].tolist() == [1.0, 1.0]
+    assert verification.failed(found).empty
+
+
+def test_a_difference_beyond_chance_is_found_and_named():
+    found = verification.compared(rows([1.0, 2.0, 3.0]), rows([1.1, 2.0, 5.0]))
+    assert verification.failed(found)["method"].tolist() == ["m2"]
+    assert found["p"][0] > 0.5
+
+
+def test_numbers_that_no_chance_decides_must_be_equal():
+    found = verification.compared(rows([100.0, 100.0], width=0.0), rows([100.0 + 1e-7, 100.1], width=0.0))
+    assert found["p"].tolist() == [1.0, 0.0]
+
+
+@pytest.mark.parametrize("given", [{"unit": "s"}, {"n": 1}, {"n": 0}, {"width": np.nan}])
+def test_nothing_is_said_of_times_single_runs_and_extremes(given):
+    found = verification.compared(rows([1.0], **given), rows([9.0], **given))
+    assert found["p"].isna().all()
+    assert verification.failed(found).empty
+
+
+def test_numbers_are_matched_by_name_not_by_place():
+    own = rows([1.0, 2.0])
+    assert verification.compared(rows([1.0, 2.0, 3.0]).iloc[::-1], own)["p"].tolist() == [1.0, 1.0]
+
+
+DRAWS = {
+    "skewed": lambda rng, n: rng.lognormal(0.0, 1.0, n),
+    "two corridors": lambda rng, n: np.where(rng.random(n) < 0.8, 7.5, 9.3) + 0.05 * rng.standard_normal(n),
+    "counts": lambda rng, n: rng.poisson(2.0, n).astype(float),
+    "a share": lambda rng, n: (rng.random(n) < 0.3).astype(float),
+}
+
+
+@pytest.mark.parametrize("name", DRAWS)
+@pytest.mark.parametrize("statistic", [np.mean, np.median])
+def test_independent_samples_of_one_distribution_seldom_fail(name, statistic):
+    """Of pairs of samples of ten runs, hardly any have a p as small as fails one of 628 numbers: so these keep the stated rate."""
+    rng, pairs, n = np.random.default_rng(0), 1000, 10
+    samples = DRAWS[name](rng, 2 * pairs * n).reshape(2, pairs, n)
+    again = rng.integers(0, n, (200, n))
+    spread = statistic(samples[:, :, again], axis=-1)
+    widths = np.quantile(spread, 0.975, axis=-1) - np.quantile(spread, 0.025, axis=-1)
+    p = verification.p_values(list(statistic(samples, axis=-1)), list(widths), [np.full(pairs, n)] * 2)
+    assert (p < 0.001).mean() <= 0.005
+    assert (p < verification.ERROR_RATE / 628).mean() <= 0.001
+
+
+@pytest.fixture
+def made(tmp_path, monkeypatch):
+    """A folder with song2016's table as kept."""
+    kept = pd.read_csv(verify_outcome.KEPT)
+    own = kept[(kept["study"] == "song2016") & (kept["table"] == "table1")]
+    file = tmp_path / verify_outcome.RESULTS / "song2016/tables/table1.comparison.csv"
+    file.parent.mkdir(parents=True)
+    own.drop(columns=["study", "table", "primary", "counted"]).to_csv(file, index=False)
+    monkeypatch.chdir(tmp_path)
+    return file
+
+
+def song():
+    return {"song2016": studies()["song2016"]}
+
+
+def test_kept_outcome_agrees_with_itself(made):
+    found = verify_outcome.verified(song())
+    told = verify_outcome.lines(found, verification.failed(found))
+    assert told[0] == f"{found['p'].notna().sum()} numbers compared, {found['p'].notna().sum()} equal, 0 different by more than chance"
+    assert found["p"].notna().sum() > 20
+    assert told[1].startswith("sound: ")
+
+
+def test_a_wrong_planner_is_found(made):
+    """Every objective of one method is half as long again."""
+    frame = pd.read_csv(made)
+    wrong = (frame["method"] == "smooth") & (frame["metric"] == "objective")
+    assert wrong.any()
+    frame.loc[wrong, ["value_ours", "low95_ours", "high95_ours"]] *= 1.5
+    frame.to_csv(made, index=False)
+    found = verify_outcome.verified(song())
+    told = verify_outcome.lines(found, verification.failed(found))
+    assert any("song2016/table1/" in line and "/smooth/objective/" in line for line in told)
+    assert told[-1].startswith("not sound: ")
+
+
+def test_missing_tables_are_told(made):
+    made.unlink()
+    with pytest.raises(FileNotFoundError, match=r"table1\.comparison\.csv: not there; make verify-outcome makes it"):
+        verify_outcome.verified(song())
+    with pytest.raises(Fault, match=r"no number of docs/outcome/numbers\.csv is here"):
+        verify_outcome.verified({})
+
+
+def test_targets_are_the_tables_with_published_numbers():
+    named = {f"{key}_{table}" for key, table in verify_outcome.tables(studies())}
+    assert {"song2016_table1", "meledje_table2"} <= named
+    kept = pd.read_csv(verify_outcome.KEPT)
+    assert named == set(kept["study"] + "_" + kept["table"])
