@@ -18,7 +18,7 @@ from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles
 
-BLIND = Policy("never", 1, False, False, "before", "positions", 0.0, (0.0,), 0.0, 0.5, "position", 0.05)
+BLIND = Policy("never", 1, False, False, "before", "positions", 0.0, (0.0,), 0.0, math.inf, False, 0.5, "position", 0.05)
 WAITS = BLIND._replace(waits=True, sees="after", brake=1.0)
 REPLANS = WAITS._replace(replan="when_blocked", check_margin=0.2, plan_margins=(0.5, 0.0))
 
