@@ -576,3 +576,20 @@ def test_the_last_point_is_never_removed():
         child = np.zeros(planner._ROOM, dtype=np.int64)
         child[0] = 9 * 4
         assert planner._change_point(rng, child, 1, maze_field) >= 1
+
+
+def test_a_warm_start_is_never_worse_than_the_path_that_it_starts_from():
+    where = problem(3)
+    first, last = planner.resume(where, np.random.default_rng(1), None, **(SETTINGS | FEW))
+    assert first.objective == planner.plan(where, np.random.default_rng(1), **(SETTINGS | FEW)).objective
+    again, _ = planner.resume(where, np.random.default_rng(2), last, **(SETTINGS | FEW | {"iterations": 1}))
+    cold = planner.plan(where, np.random.default_rng(2), **(SETTINGS | FEW | {"iterations": 1}))
+    assert again.history[0] <= first.objective < cold.history[0]
+
+
+def test_genes_that_are_occupied_or_behind_are_left_out():
+    found = field(100, (50, 50, 3))
+    points = found.points[[gene(30, 20), gene(50, 50), gene(40, 60)]]
+    assert gene_lattice.genes_at(points, found).tolist() == [gene(30, 20), gene(40, 60)]
+    later = field(100, ends=((40, 40), (100, 100)))
+    assert gene_lattice.genes_at(points, later).tolist() == [gene(40, 60), gene(50, 50)]

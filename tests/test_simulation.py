@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezierplan.planners import Plan
-from bezierplan.running.simulation import cells, clairvoyant, motion_check
+from bezierplan.running.simulation import cells, clairvoyant, evasion, hindsight, motion_check
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.robot import drive
@@ -18,7 +18,7 @@ from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles
 
-BLIND = Policy("never", 1, False, False, "before", "positions", 0.0, (0.0,), 0.0, 0.5, "position", 0.05)
+BLIND = Policy("never", 1, False, False, "before", "positions", 0.0, (0.0,), 0.0, math.inf, False, 0.5, "position", 0.05)
 WAITS = BLIND._replace(waits=True, sees="after", brake=1.0)
 REPLANS = WAITS._replace(replan="when_blocked", check_margin=0.2, plan_margins=(0.5, 0.0))
 
@@ -215,3 +215,70 @@ def test_a_wall_that_opens_makes_it_wait_and_one_that_closes_makes_it_hurry():
     assert clairvoyant.earliest(closes, problem._replace(workspace=open_)) == (3.0, 3.0)
     late = ChangingCells((open_, shut), np.array([1.4]), 1.0, 20)
     assert clairvoyant.earliest(late, problem._replace(workspace=open_)).arrival == math.inf
+
+
+# Stepping aside, and why a robot collided
+
+
+def test_a_robot_steps_aside_for_a_circle_that_comes_and_stays_for_one_that_passes():
+    coming = circles((10, 6.4, 2, 0, 0.5))
+    place = np.array([10.0, 9.0])
+    aside = evasion.refuge(coming, place, 0, REPLANS._replace(knows="velocities"))
+    assert math.dist(aside, place) == pytest.approx(1.0)
+    assert aside[1] > 9.0
+    passing = circles((10, 6.0, 2, 0.5, -0.2))
+    assert np.array_equal(evasion.refuge(passing, place, 0, REPLANS._replace(knows="velocities")), place)
+
+
+def test_a_robot_that_evades_is_not_hit_where_one_that_waits_is():
+    """No plan leads on, so both stay, and a circle comes."""
+    world = circles((0.5, 3, 2, 0, 0.5), end=30)
+    none = lambda problem, state: (straight(problem, state)[0]._replace(path=None), state)  # noqa: E731
+    waiting, evading = (drive(world, across(world), REPLANS._replace(evades=evades), none) for evades in (False, True))
+    hit = motion_check.check(waiting.motion, world)
+    assert hit.collision_at > 0
+    assert math.isnan(motion_check.check(evading.motion, world).collision_at)
+    lengths = np.hypot(*np.diff(evading.motion.points, axis=0).T)
+    assert lengths.max() <= 1.0 + 1e-9
+    assert lengths.sum() > 0
+
+
+@pytest.mark.parametrize(("knows", "known"), [("positions", 9.0), ("velocities", 0.0)])
+def test_hindsight_says_when_a_collision_could_be_known_and_avoided(knows, known):
+    world = circles((10, 3.2, 1, 0, 0.6))  # it touches the place at step 9.67
+    stays = Motion(np.array([[10.0, 10.0], [10.0, 10.0]]), np.array([0.0, 20.0]))
+    at = motion_check.check(stays, world).collision_at
+    assert at == pytest.approx(5.8 / 0.6)
+    found = hindsight.known_at(stays, at, world, REPLANS._replace(knows=knows))
+    assert found == known
+    assert hindsight.avoidable(stays, found, world, across(world))
+    assert not hindsight.avoidable(stays, math.nan, world, across(world))
+
+
+def test_a_robot_shut_in_could_not_avoid_its_collision():
+    corner = np.array([[0.0, 0.0], [0.0, 0.0]])
+    # A circle far larger than the robot's pace allows for sweeps the whole corner.
+    world = circles((14.0, 14.0, 15.0, -3.0, -3.0))
+    stays = Motion(corner, np.array([0.0, 5.0]))
+    at = motion_check.check(stays, world).collision_at
+    since = hindsight.known_at(stays, at, world, REPLANS)
+    assert since == math.floor(at)
+    assert not hindsight.avoidable(stays, since, world, across(world))
+
+
+def test_among_cells_a_change_on_the_spot_could_not_be_known_and_a_blind_drive_could():
+    maps = tuple(from_lines(lines, 1.0, "m") for lines in (["....", "....", "...."], ["....", ".##.", "...."]))
+    world = ChangingCells(maps, np.array([2.0]), 1.0, 90)
+    line = np.array([[0.5, 1.5], [3.5, 1.5]])
+    on_the_spot, blind = Motion(line, np.array([1.0, 4.0])), Motion(line, np.array([1.8, 4.8]))
+    assert math.isnan(hindsight.known_at(on_the_spot, motion_check.check(on_the_spot, world).collision_at, world, WAITS))
+    since = hindsight.known_at(blind, motion_check.check(blind, world).collision_at, world, WAITS)
+    assert since == 2.0
+    problem = Problem("across", maps[0], (0.5, 1.5), (3.5, 1.5))
+    assert hindsight.avoidable(blind, since, world, problem)
+
+
+def test_a_robot_checks_no_farther_than_its_horizon():
+    world = circles((15, 10, 2, 0, 0))
+    seen, unseen = (drive(world, across(world), REPLANS._replace(horizon=horizon), straight) for horizon in (math.inf, 3.0))
+    assert seen.replans > unseen.replans

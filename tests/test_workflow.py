@@ -71,7 +71,14 @@ def runs(number, methods=METHODS):
 
 
 TABLES = {"table table1": 1, "table feasibility": 1, "table running_time": 1, "claims": 1, "summary": 1}
-ARTEFACTS_OF_RUNS = TABLES | {"worth": 1, "figure figure3": 1, "figure figure4": 1, "figure figure5": 1, "figure overall": 1, "figure work": 1}
+ARTEFACTS_OF_RUNS = TABLES | {
+    "worth": 1,
+    "figure figure3": 1,
+    "figure figure4": 1,
+    "figure figure5": 1,
+    "figure overall": 1,
+    "figure work": 1,
+}
 
 OF_PUBLISHED = {"table table1": 1, "claims": 1, "audit": 1, "summary": 1}
 # A label is printed by what shows the thing that it names.

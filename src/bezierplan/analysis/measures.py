@@ -120,6 +120,21 @@ def collided(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
     return runs["collision_at"].notna()
 
 
+def avoidable_waiting(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Whether (n,) a drive first collides while the robot waits, and could have escaped when it could know."""
+    return runs["avoidable"] & runs["hit_waiting"]
+
+
+def unforeseen(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Whether (n,) a drive collides and the robot could not know of it before."""
+    return collided(runs, problems) & runs["known_at"].isna()
+
+
+def warning(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Steps (n,) from when the robot could know of its first collision until then."""
+    return runs["collision_at"] - runs["known_at"]
+
+
 def gap_arrival(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
     """Time of arrival over the earliest one found with the future known, minus 1 (n,)."""
     return runs["arrival"] / runs["clairvoyant_arrival"] - 1

@@ -263,6 +263,13 @@ METRICS: dict[str, Metric] = {
     "collision_steps": Metric("-", "steps in which the robot is in an obstacle", False, least=0.0, step=1.0),
     "collided": Metric("-", "whether the robot is in an obstacle at any time", False, measures.collided, step=1.0),
     "hit_waiting": Metric("-", "whether the robot first collides while it waits", False, step=1.0),
+    "avoidable": Metric("-", "whether the robot could have escaped its first collision when it could know of it", False, step=1.0),
+    "avoidable_waiting": Metric(
+        "-", "whether it waits at a first collision that it could have escaped", False, measures.avoidable_waiting, step=1.0
+    ),
+    "unforeseen": Metric("-", "whether the robot collides and could not know of it before", False, measures.unforeseen, step=1.0),
+    "warning": Metric("steps", "from when the robot could know of its first collision until then", False, measures.warning, least=0.0),
+    "known_at": Metric("steps", "when the robot could know of its first collision", False, least=0.0),
     "clearance_least": Metric("u", "least distance to an obstacle, negative inside a circle", False),
     "gap_arrival": Metric("-", "arrival / earliest arrival found with the future known - 1", True, measures.gap_arrival),
     "clairvoyant_arrival": Metric("steps", "earliest arrival found with the future known", False),

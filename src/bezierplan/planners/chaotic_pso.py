@@ -33,6 +33,10 @@ _NO_TERM, _COGNITIVE, _SOCIAL = range(3)
 _EACH_DIMENSION, _EACH_PARTICLE, _EACH_ITERATION = range(3)
 _MIRROR, _CLAMP, _STOP, _NO_BOUND = range(4)
 
+# This share of the particles starts around a given path, at a distance of about this share of the field's side per coordinate.
+_AROUND = 0.5
+_SPREAD = 0.05
+
 
 class Swarm(NamedTuple):
     """Result of a swarm after `done` iterations.
@@ -104,6 +108,7 @@ def check(settings: dict) -> None:
 def plan(
     problem: Problem,
     rng: np.random.Generator,
+    start: np.ndarray | None = None,
     *,
     curve: Literal["bezier", "spline", "ferguson"],
     control_points: Annotated[int, Range(0, 60)],
@@ -137,6 +142,9 @@ def plan(
 ) -> Plan:
     """Shortest penalised curve from start to target with the given number of free control points (tharwat2018, Algorithm 1, eqs. 7, 8, 17
     to 22).
+
+    start: (n, 2) free control points, in units, at which the first particle starts, and half of all particles around it; without them all
+    start anywhere.
 
     control_points: number of free ones, in addition to start and target; those of a `ferguson` curve alternate between tangents and points.
     samples: points of the curve that are tested and measured, uniform in the parameter, both ends included. penalty: the fitness of a path
@@ -191,7 +199,7 @@ def plan(
         sinusoidal_a=sinusoidal_a,
         count_collisions=count_collisions,
     )
-    swarm = search(problem, rng, settings)
+    swarm = search(problem, rng, settings, start)
     done = len(swarm.fitness) - 1
     evaluations = (1 if control_points == 0 else particles) * (done + 1)
     feasible = swarm.violation <= FEASIBLE
@@ -224,7 +232,7 @@ def track(problem: Problem, rng: np.random.Generator, **settings: Any) -> np.nda
     return np.array([_points(position, settings["curve"], problem) for position in positions])
 
 
-def search(problem: Problem, rng: np.random.Generator, settings: Settings) -> Swarm:
+def search(problem: Problem, rng: np.random.Generator, settings: Settings, start: np.ndarray | None = None) -> Swarm:
     """The search behind `plan` and `track`."""
     initial, moves, chaos = rng.spawn(3)
     particles, iterations, dimensions = settings.particles, settings.iterations, 2 * settings.control_points
@@ -232,7 +240,13 @@ def search(problem: Problem, rng: np.random.Generator, settings: Settings) -> Sw
         particles, iterations = 1, 0
     objective = _objective(problem, settings)
     low, high = np.repeat(np.reshape(problem.workspace.bounds, (2, 2)).T, dimensions // 2, axis=1)
-    x = low + (high - low) * initial.random((particles, dimensions))
+    shares = initial.random((particles, dimensions))
+    if start is not None:
+        around = int(_AROUND * particles)
+        known = (start.T.ravel() - low) / (high - low)
+        shares[:around] = np.clip(known + _SPREAD * initial.standard_normal((around, dimensions)), 0.0, 1.0)
+        shares[0] = known
+    x = low + (high - low) * shares
     if settings.straight_line_particle:
         x[0] = _straight_line(problem, settings.curve, dimensions // 2)
     zeta, clipped, collapsed_at = _zeta(chaos, (iterations, particles, dimensions), settings)

@@ -11,7 +11,7 @@ paper.
 """
 
 import math
-from typing import Annotated, Literal, NamedTuple, get_args
+from typing import Annotated, Any, Literal, NamedTuple, get_args
 
 import numpy as np
 from numba import njit
@@ -19,7 +19,7 @@ from numba import njit
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts import gene_lists
 from bezierplan.planners.parts.gene_curves import MOST_POINTS, FitnessLength, validate
-from bezierplan.planners.parts.gene_lattice import Field, field_of, polygon
+from bezierplan.planners.parts.gene_lattice import Field, field_of, genes_at, polygon
 from bezierplan.planners.parts.genetic import check_pairs
 from bezierplan.planners.prm import roadmap
 from bezierplan.workspaces.problem import Path, Problem
@@ -101,6 +101,7 @@ def check(settings: dict) -> None:
 def plan(
     problem: Problem,
     rng: np.random.Generator,
+    last: np.ndarray | None = None,
     *,
     population: Annotated[int, Range(2)],
     iterations: Annotated[int, Range(1)],
@@ -131,6 +132,9 @@ def plan(
     children_per_parent: Annotated[int, Range(1, 2)],
 ) -> Plan:
     """Shortest curve through control points on a lattice of cells (elhoseny2017, Algorithms 1 and 2).
+
+    last: control points (n, 2) of an earlier path, in units, with whose genes the first population begins; a plan without them starts
+    from random chromosomes alone.
 
     mutation: every gene changes with the probability mutation_rate, one gene of a chromosome does, or one gene always does (one_flip); or a
     chromosome, with that probability, loses a control point, gains one, or has one shifted (shift). diversity: no rule (the plain
@@ -181,7 +185,12 @@ def plan(
         pairs=population * children_per_parent // 2,
     )
     most_first = most_roadmaps if first_population == "roadmaps" else 0
-    found = search(rng, field, rules, *_from_roadmaps(problem, rng, field, population, most_first, roadmap_nodes, roadmap_neighbours))
+    first, counts = _from_roadmaps(problem, rng, field, population, most_first, roadmap_nodes, roadmap_neighbours)
+    if last is not None:
+        known = genes_at(grid.in_cells(last), field)
+        row = np.concatenate([known, np.zeros(_ROOM - len(known), dtype=np.int64)])
+        first, counts = np.vstack([row, first])[:population], np.append(len(known), counts)[:population]
+    found = search(rng, field, rules, first, counts)
     solved = len(found.ones) > 0
     points = grid.in_units(polygon(found.ones, field))
     points[[0, -1]] = problem.start, problem.target
@@ -199,6 +208,14 @@ def plan(
             "valid_share": found.valid_share,
         },
     )
+
+
+def resume(problem: Problem, rng: np.random.Generator, last: np.ndarray | None, **settings: Any) -> tuple[Plan, np.ndarray | None]:
+    """A plan whose first population holds the path that the last call returned second, by its control points (n, 2); None for the first
+    plan, which is that of `plan`. Points that are no free genes now are left out.
+    """
+    found = plan(problem, rng, last, **settings)
+    return found, found.path.points[1:-1] if found.claimed_feasible else last
 
 
 def _from_roadmaps(

@@ -33,7 +33,8 @@ def interface_fault(module: ModuleType) -> str | None:
     if not inspect.isfunction(plan):
         return "no function plan; expected plan(problem, rng, *, <settings>)"
     parameters = inspect.signature(plan).parameters.values()
-    positional = [each.name for each in parameters if each.kind in (each.POSITIONAL_ONLY, each.POSITIONAL_OR_KEYWORD)]
+    fixed = [each for each in parameters if each.kind in (each.POSITIONAL_ONLY, each.POSITIONAL_OR_KEYWORD)]
+    positional = [each.name for each in fixed if each.default is each.empty]
     if len(positional) != 2 or any(each.kind in (each.VAR_POSITIONAL, each.VAR_KEYWORD) for each in parameters):
         return "function plan: expected plan(problem, rng, *, <settings>)"
     for each in parameters:

@@ -13,6 +13,8 @@ plan plus the length of that plan. And:
     first_plan       length of the first plan, in units; last_plan: of the last one
     replans          plans after the first; waits: time spent waiting, in steps
     collision_steps  steps in which it was in an obstacle; hit_waiting: whether it was waiting when it first collided
+    known_at         first step from which on it could know of its first collision; avoidable: whether it could still have escaped then
+                     (`simulation.hindsight`)
     clearance_least  least distance to an obstacle, in units, negative inside a circle
 
 Times, which never repeat, have a table of their own: id, cpu_s, wall_s, and CPU seconds of the plans after the first: replan_mean_s,
@@ -30,7 +32,7 @@ from bezierplan.planners import planner_module
 from bezierplan.running import execution, watchdog
 from bezierplan.running import problems as problem_files
 from bezierplan.running.execution import Condition
-from bezierplan.running.simulation import motion_check
+from bezierplan.running.simulation import hindsight, motion_check
 from bezierplan.running.simulation.clairvoyant import earliest, least_way
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.robot import Ride, drive
@@ -39,7 +41,7 @@ from bezierplan.workspaces.worlds import World
 
 OUTCOMES = (
     *("arrival", "steps", "travelled", "first_plan", "last_plan", "replans", "waits"),
-    *("collision_steps", "hit_waiting", "clearance_least"),
+    *("collision_steps", "hit_waiting", "known_at", "avoidable", "clearance_least"),
 )
 """Columns of a runs table that only drives have."""
 
@@ -48,7 +50,7 @@ def run(job: dict, condition: Condition, repeat: int, problem: Problem, world: W
     """The drive of one run. Raises `execution.UnfitAnswer` for a plan that is not valid for the problem that the robot saw."""
     module, rng = planner_module(job["planner"]), execution.generator(job, condition, repeat)
     settings = execution.settings_in(job, condition)
-    policy = Policy(**job["policy"] | {"plan_margins": tuple(job["policy"]["plan_margins"])})
+    policy = _policy(job)
 
     def planner(seen: Problem, state: Any) -> tuple:
         plan, state = module.resume(seen, rng, state, **settings) if policy.warm else (module.plan(seen, rng, **settings), None)
@@ -56,6 +58,10 @@ def run(job: dict, condition: Condition, repeat: int, problem: Problem, world: W
         return plan, state
 
     return drive(world, problem, policy, planner)
+
+
+def _policy(job: dict) -> Policy:
+    return Policy(**job["policy"] | {"plan_margins": tuple(job["policy"]["plan_margins"])})
 
 
 def row(job: dict, condition: Condition, repeat: int, ride: Ride, problem: Problem, world: World) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -72,6 +78,7 @@ def row(job: dict, condition: Condition, repeat: int, ride: Ride, problem: Probl
     lengths = [plan.length for plan in ride.plans]
     driven = [float(np.interp(plan.time, times, done)) for plan in ride.plans]
     leg = int(np.clip(np.searchsorted(times, verdict.collision_at, side="right"), 1, len(times) - 1)) if collided else 0
+    known = hindsight.known_at(ride.motion, verdict.collision_at, world, _policy(job)) if collided else math.nan
     moments = np.append(np.arange(0, math.ceil(times[-1])), times[-1])
     # Without regard to what the robot believes: the motion itself leads from start to target.
     joins = (tuple(points[0].tolist()), tuple(points[-1].tolist())) == (problem.start, problem.target)
@@ -100,6 +107,8 @@ def row(job: dict, condition: Condition, repeat: int, ride: Ride, problem: Probl
         "waits": float(ride.waited),
         "collision_steps": int((verdict.clearance < -verdict.tolerance).sum()) if least < 0 else int(collided),
         "hit_waiting": collided and bool(np.array_equal(points[leg], points[leg - 1])),
+        "known_at": known,
+        "avoidable": hindsight.avoidable(ride.motion, known, world, problem),
         "clearance_least": least,
     }
     trace = {

@@ -87,6 +87,10 @@ class Policy(Model):
         description="by how much circles grow for a plan: a list of numbers, tried in this order until there is a plan; left out: [0]",
     )
     brake: NotNegative = Field(0.0, description="how far ahead its way must be clear for it to move, in units; left out: 0")
+    horizon: Positive = Field(math.inf, description="how far ahead along its way it checks, in units; left out: all of it")
+    evades: Flag = Field(
+        False, description="among circles, whether it steps aside where it would stop and one is about to come there; left out: false"
+    )
     spacing: Positive = Field(0.5, description="mean length of the chords that it drives along a curve, in units; left out: 0.5")
     start: Literal["position", "centre"] = Field(
         "position",

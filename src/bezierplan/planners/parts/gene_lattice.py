@@ -89,6 +89,16 @@ def _distances(walled, row, column, steps):
     return far[1:-1, 1:-1]
 
 
+def genes_at(points: np.ndarray, field: Field) -> np.ndarray:
+    """The free genes, ascending, in whose cells some points (n, 2) lie, in cells; without those behind the start, to which a robot that has
+    passed them would drive back.
+    """
+    apart = np.abs(points[:, None] - field.points).max(axis=2, initial=0.0)
+    genes = apart.argmin(axis=1)
+    ahead = (field.points[genes] - field.start) @ (field.target - field.start) > 0
+    return np.unique(genes[(apart.min(axis=1) < 0.5) & field.settable[genes] & ahead])
+
+
 @njit(cache=True)
 def polygon(ones: np.ndarray, field: Field) -> np.ndarray:
     """Start, the control points of a chromosome in their order, and target: (points, 2)."""

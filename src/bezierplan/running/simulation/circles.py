@@ -24,6 +24,7 @@ class _Rules(NamedTuple):
     foresees: bool
     check_margin: float
     brake: float
+    horizon: float
 
 
 def follow(world: MovingCircles, way: Way, step: int, policy: Policy) -> tuple[int, np.ndarray]:
@@ -39,6 +40,7 @@ def follow(world: MovingCircles, way: Way, step: int, policy: Policy) -> tuple[i
         foresees=policy.knows == "velocities",
         check_margin=float(policy.check_margin),
         brake=float(policy.brake),
+        horizon=float(policy.horizon),
     )
     circles = (world.centres, world.velocities, np.array(world.walls, dtype=float), world.radii)
     return _follow(way.points, way.at, step, circles, float(world.pace), world.end, rules)
@@ -57,7 +59,7 @@ def _follow(points, at, step, circles, pace, end, rules):
         if n > 0:
             if rules.every > 0 and (step + n) % rules.every == 0:
                 return DUE, reached[: n + 1]
-            if rules.checks and comes_near(points, at, s, total, seen, drift, radii, rules.check_margin, pace):
+            if rules.checks and comes_near(points, at, s, min(s + rules.horizon, total), seen, drift, radii, rules.check_margin, pace):
                 return BLOCKED, reached[: n + 1]
         if rules.brakes and comes_near(points, at, s, min(s + rules.brake, total), seen, drift, radii, 0.0, pace):
             if rules.checks or rules.every > 0:

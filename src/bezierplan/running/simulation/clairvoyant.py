@@ -89,8 +89,8 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end):
     best = np.full(begins.shape, np.inf)
     lengths = np.full(begins.shape, np.inf)
     node = round((start[1] - origin[1]) / pace) * columns + round((start[0] - origin[0]) / pace)
-    if begins[node, 0] < 0:
-        return np.inf, np.inf
+    # Where a circle comes during the first step, the robot must leave at once.
+    hurried = node if begins[node, 0] < 0 else -1
     best[node, 0], lengths[node, 0] = 0.0, 0.0
     heap = [(math.hypot(target[0] - start[0], target[1] - start[1]) / pace, 0.0, node, 0)]
     while len(heap) > 0:
@@ -102,7 +102,7 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end):
         if time > best[node, interval]:
             continue
         leave = interval
-        while leave < end and begins[node, leave] == interval:
+        while leave < end and begins[node, leave] == interval and not (node == hurried and interval == 0):
             leave += 1
         x, y = origin[0] + node % columns * pace, origin[1] + node // columns * pace
         home = math.hypot(target[0] - x, target[1] - y)

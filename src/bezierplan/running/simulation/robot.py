@@ -12,6 +12,7 @@ from bezierplan.geometry.region import blocks, region
 from bezierplan.planners import Plan
 from bezierplan.running.simulation import cells, circles
 from bezierplan.running.simulation.circles import ARRIVED, STOPPED
+from bezierplan.running.simulation.evasion import refuge
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.ways import Way, polyline, way
@@ -74,6 +75,11 @@ class _Log:
             self.points.append(along.place(lengths))
             self.times.append(times[k] + (lengths - begin) / pace)
 
+    def drive(self, place: np.ndarray, until: float) -> None:
+        """Add a straight drive to a place (2,)."""
+        self.points.append(place[None])
+        self.times.append(np.array([until]))
+
     def wait(self, until: float) -> None:
         """Add a wait."""
         self.waited += until - self.times[-1][-1]
@@ -96,8 +102,12 @@ def drive(world: World, problem: Problem, policy: Policy, planner: Planner) -> R
         if event == ARRIVED:
             return Ride(log.motion(), True, log.waited, plans)
         if event == STOPPED:
+            aside = _aside(world, log, time, policy)
             time = _after_wait(world, time)
-            log.wait(time)
+            if aside is None:
+                log.wait(time)
+            else:
+                log.drive(aside, time)
     return Ride(log.motion(), False, log.waited, plans)
 
 
@@ -107,6 +117,15 @@ def _follow(world: World, along: Way, time: float, policy: Policy) -> tuple[int,
         return cells.follow(world, along, time, policy)
     event, reached = circles.follow(world, along, round(time), policy)
     return event, time + np.arange(len(reached)), reached
+
+
+def _aside(world: World, log: _Log, time: float, policy: Policy) -> np.ndarray | None:
+    """The place (2,) to which a robot that would stop steps aside; None if it stays."""
+    if not policy.evades or isinstance(world, ChangingCells):
+        return None
+    place = log.points[-1][-1]
+    found = refuge(world, place, round(time), policy)
+    return None if np.array_equal(found, place) else found
 
 
 def _after_wait(world: World, time: float) -> float:
