@@ -47,6 +47,11 @@ def test_numbers_are_matched_by_name_not_by_place():
     assert verification.compared(rows([1.0, 2.0, 3.0]).iloc[::-1], own)["p"].tolist() == [1.0, 1.0]
 
 
+def test_names_match_however_a_column_was_read():
+    kept, own = (rows([1.0, 2.0]).assign(method=method) for method in (["10.0", "20.0"], [10, 20]))
+    assert len(verification.compared(kept, own)) == 2
+
+
 DRAWS = {
     "skewed": lambda rng, n: rng.lognormal(0.0, 1.0, n),
     "two corridors": lambda rng, n: np.where(rng.random(n) < 0.8, 7.5, 9.3) + 0.05 * rng.standard_normal(n),
@@ -109,6 +114,9 @@ def test_a_wrong_planner_is_found(made):
 def test_missing_tables_are_told(made):
     made.unlink()
     with pytest.raises(FileNotFoundError, match=r"table1\.comparison\.csv: not there; make verify-outcome makes it"):
+        verify_outcome.verified(song())
+    made.write_text(pd.read_csv(verify_outcome.KEPT).head(1).assign(method="none").to_csv(index=False))
+    with pytest.raises(Fault, match=r"table1\.comparison\.csv: none of its numbers is kept in docs/outcome/numbers\.csv"):
         verify_outcome.verified(song())
     with pytest.raises(Fault, match=r"no number of docs/outcome/numbers\.csv is here"):
         verify_outcome.verified({})

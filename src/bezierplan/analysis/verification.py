@@ -26,13 +26,19 @@ def compared(kept: pd.DataFrame, own: pd.DataFrame) -> pd.DataFrame:
     p: probability of a difference as large by chance; nan where nothing can be said: times, numbers of fewer than two runs, extremes.
     """
     names = [*own.columns[: own.columns.get_loc("unit") + 1], "n_published", "value_published"]
-    kept, own = (frame.assign(**{name: frame[name].astype(str) for name in names}).drop_duplicates(names) for frame in (kept, own))
+    kept, own = (frame.assign(**{name: _plain(frame[name]) for name in names}).drop_duplicates(names) for frame in (kept, own))
     both = kept.merge(own, on=names, suffixes=("_kept", "_own"))
     values, widths, sizes = (
         [both[f"{name}_{side}"].to_numpy(dtype=float) for side in ("kept", "own")] for name in ("value_ours", "width", "n_ours")
     )
     found = both[names].assign(value_kept=values[0], value_own=values[1], p=p_values(values, widths, sizes))
     return found.assign(p=found["p"].where(~both["unit"].isin(TIMES)))
+
+
+def _plain(values: pd.Series) -> pd.Series:
+    """Values as text, alike whether a column was read as whole numbers or, beside empty cells, as others."""
+    numbers = pd.to_numeric(values, errors="coerce")
+    return values.astype(str).where(numbers.isna(), numbers.map("{:.12g}".format))
 
 
 def with_width(comparison: pd.DataFrame) -> pd.DataFrame:

@@ -50,18 +50,15 @@ def verified(studies: dict[str, Study]) -> pd.DataFrame:
             raise FileNotFoundError(f"{file}: not there; make verify-outcome makes it")
         own = verification.with_width(pd.read_csv(file))
         one = verification.compared(kept[(kept["study"] == key) & (kept["table"] == table)], own)
-        found.append(
-            pd.DataFrame({"number": f"{key}/{table}/" + _named(one, own), **{c: one[c] for c in ("value_kept", "value_own", "p")}})
-        )
+        if one.empty:
+            raise Fault(f"{file}: none of its numbers is kept in {KEPT.relative_to(PACKAGE.parents[1])}")
+        names = one[list(own.columns[: own.columns.get_loc("statistic") + 1])].itertuples(index=False)
+        one["number"] = [f"{key}/{table}/{'/'.join(name)}" for name in names]
+        found.append(one[["number", "value_kept", "value_own", "p"]])
     numbers = pd.concat(found, ignore_index=True) if found else pd.DataFrame(columns=["number", "p"])
     if numbers["p"].notna().sum() == 0:
         raise Fault(f"{RESULTS}: no number of {KEPT.relative_to(PACKAGE.parents[1])} is here; expected tables of the configured studies")
     return numbers
-
-
-def _named(one: pd.DataFrame, own: pd.DataFrame) -> pd.Series:
-    """What each number is, from the columns up to the statistic."""
-    return one[list(own.columns[: own.columns.get_loc("statistic") + 1])].agg("/".join, axis=1)
 
 
 def lines(found: pd.DataFrame, failed: pd.DataFrame) -> list[str]:

@@ -3,9 +3,11 @@
 numba finds the class by the name set in `digest.point_numba_cache`.
 """
 
+from collections.abc import Callable
 from types import FunctionType
+from typing import Any
 
-from numba.core.caching import UserProvidedCacheLocator
+from numba.core.caching import IndexDataCacheFile, UserProvidedCacheLocator
 
 from bezierplan.running.digest import kernel_folder
 
@@ -30,3 +32,20 @@ class KernelCacheLocator(UserProvidedCacheLocator):
     def get_disambiguator(self) -> str:
         """Distinguishes functions with the same name."""
         return self._disambiguator
+
+
+def _or_else(read: Callable[..., Any], missing: Callable[[], Any]) -> Callable[..., Any]:
+    """A method that reads a file of the cache; a damaged file counts as a missing one, so the kernel is compiled and written again."""
+
+    def read_or_else(self: IndexDataCacheFile, *given: Any) -> Any:
+        try:
+            return read(self, *given)
+        except Exception:  # a damaged pickle raises almost anything
+            return missing()
+
+    return read_or_else
+
+
+# numba ends the process in both cases.
+IndexDataCacheFile._load_index = _or_else(IndexDataCacheFile._load_index, dict)
+IndexDataCacheFile.load = _or_else(IndexDataCacheFile.load, lambda: None)

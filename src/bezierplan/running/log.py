@@ -1,6 +1,7 @@
 """Common behaviour of workflow jobs: end with the parent, write to the log, leave only complete files, report a failure in one line."""
 
 import ctypes
+import errno
 import logging
 import os
 import signal
@@ -12,6 +13,10 @@ from pathlib import Path
 from typing import Any
 
 PR_SET_PDEATHSIG = 1
+FULL = (errno.ENOSPC, errno.EDQUOT)
+"""What an operating system says of a full disk, or of a user's full share of it."""
+RUNS_COLUMN = "id"
+"""A column of every table of runs."""
 
 
 def end_with_parent() -> None:
@@ -33,8 +38,12 @@ def job(given: Any) -> Iterator[Any]:
         with whole_files(given.output) as output:
             yield output
     except Exception as error:
+        if isinstance(error, OSError) and error.errno in FULL:
+            logging.raiseExceptions = False  # the log may lie on the same disk
         logging.exception("failed")
-        sys.exit(damaged(given.input) or f"{type(error).__name__}: {error} (full account: {given.log[0]})")
+        sys.exit(
+            full_disk(error, given.output) or damaged(given.input) or f"{type(error).__name__}: {error} (full account: {given.log[0]})"
+        )
 
 
 @contextmanager
@@ -51,15 +60,24 @@ def whole_files(files: Any) -> Iterator[Any]:
             os.replace(part, file)
 
 
+def full_disk(error: Exception, files: Any) -> str:
+    """What to do about a disk without space for a job's files; empty for another error."""
+    if not (isinstance(error, OSError) and error.errno in FULL):
+        return ""
+    return f"{Path(files[0]).parent}: no space left on this disk; free some and start again: finished jobs are kept"
+
+
 def damaged(files: Iterable[str]) -> str:
-    """What to do about the first unreadable Parquet file, such as a truncated one; empty if there is none."""
+    """What to do about the first Parquet file that is cut off, or is no table of runs in the place of one; empty if there is none."""
     import pyarrow as pa
     import pyarrow.parquet as parquet
 
     for file in files:
         if str(file).endswith(".parquet"):
             try:
-                parquet.read_metadata(file)
+                columns = parquet.read_schema(file).names
             except (OSError, pa.ArrowException):
                 return f"{file}: not a whole Parquet file; delete it and start again: the workflow reproduces it"
+            if "runs" in Path(file).parts and RUNS_COLUMN not in columns:
+                return f"{file}: not a table of runs; delete it and start again: the workflow reproduces it"
     return ""

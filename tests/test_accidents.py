@@ -1,0 +1,121 @@
+"""Accidents: a full disk, a foreign file in the place of results, damaged compiled code, a clock that goes back, two workflows at once."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+from types import SimpleNamespace
+
+import pandas as pd
+import pytest
+from snakemake.iocontainers import OutputFiles
+
+from bezierplan.running import log
+
+ROOT = Path(__file__).parents[1]
+
+
+@pytest.fixture
+def job(tmp_path, monkeypatch):
+    """A job of this process, which need not end with its parent, and its output."""
+    monkeypatch.setattr(log, "end_with_parent", lambda: None)
+    folder = tmp_path / "results"
+    folder.mkdir()
+    output = OutputFiles(fromdict={"one": str(folder / "one.csv")})
+    return SimpleNamespace(log=[str(tmp_path / "log")], input=[], output=output)
+
+
+FILLS = """
+import sys
+from types import SimpleNamespace
+from pathlib import Path
+from snakemake.iocontainers import OutputFiles
+from bezierplan.running import log
+log.end_with_parent = lambda: None
+folder = sys.argv[1]
+output = OutputFiles(fromdict={"one": folder + "/one.csv"})
+with log.job(SimpleNamespace(log=[folder + "/log"], input=[], output=output)) as parts:
+    Path(parts.one).write_bytes(b"x" * 10_000_000)
+"""
+
+
+def test_full_disk_ends_a_job_with_one_line_and_leaves_no_part(tmp_path):
+    """On a disk of 200 kB, which the log shares."""
+    if subprocess.run(["mount", "-t", "tmpfs", "-o", "size=200k", "tmpfs", tmp_path], capture_output=True, check=False).returncode:
+        pytest.skip("only root can mount a small disk here")
+    try:
+        done = subprocess.run([sys.executable, "-c", FILLS, tmp_path], capture_output=True, text=True, check=False)
+        left = sorted(os.listdir(tmp_path))
+    finally:
+        subprocess.run(["umount", tmp_path], check=True)
+    assert done.returncode == 1
+    assert done.stderr == f"{tmp_path}: no space left on this disk; free some and start again: finished jobs are kept\n"
+    assert left == ["log"]
+
+
+def test_foreign_table_in_the_place_of_runs_is_told(job, tmp_path):
+    file = tmp_path / "runs" / "0.parquet"
+    file.parent.mkdir()
+    pd.DataFrame({"other": [1]}).to_parquet(file)
+    job.input = [str(file)]
+    with pytest.raises(SystemExit) as ended, log.job(job):
+        raise KeyError("repeat")
+    assert str(ended.value) == f"{file}: not a table of runs; delete it and start again: the workflow reproduces it"
+    pd.DataFrame({"id": ["a"]}).to_parquet(file)
+    with pytest.raises(SystemExit, match="KeyError: 'repeat'"), log.job(job):
+        raise KeyError("repeat")
+
+
+SWAPS = """
+import os
+os.access = lambda *_: False  # the tree cannot be written, so compiled code goes below the home
+import numpy as np
+from bezierplan.planners.parts import genetic
+one, other = np.arange(8), np.arange(8, 16)
+genetic.swap_tails(one, other, 5, 2)
+print(one, other)
+"""
+
+
+def kernels(home):
+    """What a process prints that keeps its compiled code below a folder."""
+    environment = os.environ | {"HOME": str(home)}
+    return subprocess.run([sys.executable, "-c", SWAPS], env=environment, capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize(("which", "content"), [("*.nbi", b""), ("*.nbi", b"garbage" * 100), ("*.nbc", b""), ("*.nbc", b"garbage" * 100)])
+def test_damaged_compiled_code_is_compiled_again(which, content, tmp_path):
+    first = kernels(tmp_path)
+    files = list((tmp_path / ".cache" / "kernels").rglob(which))
+    assert first.returncode == 0
+    assert files
+    for file in files:
+        file.write_bytes(content)
+    again = kernels(tmp_path)
+    assert again.stdout == first.stdout, again.stderr
+    assert all(file.read_bytes() != content for file in files)
+
+
+SNAKEFILE = """
+rule one:
+    output: "results/a.txt"
+    shell: "while [ ! -e go ]; do sleep 0.1; done; date > {output}"
+"""
+
+
+def test_second_workflow_in_a_folder_ends_at_once_and_the_first_goes_on(tmp_path):
+    """With the settings of the default profile, none of which weakens Snakemake's lock."""
+    (tmp_path / "Snakefile").write_text(SNAKEFILE)
+    command = [sys.executable, "-m", "snakemake", "--workflow-profile", ROOT / "profiles/default", "--cores", "1"]
+    with subprocess.Popen(command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as first:
+        deadline = time.monotonic() + 120
+        while not list((tmp_path / ".snakemake").glob("locks/*")):
+            assert time.monotonic() < deadline
+            time.sleep(0.1)
+        second = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+        (tmp_path / "go").touch()
+        assert first.wait(120) == 0
+    assert second.returncode == 1
+    assert "LockException" in second.stderr
+    assert (tmp_path / "results/a.txt").stat().st_size > 0
