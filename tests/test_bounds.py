@@ -432,6 +432,42 @@ def test_the_search_among_many_polygons_gives_the_path_of_the_whole_graph(monkey
         assert shortest_path(imr_problem(row["map"])).length == pytest.approx(float(row["value"]), abs=1e-5)
 
 
+@pytest.mark.parametrize("kind", ["stars", "meeting corners"])
+def test_the_search_among_many_polygons_agrees_on_random_ones(monkeypatch, kind):
+    rng = np.random.default_rng(3)
+    found_ways = 0
+    for _ in range(40):
+        if kind == "stars":
+            angles = np.sort(rng.uniform(0, math.tau, (4, 9)), axis=1)
+            reach = rng.uniform(0.3, 2.2, angles.shape)
+            centres = rng.uniform(2.5, 7.5, (4, 2))
+            rings = [c + r[:, None] * np.column_stack([np.cos(a), np.sin(a)]) for c, r, a in zip(centres, reach, angles)]
+            rings = [ring for ring in rings if shapely.Polygon(ring).is_valid]
+        else:
+            rings = [np.add([(0, 0), (1, 0), (1, 1), (0, 1)], place) for place in rng.integers(1, 9, (25, 2))]
+        problem = among(rings, (0.5, 0.25), (9.5, 9.75))
+        whole = shortest_path(problem)
+        with monkeypatch.context() as patched:
+            patched.setattr("bezierplan.geometry.shortest_paths.polygons.MOST_POLYGON_NODES", 0)
+            found = shortest_path(problem)
+        assert found.length == pytest.approx(whole.length, rel=1e-12)
+        if math.isfinite(found.length):
+            found_ways += len(found.points) > 2
+            assert_is_path(found, problem)
+    assert found_ways > 20
+
+
+def test_a_polygon_of_five_thousand_corners_is_ordinary():
+    angles = np.arange(5000) * math.tau / 5000
+    reach = np.where(np.arange(5000) % 2, 4.0, 3.0)
+    problem = among([5 + reach[:, None] * np.column_stack([np.cos(angles), np.sin(angles)])], (0.1, 5.0), (9.9, 5.1))
+    bound = shortest_path(problem)
+    assert_is_path(bound, problem)
+    tangents = math.sqrt(4.9**2 - 4**2) + math.sqrt(4.9**2 + 0.1**2 - 4**2)
+    turn = math.pi - math.atan2(0.1, 4.9) - math.acos(4 / 4.9) - math.acos(4 / math.hypot(4.9, 0.1))
+    assert bound.length == pytest.approx(tangents + 4 * turn, rel=1e-5)  # the tips lie on a circle
+
+
 @pytest.mark.parametrize("largest", [1, 30])
 def test_a_grid_of_a_million_cells_is_ordinary(largest):
     rng = np.random.default_rng(2)

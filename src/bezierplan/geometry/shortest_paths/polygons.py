@@ -8,6 +8,7 @@ from numba import njit
 
 from bezierplan.geometry.checker import TOLERANCE, first_collision
 from bezierplan.geometry.region import PolygonRegion
+from bezierplan.geometry.shortest_paths.bins import Bins, bins_of, columns_between, rows_between
 from bezierplan.geometry.shortest_paths.graph import Bound, along, shortest_in_graph, way_back
 from bezierplan.workspaces.problem import Problem
 
@@ -25,7 +26,7 @@ def shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
     before = np.concatenate([anywhere, begin[corner]])
     after = np.concatenate([anywhere, blocked.edges[blocked.following[corner], 2:]])
     if len(nodes) > MOST_POLYGON_NODES:
-        return along(nodes, _search_polygons(nodes, before, after, blocked))
+        return along(nodes, _search_polygons(nodes, before, after, blocked, bins_of(blocked.edges)))
     return shortest_in_graph(nodes, _visible_among_polygons(nodes, before, after, blocked))
 
 
@@ -49,7 +50,7 @@ def _visible_among_polygons(nodes: np.ndarray, before: np.ndarray, after: np.nda
 
 
 @njit(cache=True)
-def _search_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion) -> np.ndarray:
+def _search_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion, bins: Bins) -> np.ndarray:
     """The nodes of a shortest path from node 0 to node 1 by the algorithm A*, empty if there is no path; pairs are tested only when needed:
     the edges from a node to all others wait in a heap, and each is tested once it is the most promising.
     """
@@ -66,14 +67,17 @@ def _search_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, r
             for axis in range(2):
                 segment[0, 0, axis] = nodes[tail, axis]
                 segment[0, 1, axis] = nodes[i, axis]
-            if _crosses(nodes[tail], nodes[i], region.edges) or first_collision(segment, region)[0] < math.inf:
+            if _crosses_any(nodes[tail], nodes[i], region.edges, bins) or first_collision(segment, region)[0] < math.inf:
                 continue
         settled[i] = True
         came_by[i] = tail
         if i == 1:
             return way_back(came_by, length)
+        turn = _turn_at(nodes, tail, i, before, after)
         for j in range(len(nodes)):
-            if settled[j] or not (_is_taut(nodes, i, j, before, after) and _is_taut(nodes, j, i, before, after)):
+            if settled[j] or (turn and turn * _offset(nodes[tail], nodes[i], nodes[j]) < -TOLERANCE):
+                continue
+            if not (_is_taut(nodes, i, j, before, after) and _is_taut(nodes, j, i, before, after)):
                 continue
             so_far = length + math.hypot(nodes[j, 0] - nodes[i, 0], nodes[j, 1] - nodes[i, 1])
             heapq.heappush(heap, (so_far + ahead[j], so_far, i, j))
@@ -81,19 +85,58 @@ def _search_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, r
 
 
 @njit(cache=True)
+def _turn_at(nodes: np.ndarray, tail: int, i: int, before: np.ndarray, after: np.ndarray) -> int:
+    """To which side a shortest path turns at corner i, where the obstacle is: to the left (1), to the right (-1), or both (0)."""
+    if tail < 0:
+        return 0
+    one, other = _offset(nodes[tail], nodes[i], before[i]), _offset(nodes[tail], nodes[i], after[i])
+    return int(max(one, other) > TOLERANCE) - int(min(one, other) < -TOLERANCE)
+
+
+@njit(cache=True)
 def _is_taut(nodes: np.ndarray, i: int, j: int, before: np.ndarray, after: np.ndarray) -> bool:
     """Whether a shortest path can turn at corner i on its way to or from j: the corner lies on one side of the line."""
-    return not _apart(_offset(nodes[i], nodes[j], before[i]), _offset(nodes[i], nodes[j], after[i]))
+    x, y = nodes[i, 0], nodes[i, 1]
+    dx, dy = nodes[j, 0] - x, nodes[j, 1] - y
+    length = math.hypot(dx, dy)
+    if length == 0.0:
+        return True
+    one = (dx * (before[i, 1] - y) - dy * (before[i, 0] - x)) / length
+    other = (dx * (after[i, 1] - y) - dy * (after[i, 0] - x)) / length
+    return not _apart(one, other)
 
 
 @njit(cache=True)
 def _crosses(a: np.ndarray, b: np.ndarray, edges: np.ndarray) -> bool:
     """Whether a segment and an edge cross strictly. Mere touching is left to the certified check."""
     for e in range(len(edges)):
-        c, d = edges[e, :2], edges[e, 2:]
-        if _apart(_offset(a, b, c), _offset(a, b, d)) and _apart(_offset(c, d, a), _offset(c, d, b)):
+        if _crosses_edge(a, b, edges[e, :2], edges[e, 2:]):
             return True
     return False
+
+
+@njit(cache=True)
+def _crosses_any(a: np.ndarray, b: np.ndarray, edges: np.ndarray, bins: Bins) -> bool:
+    """As `_crosses`, with the edges near the segment only, those near its beginning first."""
+    left, right, bottom, top = min(a[0], b[0]), max(a[0], b[0]), min(a[1], b[1]), max(a[1], b[1])
+    begin, end = columns_between(left, right, bins)
+    for step in range(end - begin + 1):
+        column = begin + step if b[0] >= a[0] else end - step
+        low, high = rows_between(a, b, column, bins)
+        for step_y in range(high - low + 1):
+            row = low + step_y if b[1] >= a[1] else high - step_y
+            place = column * bins.rows + row
+            for e in bins.edges[bins.first[place] : bins.first[place + 1]]:
+                beside = max(edges[e, 0], edges[e, 2]) < left or min(edges[e, 0], edges[e, 2]) > right
+                beside |= max(edges[e, 1], edges[e, 3]) < bottom or min(edges[e, 1], edges[e, 3]) > top
+                if not beside and _crosses_edge(a, b, edges[e, :2], edges[e, 2:]):
+                    return True
+    return False
+
+
+@njit(cache=True)
+def _crosses_edge(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> bool:
+    return _apart(_offset(a, b, c), _offset(a, b, d)) and _apart(_offset(c, d, a), _offset(c, d, b))
 
 
 @njit(cache=True)

@@ -1,0 +1,79 @@
+"""Edges by place: a raster of square bins, so that a segment is compared with the edges near it and not with all."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+
+class Bins(NamedTuple):
+    """Edges by the bins that they pass through.
+
+    low: (2,) the lower left corner of all bins, side: of a bin, in units. columns, rows: number of bins. first: (columns rows + 1,) where
+    the edges of each bin, column by column, begin in `edges`.
+    """
+
+    low: np.ndarray
+    side: float
+    columns: int
+    rows: int
+    first: np.ndarray
+    edges: np.ndarray
+
+
+def bins_of(edges: np.ndarray) -> Bins:
+    """The bins of edges (n, 4), about as many as there are edges."""
+    low, high = edges.reshape(-1, 2).min(axis=0), edges.reshape(-1, 2).max(axis=0)
+    width, height = (high - low).tolist()
+    side = math.sqrt(width * height / len(edges))
+    empty = np.zeros(0, dtype=np.int64)
+    bins = Bins(low, side, math.ceil(width / side) + 1, math.ceil(height / side) + 1, empty, empty)
+    first, sorted_edges = _sort(edges, bins)
+    return bins._replace(first=first, edges=sorted_edges)
+
+
+@njit(cache=True)
+def _sort(edges: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
+    """The numbers of the edges of each bin: counted first, then put in their places."""
+    first = np.zeros(bins.columns * bins.rows + 1, dtype=np.int64)
+    for e in range(len(edges)):
+        begin, end = columns_between(edges[e, 0], edges[e, 2], bins)
+        for column in range(begin, end + 1):
+            low, high = rows_between(edges[e, :2], edges[e, 2:], column, bins)
+            first[column * bins.rows + low + 1 : column * bins.rows + high + 2] += 1
+    first = np.cumsum(first)
+    place = first[:-1].copy()
+    found = np.empty(first[-1], dtype=np.int64)
+    for e in range(len(edges)):
+        begin, end = columns_between(edges[e, 0], edges[e, 2], bins)
+        for column in range(begin, end + 1):
+            low, high = rows_between(edges[e, :2], edges[e, 2:], column, bins)
+            for place_of in range(column * bins.rows + low, column * bins.rows + high + 1):
+                found[place[place_of]] = e
+                place[place_of] += 1
+    return first, found
+
+
+@njit(cache=True)
+def columns_between(x: float, other: float, bins: Bins) -> tuple[int, int]:
+    """The first and the last column of bins between two abscissas."""
+    begin = int((min(x, other) - bins.low[0]) // bins.side)
+    end = int((max(x, other) - bins.low[0]) // bins.side)
+    return max(begin, 0), min(end, bins.columns - 1)
+
+
+@njit(cache=True)
+def rows_between(a: np.ndarray, b: np.ndarray, column: int, bins: Bins) -> tuple[int, int]:
+    """The first and the last row of bins that a segment passes within a column, a little more rather than less."""
+    low, high = min(a[1], b[1]), max(a[1], b[1])
+    margin = 1e-3 * bins.side
+    step = b[0] - a[0]
+    if abs(step) > margin:
+        left = bins.low[0] + column * bins.side
+        enter, leave = (left - a[0]) / step, (left + bins.side - a[0]) / step
+        y, other = a[1] + enter * (b[1] - a[1]), a[1] + leave * (b[1] - a[1])
+        low, high = max(low, min(y, other)), min(high, max(y, other))
+    begin = int((low - margin - bins.low[1]) // bins.side)
+    end = int((high + margin - bins.low[1]) // bins.side)
+    return max(begin, 0), min(end, bins.rows - 1)
