@@ -54,8 +54,9 @@ def _follow(points, at, step, circles, pace, end, rules):
     n, s, total = 0, 0.0, at[-1]
     reached[0] = s
     while step + n < end:
-        seen = positions(centres, velocities, walls, step + n + rules.looks_after)
-        drift = positions(centres, velocities, walls, step + n + rules.looks_after + 1) - seen if rules.foresees else np.zeros_like(seen)
+        # A robot that looks ahead needs where the circles are now, when it is where it is.
+        seen = positions(centres, velocities, walls, step + n + (rules.looks_after and not rules.foresees))
+        drift = positions(centres, velocities, walls, step + n + 1) - seen if rules.foresees else np.zeros_like(seen)
         if n > 0:
             if rules.every > 0 and (step + n) % rules.every == 0:
                 return DUE, reached[: n + 1]
