@@ -85,7 +85,7 @@ def local(tree):
 
 
 def test_slurm_gives_the_same_bits(tree, local, tmp_path_factory):
-    """One figure with what it needs, five jobs in three groups, for each job costs two starts of Snakemake; the README's lines as dry runs."""
+    """One figure with what it needs, for each job costs two starts of Snakemake; the README's lines as dry runs."""
     if slurm.obstacle():
         pytest.skip(f"no Slurm: {slurm.obstacle()}")
     assert COMMANDS[0] == "make cluster"
