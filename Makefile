@@ -56,9 +56,10 @@ cluster: .venv/ready ## add Snakemake's plugins for Slurm and other schedulers, 
 archive: .cache/archive/ready ## results/full with code and environment as an RO-Crate, checked and zipped, into archive (ARGS: another scale)
 	$(<D)/bin/python workflow/archive/archive.py $(ARGS)
 
-# Pages show the alternatives and readings that are there, so these come first.
+# Pages show the alternatives and readings that are there, so they are made again in the end.
 outcome: .venv/ready ## everything at scales full and extended with alternatives and readings, then docs/outcome and the README's table
 	@$(UNLOCK)
+	$(SNAKEMAKE) all extended $(ARGS)
 	$(SNAKEMAKE) alternatives readings $(ARGS)
 	$(SNAKEMAKE) all extended $(ARGS)
 	$(RUN) -m bezierplan outcome
