@@ -60,7 +60,8 @@ archive: .cache/archive/ready ## results/full with code and environment as an RO
 outcome: .venv/ready ## everything at scales full and extended with alternatives and readings, then docs/outcome and the README's table
 	@$(UNLOCK)
 	$(SNAKEMAKE) all extended $(ARGS)
-	$(SNAKEMAKE) alternatives readings $(ARGS)
+	$(SNAKEMAKE) alternatives $(ARGS)
+	$(SNAKEMAKE) readings $(ARGS)
 	$(SNAKEMAKE) all extended $(ARGS)
 	$(RUN) -m bezierplan outcome
 

@@ -38,8 +38,10 @@ def write() -> None:
     """Copy the outcome, and insert its table into the README. Raises FileNotFoundError if results are missing."""
     studies = reading.load(reading.read_config({}))
     titles = {key: study.title for key, study in studies.items()}
-    of_studies = {name: {key: pd.read_csv(FULL / key / name) for key in titles} for name in (SENSITIVITY, *READINGS)}
-    claims = summary.with_readings(pd.read_csv(RESULTS / "claims.csv"), pd.concat(of_studies[SENSITIVITY].values()))
+    tried = pd.concat(pd.read_csv(FULL / key / SENSITIVITY) for key in titles)
+    searched = [key for key in titles if (FULL / key / READINGS[0]).is_file()]
+    found = tuple(pd.concat(pd.read_csv(FULL / key / name) for key in searched) for name in READINGS) if searched else None
+    claims = summary.with_readings(pd.read_csv(RESULTS / "claims.csv"), tried)
     claims = summary.with_papers_size(claims, pd.read_csv(FULL / "claims.csv"))
     numbers = pd.read_csv(RESULTS / "numbers.csv")
     measured = pd.read_csv(RESULTS / WORTH)
@@ -47,10 +49,9 @@ def write() -> None:
     numbers.to_csv(KEPT / "numbers.csv", index=False)
     claims.to_csv(KEPT / "claims.csv", index=False)
     shutil.copyfile(FULL / "numbers.csv", KEPT / NUMBERS_FULL)
-    found = tuple(pd.concat(of_studies[name].values()) for name in READINGS)
     (KEPT / "summary.md").write_text(summary.report(numbers, claims, measured, titles, RESULTS.name, found), encoding="utf-8")
-    for name in of_studies:
-        for key in titles:
+    for key in titles:
+        for name in (SENSITIVITY, *(READINGS if key in searched else ())):
             shutil.copyfile(FULL / key / name, KEPT / f"{key}_{name}")
     shutil.copyfile(RESULTS / WORTH, KEPT / WORTH)
     forecast.keep(studies, Path())
