@@ -27,6 +27,7 @@ TREE = (
     "src",
     "config",
     "profiles",
+    "docs",
 )
 (LINES,) = re.findall(r"^## From a laptop to a cluster$.*?^```sh\n(.*?)^```$", (ROOT / "README.md").read_text(), flags=re.M | re.S)
 COMMANDS = [re.split(r"\s+# ", line)[0] for line in LINES.splitlines()]

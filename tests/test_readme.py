@@ -23,6 +23,7 @@ TREE = (
     "src",
     "config",
     "profiles",
+    "docs",
     "results/README.md",
 )
 README = (ROOT / "README.md").read_text(encoding="utf-8")
