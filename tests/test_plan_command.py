@@ -121,6 +121,11 @@ FAULTS = {
     "out": ([GAPS, *ENDS, "--out", "path.pdf"], "--out: path.pdf; expected a file that ends in .svg, .png"),
     "like": ([GAPS, *ENDS, "--like", "smooth"], "--like: smooth; expected STUDY/METHOD"),
     "cell": ([GAPS, *ENDS, "--planner", "prm", "--cell", "0"], "--cell: 0; expected a number above 0"),
+    "endless cell": ([GAPS, *ENDS, "--planner", "prm", "--cell", "inf"], "--cell: inf; expected a number above 0"),
+    "folder": ([GAPS, *ENDS, "--out", "nowhere/path.svg"], "--out: nowhere/path.svg: no folder nowhere; expected one that exists"),
+    "seed": ([GAPS, *ENDS, "--seed", "-1"], "--seed: -1; expected a whole number of at least 0"),
+    "scenario and ends": ([GAPS, *ENDS, "--scenario", "a.scen:1"], "--scenario: a.scen:1: has a start and a target of its own"),
+    "radius": (["a.yaml", *ENDS, "--robot-radius", "-1"], "--robot-radius: -1; expected a number of at least 0"),
     "scenario": ([GAPS, "--scenario", "a.scen:1"], "--scenario: a.scen:1; expected FILE:NUMBER"),
 }
 
@@ -129,6 +134,31 @@ FAULTS = {
 def test_fault_is_one_line(capsys, fault):
     words, told = FAULTS[fault]
     assert re.search(told, refused(capsys, *words))
+
+
+def test_a_planner_has_its_settings_away_from_the_projects_folder(capsys, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    assert planned(capsys, GAPS, *ENDS, "--planner", "prm", "--cell", 0.5)["planner"] == "prm"
+
+
+def test_a_straight_path_is_no_longer_than_the_shortest(capsys, tmp_path):
+    """No rounding error is printed as a length, a curvature or a clearance."""
+    (tmp_path / "room.txt").write_text("...\n...\n...\n")
+    found = planned(capsys, tmp_path / "room.txt", "--start", "0.1,0.3", "--target", "2.7,2.3")
+    assert found["length"].endswith(", 0 % above the shortest path")
+    assert found["curvature"] == "at most 0 / cell"
+
+
+def test_a_large_map_shows_free_and_occupied_cells_apart(capsys, tmp_path):
+    rows = 120
+    lines = ["." * rows] * rows
+    lines[30:60] = ["." * 40 + "#" * 40 + "." * 40] * 30
+    (tmp_path / "room.txt").write_text("\n".join(lines) + "\n")
+    planned(capsys, tmp_path / "room.txt", "--start", "1,1", "--target", "119,119", "--out", tmp_path / "path.png")
+    shades = np.asarray(Image.open(tmp_path / "path.png").convert("L"))
+    # Lines around cells would darken the free ones. The middle of the map's lower half is free.
+    middle = shades[shades.shape[0] // 2 :, shades.shape[1] // 2 - 100 : shades.shape[1] // 2 + 100]
+    assert np.mean(middle > 250) > 0.5
 
 
 def test_a_target_that_cannot_be_reached_is_told(capsys, tmp_path):

@@ -14,6 +14,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "src"))
 
 from elhoseny2017 import benchmark_fields
 from geometry import benchmark_geometry
+from limits import benchmark_limits
 from meledje import benchmark_node_genetic
 from runs import benchmark_runs
 from simulation import benchmark_simulation
@@ -48,6 +49,7 @@ PARTS = {
     "runs": benchmark_runs,
     "simulation": benchmark_simulation,
     "geometry": benchmark_geometry,
+    "limits": benchmark_limits,
     "start": benchmark_start,
 }
 

@@ -88,6 +88,12 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
 def _plan(given: Namespace) -> None:
     if given.out and given.out.suffix not in OUT:
         raise Fault(f"--out: {given.out}; expected a file that ends in {', '.join(OUT)}")
+    if given.out and not given.out.parent.is_dir():
+        raise Fault(f"--out: {given.out}: no folder {given.out.parent}; expected one that exists")
+    if given.seed < 0:
+        raise Fault(f"--seed: {given.seed}; expected a whole number of at least 0")
+    if given.scenario and (given.start or given.target):
+        raise Fault(f"--scenario: {given.scenario}: has a start and a target of its own; expected no --start and no --target beside it")
     planner, settings = _planner(given)
     problem = _problem(given, planner)
     bound = shortest_paths.shortest_path(problem)
@@ -123,17 +129,24 @@ def _told(
     if check is None:
         return [*lines, ("path", f"none ({plan.stop})"), ("CPU time", f"{seconds:.3g} s")]
     length = curves.length(plan.path)
-    lines.append(("length", f"{length:.6g} {unit}, {100 * (length / shortest - 1) if shortest else 0.0:.3g} % above the shortest path"))
+    lines.append(
+        ("length", f"{length:.6g} {unit}, {_told_number(100 * (length / shortest - 1) if shortest else 0.0, 3)} % above the shortest path")
+    )
     kappa, _ = curves.curvature(plan.path, max(CURVATURE_SAMPLES, 20 * len(curves.bezier_pieces(plan.path)) + 1))
     corners = "" if np.isfinite(curves.curvature_jump(plan.path)) else ", and corners"
-    lines.append(("curvature", f"at most {np.nan_to_num(np.abs(kappa)).max():.6g} / {unit}{corners}"))
-    lines.append(("clearance", f"{check.clearance:.6g} {unit}"))
+    lines.append(("curvature", f"at most {_told_number(np.nan_to_num(np.abs(kappa)).max(), 6)} / {unit}{corners}"))
+    lines.append(("clearance", f"{_told_number(check.clearance, 6)} {unit}"))
     if check.feasible:
         lines.append(("feasible", "yes"))
     else:
         x, y = curves.point_at(plan.path, check.collision_at)
         lines.append(("feasible", f"no: enters an obstacle at {x:.6g},{y:.6g}, at most {check.depth:.6g} {unit} deep"))
     return [*lines, ("CPU time", f"{seconds:.3g} s")]
+
+
+def _told_number(value: float, digits: int) -> str:
+    """A number with some digits; 0 if it is within the checker's tolerance, where it says nothing."""
+    return f"{value:.{digits}g}" if abs(value) > checker.TOLERANCE else "0"
 
 
 def _planner(given: Namespace) -> tuple[str, dict[str, Any]]:
@@ -171,7 +184,9 @@ def _preset(planner: str) -> dict[str, Any]:
     """A planner's settings in the first study of this project that uses it as a method."""
     from bezierplan.study import reading
 
-    for study in reading.load(reading.read_config({})).values():
+    # Away from the project's folder no configuration is found.
+    named = {} if File("config/config.yaml").is_file() else checked.read(reading.PACKAGE.parents[1] / "config" / "config.yaml")
+    for study in reading.load(reading.read_config(named)).values():
         for method in study.methods:
             if study.planner(method) == planner:
                 return study.resolved(method)
@@ -204,6 +219,8 @@ def _problem(given: Namespace, planner: str) -> Problem:
     elif kind == "grid":
         described["cell"] = _side(1.0 if given.cell is None else given.cell)
     elif kind == "ros_map":
+        if not 0 <= given.robot_radius < np.inf:
+            raise Fault(f"--robot-radius: {given.robot_radius:g}; expected a number of at least 0")
         described |= {"robot_radius": given.robot_radius}
         described |= {"most_pixels": given.most_pixels} if given.most_pixels is not None else {}
     workspace = files.load(described, given.map.parent)
@@ -217,7 +234,7 @@ def _problem(given: Namespace, planner: str) -> Problem:
 
 
 def _side(cell: float) -> float:
-    if not cell > 0:
+    if not 0 < cell < np.inf:
         raise Fault(f"--cell: {cell:g}; expected a number above 0")
     return cell
 

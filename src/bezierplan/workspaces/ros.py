@@ -6,7 +6,8 @@ occupied_thresh, and unknown in between; the last two both count as occupied her
 """
 
 import math
-import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -91,23 +92,33 @@ def _occupied(file: Path, content: dict[str, Any], most_pixels: int) -> np.ndarr
     """Which pixels are occupied or unknown: bool (rows, columns), the bottom row first."""
     from PIL import Image
 
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # our own limit is reported below
+    with _without_limit(Image):
         try:
             with Image.open(file) as image:
                 columns, rows = image.size
                 if columns * rows > most_pixels:
-                    raise _too_large(f"{columns:,} x {rows:,} pixels", most_pixels)
+                    raise _too_large(columns, rows, most_pixels)
                 light, known = _light(image)
-        except Image.DecompressionBombError:
-            raise _too_large("far too many pixels", most_pixels) from None
         except (OSError, SyntaxError) as error:
             raise ValueError(f"image: {content['image']}: cannot be read as an image ({type(error).__name__})") from None
+        except MemoryError:
+            raise ValueError(f"image: {columns:,} x {rows:,} pixels: more than there is memory for; expected a smaller image") from None
     share = light if content["negate"] else 1.0 - light
     return ~((share < content["free_thresh"]) & known)[::-1]
 
 
-def _too_large(size: str, most_pixels: int) -> ValueError:
+@contextmanager
+def _without_limit(reader: Any) -> Iterator[None]:
+    """Without Pillow's own limit of pixels, which `most_pixels` could not raise."""
+    limit, reader.MAX_IMAGE_PIXELS = reader.MAX_IMAGE_PIXELS, None
+    try:
+        yield
+    finally:
+        reader.MAX_IMAGE_PIXELS = limit
+
+
+def _too_large(columns: int, rows: int, most_pixels: int) -> ValueError:
+    size = f"{columns:,} x {rows:,} pixels"
     return ValueError(f"image: {size}; expected at most {most_pixels:,}; most_pixels raises the limit, as far as memory goes")
 
 

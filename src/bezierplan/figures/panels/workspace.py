@@ -39,6 +39,9 @@ TARGET = {"color": style.BLACK, "linestyle": "", "marker": "*", "markersize": 12
 # A grid drawn from circles or polygons shows its cells only up to this number; above it, the shapes suffice.
 _MOST_CELLS = 2500
 
+# A grid of more cells than this is drawn as an image, from its occupied cells: outlines of cells would hide what they surround.
+_MOST_OUTLINES = 10_000
+
 _COLUMNS = ["part", "x", "y", "size", "obstacle", "ring", "number"]
 
 
@@ -53,6 +56,8 @@ class Options(Panel):
 @Options.filled
 def data(workspace: Workspace, *, numbers: Literal["all", "free", "none"], embed: bool) -> pd.DataFrame:
     """What is drawn of a workspace, in its unit: one row per corner of its bounds, cell, circle, or point of a ring.
+
+    Large grids list no free cells unless they show numbers.
 
     Columns: part (corner, free, occupied, surplus, circle, ring), x, y (a cell's or circle's centre), size (a cell's side, a circle's
     radius), obstacle and ring (polygons only), number (of the cells that show it; see `workspaces.grid`), height (of the cells of a grid
@@ -103,13 +108,14 @@ def _cells(whole: Grid, own: Grid, numbers: str) -> pd.DataFrame:
     import pandas as pd
 
     own_rows, own_columns = own.occupied.shape
-    row, column = (index.ravel() for index in np.indices(whole.occupied.shape))
+    left_out = ~whole.occupied if numbers == "none" and whole.heights is None and whole.occupied.size > _MOST_OUTLINES else False
+    row, column = np.nonzero(~np.broadcast_to(left_out, whole.occupied.shape))
     surplus = (row >= own_rows) | (column >= own_columns)
-    part = np.where(surplus, "surplus", np.where(whole.occupied.ravel(), "occupied", "free"))
+    part = np.where(surplus, "surplus", np.where(whole.occupied[row, column], "occupied", "free"))
     shown = {"all": part != "", "free": part == "free", "none": part == ""}[numbers]
     x, y = whole.in_units(np.column_stack([column, row]) + 0.5).T
     cells = pd.DataFrame({"part": part, "x": x, "y": y, "size": whole.cell})
-    cells["number"] = pd.Series(np.arange(len(cells)), dtype="Int64").where(shown)
+    cells["number"] = pd.Series(row * whole.occupied.shape[1] + column, dtype="Int64").where(shown)
     if whole.heights is not None and whole is own:
         cells["height"] = whole.heights.ravel()
     return cells
@@ -160,8 +166,12 @@ def shade(axes: Axes, frame: pd.DataFrame, *, outlines: bool = False) -> None:
     axes.set_xlim(corners["x"].min(), corners["x"].max())
     axes.set_ylim(corners["y"].min(), corners["y"].max())
     axes.set_aspect("equal")
-    for part, look in _CELLS.items():
-        _draw_cells(axes, frame[frame["part"] == part], look)
+    cells = frame[frame["part"].isin(_CELLS)]
+    if "height" not in frame and len(cells) and np.ptp(corners["x"]) * np.ptp(corners["y"]) > _MOST_OUTLINES * cells["size"].iloc[0] ** 2:
+        _draw_image(axes, cells, corners)
+    else:
+        for part, look in _CELLS.items():
+            _draw_cells(axes, cells[cells["part"] == part], look)
     if "height" in frame:
         _draw_heights(axes, frame[frame["part"] == "free"])
     look = _OUTLINE if outlines or frame["part"].isin(_CELLS).any() else _OBSTACLE
@@ -177,6 +187,22 @@ def _draw_cells(axes: Axes, cells: pd.DataFrame, look: dict) -> None:
     square = np.array([[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]])
     corners = cells[["x", "y"]].to_numpy()[:, None] + cells["size"].to_numpy()[:, None, None] * square
     axes.add_collection(PolyCollection(corners, edgecolor=style.CELL_LINE, linewidth=0.4, zorder=0.5, **look), autolim=False)
+
+
+def _draw_image(axes: Axes, cells: pd.DataFrame, corners: pd.DataFrame) -> None:
+    """Draw cells as an image of one pixel each. Cells that are not listed are free."""
+    from matplotlib.collections import PolyCollection
+    from matplotlib.colors import to_rgb
+
+    side = cells["size"].iloc[0]
+    (left, right), (bottom, top) = corners["x"], corners["y"]
+    image = np.full((round((top - bottom) / side), round((right - left) / side), 3), to_rgb(_CELLS["free"]["facecolor"]))
+    for part in ("occupied", "surplus"):
+        own = cells[cells["part"] == part]
+        image[((own["y"] - bottom) // side).astype(int), ((own["x"] - left) // side).astype(int)] = to_rgb(_CELLS[part]["facecolor"])
+        if len(own):
+            axes.add_collection(PolyCollection([], edgecolor=style.CELL_LINE, **_CELLS[part]), autolim=False)  # for the legend
+    axes.imshow(image, extent=(left, right, bottom, top), origin="lower", aspect="equal", zorder=0.5)
 
 
 def _draw_heights(axes: Axes, cells: pd.DataFrame) -> None:
