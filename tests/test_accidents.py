@@ -1,4 +1,4 @@
-"""Accidents: a full disk, a foreign file in the place of results, damaged compiled code, a clock that goes back, two workflows at once."""
+"""Accidents: a full disk, a foreign file in the place of results, damaged compiled code, two workflows at once."""
 
 import os
 import subprocess
