@@ -6,6 +6,7 @@ import pandas as pd
 from bezierplan.analysis import explained, worth
 from bezierplan.analysis.claims.verdicts import VERDICTS
 
+HEADING = "# Outcome at scale "
 NUMBERS = ("reproduced", "not told apart", "cannot fail", "not reproduced")
 
 
@@ -128,7 +129,7 @@ def report(
     measured: rows with the columns `worth.COLUMNS`. readings: the tables of `explained`, if the search for readings has been made.
     """
     parts = [
-        f"# Outcome at scale {scale}",
+        f"{HEADING}{scale}",
         "`numbers`: published numbers that can be judged and say something new. `reproduced`: those within the central 95 % of what our "
         "runs give by chance in an experiment of the paper's size, where that range refuses at least half of the numbers that the paper "
         "prints of other methods in the same place (where it prints none, a number 10 % lower or higher). `not told apart`: within the "

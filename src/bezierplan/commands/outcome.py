@@ -23,6 +23,10 @@ BLOCK = "outcome"
 SENSITIVITY, READINGS = "sensitivity.csv", ("readings.csv", "explained.csv", "held_out.csv")
 WORTH = "worth.csv"
 NUMBERS_FULL = "numbers_papers_size.csv"
+SCALES = {
+    "full": "the papers' own numbers of runs.",
+    "extended": "a verdict is about a method, not about the few runs that a paper could afford.",
+}
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
@@ -60,5 +64,8 @@ def write() -> None:
 
 
 def table(kept: Path) -> str:
-    """The README's table, from the numbers and claims in a folder."""
-    return summary.markdown(summary.outcome(pd.read_csv(kept / "numbers.csv"), pd.read_csv(kept / "claims.csv")))
+    """The README's table, from the numbers and claims in a folder, and below it the scale, from the summary there."""
+    counts = summary.outcome(pd.read_csv(kept / "numbers.csv"), pd.read_csv(kept / "claims.csv"))
+    heading = (kept / "summary.md").read_text(encoding="utf-8").splitlines()[0]
+    scale = heading.removeprefix(summary.HEADING)
+    return f"{summary.markdown(counts)}\n\nScale `{scale}`: {SCALES[scale]}"
