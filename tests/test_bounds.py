@@ -17,7 +17,7 @@ from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
 from bezierplan.geometry.shortest_paths import Bound, centre_path, lattice_path, least_length, shortest_path
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.files import polygons_from_geojson
+from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.lattice import STEPS, neighbours
 from bezierplan.workspaces.polygons import Polygons

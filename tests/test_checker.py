@@ -14,7 +14,7 @@ from bezierplan.geometry.checker import check
 from bezierplan.geometry.curves import bernstein
 from bezierplan.geometry.region import region
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.files import polygons_from_geojson
+from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.polygons import Polygons
 

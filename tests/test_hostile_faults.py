@@ -660,7 +660,7 @@ WORDS = {
     # Claims
     "a claim twice": (C, "id: C2", "id: C1", "claims.yaml: claims: C1: another one has this id already"),
     "a claim of another name": (C, "id: C2", "id: two", "claims.yaml: claims: 1: id: 'two': expected C and a number"),
-    "a long statement": (C, "statement: Smooth paths come", f"statement: {'a' * 200} #", "claims.yaml: claims: 0: statement: 'aaa"),
+    "a long statement": (C, "statement: Smooth paths are", f"statement: {'a' * 200} #", "claims.yaml: claims: 0: statement: 'aaa"),
     "a baseline as a group": (
         C,
         "groups: [smooth], than",

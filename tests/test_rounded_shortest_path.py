@@ -16,7 +16,7 @@ from bezierplan.geometry.region import region
 from bezierplan.geometry.shortest_paths import shortest_path
 from bezierplan.planners import rounded_shortest_path
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.files import polygons_from_geojson
+from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem

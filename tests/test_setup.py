@@ -18,6 +18,7 @@ TARGETS = {
     "lint",
     "benchmark",
     "compare",
+    "archive",
     "outcome",
     "verify-outcome",
     "cluster",

@@ -9,7 +9,7 @@ from timing import cpu_seconds
 
 from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
-from bezierplan.workspaces import files
+from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path as Curve
@@ -40,7 +40,7 @@ def workspaces() -> Iterator[tuple[str, Workspace]]:
     for side in (16, 20, 100, 200):
         yield f"cells {side} x {side}", random_grid(side, rng)
     for file in sorted((Path(__file__).parents[2] / "config/studies/elhoseny2017/workspaces").glob("*.geojson")):
-        yield f"polygons {file.stem}", files.polygons_from_geojson(file.read_text(), "m")
+        yield f"polygons {file.stem}", polygons_from_geojson(file.read_text(), "m")
 
 
 def benchmark_geometry() -> None:

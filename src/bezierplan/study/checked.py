@@ -118,9 +118,16 @@ def _check_size(text: str, place: str) -> None:
             raise Fault(f"{_line(place, event.start_mark)}: more than {MOST_NODES} values, aliases counted as what they stand for")
 
 
+# More known words than this are not all listed, but only some that are most alike.
+MOST_LISTED, FEW_LISTED = 40, 10
+
+
 def closest(word: Any, known: Iterable[Any]) -> str:
-    """`; did you mean ...?` and the known words, to end a sentence about an unknown one."""
+    """`; did you mean ...?` and the known words, or those most alike of many, to end a sentence about an unknown one."""
     words = sorted(map(str, known))
     near = difflib.get_close_matches(str(word), words, n=1)
     hint = f"; did you mean {near[0]}?" if near else ";"
+    if len(words) > MOST_LISTED:
+        listed = difflib.get_close_matches(str(word), words, n=FEW_LISTED, cutoff=0.0)
+        return f"{hint} known: {', '.join(sorted(listed))} and {len(words) - len(listed)} others"
     return f"{hint} known: {', '.join(words) or 'none'}"

@@ -31,13 +31,16 @@ _NAMES = 1.2
 class Options(RunsPanel):
     """Keys of a panel."""
 
-    published_drawn: ClassVar[bool] = True
-
     metric: Metric = Field("objective", description="what is ranked, the name of a metric; left out: objective")
     printed: Line = Field(None, description="the name of a published table whose mean ranks are shown besides")
     unit: Literal["repeat", "problem"] = Field(
         "repeat", description="in what methods are ranked: each repeat of a condition (left out: this), or each problem, by the median run"
     )
+
+    @property
+    def published_drawn(self) -> bool:
+        """Whether published mean ranks are shown."""
+        return self.printed is not None
 
 
 @Options.filled
