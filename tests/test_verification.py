@@ -118,7 +118,7 @@ def test_missing_tables_are_told(made):
     made.write_text(pd.read_csv(verify_outcome.KEPT).head(1).assign(method="none").to_csv(index=False))
     with pytest.raises(Fault, match=r"table1\.comparison\.csv: none of its numbers is kept in docs/outcome/numbers_papers_size\.csv"):
         verify_outcome.verified(song())
-    with pytest.raises(Fault, match=r"no number of docs/outcome/numbers\.csv is here"):
+    with pytest.raises(Fault, match=r"no number of docs/outcome/numbers_papers_size\.csv is here"):
         verify_outcome.verified({})
 
 

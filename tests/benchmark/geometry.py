@@ -9,8 +9,8 @@ from timing import cpu_seconds
 
 from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
-from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path as Curve
 from bezierplan.workspaces.problem import Problem, Workspace
