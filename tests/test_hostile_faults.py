@@ -939,7 +939,7 @@ SPOILT = {
 
 @pytest.mark.parametrize("fault", SPOILT)
 def test_snakemake_ends_in_one_line(fault, folder):
-    """Exit code 1, and of the whole output one line: no traceback, whatever the file holds; within 10 s of CPU time, 3 on a free machine."""
+    """Exit code 1, and of the whole output one line: no traceback, whatever the file holds; within 10 s of CPU (3 on a free machine)."""
     name, content = SPOILT[fault]
     (folder / name).unlink()
     os.mkfifo(folder / name) if content is None else write(folder / name, content)
