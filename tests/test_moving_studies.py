@@ -5,8 +5,10 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from PIL import Image, ImageSequence
 
 from bezierplan.commands import replay
+from bezierplan.figures import animation
 from bezierplan.running import problems, rides, worlds
 from bezierplan.running.execution import Condition
 from bezierplan.running.simulation.motion_check import Motion
@@ -105,6 +107,21 @@ def test_equal_seeds_give_equal_drives(tmp_path):
     stored = one[0].to_pylist()[1]
     found = replay.replay(stored["id"], {"mystudy": study})
     assert replay.equal(found.runs.iloc[0], stored)
+
+
+def test_animation_begins_at_the_start_and_ends_at_the_end_of_the_drive(tmp_path):
+    study = reading.load([written(tmp_path)])["mystudy"]
+    file = tmp_path / "drive.gif"
+    replay.animate(replay.replay("mystudy/drives/across/mine/0", {"mystudy": study}), file)
+    assert file.stat().st_size < 500_000
+    with Image.open(file) as found:
+        frames = [np.asarray(frame.convert("RGB")).astype(int) for frame in ImageSequence.Iterator(found)]
+        # Frames in which nothing moves are one, shown longer.
+        shown = sum(frame.info["duration"] for frame in ImageSequence.Iterator(found))
+    assert shown == (animation.FRAMES - 1) * animation.EACH + animation.LAST
+    # The way so far is red: none at first, the longest in the end.
+    red = [np.count_nonzero((frame[..., 0] - frame[..., 1:].max(axis=2)) > 80) for frame in frames]
+    assert red[0] < red[len(red) // 2] < red[-1]
 
 
 def test_files_of_problems_keep_the_world(tmp_path):

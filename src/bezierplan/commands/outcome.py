@@ -11,13 +11,15 @@ from pathlib import Path
 import pandas as pd
 
 from bezierplan.analysis import summary
-from bezierplan.commands import forecast
+from bezierplan.commands import forecast, replay
 from bezierplan.study import reading
 from bezierplan.study.checked import Fault
 
 RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
 PICTURE = "song2016/figures/figure3.png"
+# The run of the README's animation, and its file.
+DRIVE, ANIMATION = "elhoseny2017/moving/moving_fast_0_15/mga_evades/0", "elhoseny2017_moving.gif"
 BLOCK = "outcome"
 # Tables of each study at scale full.
 SENSITIVITY, READINGS = "sensitivity.csv", ("readings.csv", "explained.csv", "held_out.csv")
@@ -60,6 +62,7 @@ def write() -> None:
     shutil.copyfile(RESULTS / WORTH, KEPT / WORTH)
     forecast.keep(studies, Path())
     shutil.copyfile(FULL / PICTURE, KEPT / PICTURE.replace("/figures/", "_"))
+    replay.animate(replay.replay(DRIVE, studies), KEPT / ANIMATION)
     README.write_text(summary.with_block(README.read_text(encoding="utf-8"), BLOCK, table(KEPT)), encoding="utf-8")
 
 

@@ -12,35 +12,46 @@ from bezierplan.figures.panels import snapshot
 from bezierplan.figures.panels import workspace as workspaces
 
 if TYPE_CHECKING:
+    from PIL import Image
+
     from bezierplan.running.simulation.motion_check import Verdict
     from bezierplan.running.simulation.robot import Ride
     from bezierplan.workspaces.problem import Problem
     from bezierplan.workspaces.worlds import World
 
-# Frames of an animation and frames per second; inches and dots per inch: together well below 2 MB.
-FRAMES, RATE = 90, 15
-_SIDE, _DOTS = 3.6, 100
+# Frames of an animation and milliseconds of each, of the last one longer; inches, dots per inch and colours: together a few hundred kB.
+FRAMES = 45
+EACH, LAST = 120, 1500
+_SIDE, _DOTS, _COLOURS = 3.6, 100, 32
 
 
 def save(world: World, problem: Problem, ride: Ride, verdict: Verdict, file: Path) -> None:
     """Save a drive as an animated gif: obstacles, way driven, current plan, and dropped plans in grey."""
+    from PIL import Image
+
+    frames = [_frame(world, problem, ride, verdict, number / (FRAMES - 1)) for number in range(FRAMES)]
+    # The colours of one frame serve for all, so that neighbouring frames differ only where something moves.
+    palette = frames[FRAMES // 2].quantize(_COLOURS, Image.Quantize.MAXCOVERAGE)
+    first, *others = [frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames]
+    file.parent.mkdir(parents=True, exist_ok=True)
+    first.save(file, save_all=True, append_images=others, duration=[EACH] * (FRAMES - 1) + [LAST], loop=0)
+
+
+def _frame(world: World, problem: Problem, ride: Ride, verdict: Verdict, share: float) -> Image.Image:
+    """The picture of a share of a drive's time."""
     import matplotlib as mpl
-    from matplotlib.animation import FuncAnimation, PillowWriter
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
+    from PIL import Image
 
     with mpl.rc_context(style.SETTINGS):
-        figure = Figure(figsize=(_SIDE, _SIDE), layout="tight")
+        figure = Figure(figsize=(_SIDE, _SIDE), dpi=_DOTS, layout="tight")
         axes = figure.subplots()
-
-        def frame(number: int) -> None:
-            axes.clear()
-            rows = snapshot.moment(world, problem, ride, verdict, number / (FRAMES - 1))
-            workspaces.shade(axes, rows)
-            workspaces.scale(axes, world.unit)
-            snapshot.show(axes, rows)
-            axes.set_title(f"step {number / (FRAMES - 1) * ride.motion.times[-1]:.0f}")
-
-        # The last frame stays for a second.
-        numbers = np.append(np.arange(FRAMES), np.full(RATE, FRAMES - 1))
-        file.parent.mkdir(parents=True, exist_ok=True)
-        FuncAnimation(figure, frame, frames=numbers.tolist()).save(file, writer=PillowWriter(fps=RATE), dpi=_DOTS)
+        rows = snapshot.moment(world, problem, ride, verdict, share)
+        workspaces.shade(axes, rows)
+        workspaces.scale(axes, world.unit)
+        snapshot.show(axes, rows)
+        axes.set_title(f"step {share * ride.motion.times[-1]:.0f}")
+        canvas = FigureCanvasAgg(figure)
+        canvas.draw()
+    return Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
