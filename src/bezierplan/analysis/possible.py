@@ -24,10 +24,12 @@ class Printed(NamedTuple):
 
     @property
     def low(self) -> Fraction:
+        """The least value that rounds to the printed one."""
         return self.value - self.half
 
     @property
     def high(self) -> Fraction:
+        """The greatest value that rounds to the printed one."""
         return self.value + self.half
 
 

@@ -6,11 +6,12 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import worth
+from bezierplan.analysis.explained import IN_FORCE
 from bezierplan.figures.page import content
 from bezierplan.figures.page.addresses import address
 
-# Readings shown of a study, beside the one in force, which readings.csv calls so.
-MOST_READINGS, IN_FORCE = 10, "in force"
+# Readings shown of a study, beside the one in force.
+MOST_READINGS = 10
 
 
 def of_worth(study: str, measured: pd.DataFrame) -> dict[str, Any]:

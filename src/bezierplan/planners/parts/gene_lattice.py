@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.lattice import STEPS
 
@@ -103,13 +104,7 @@ def genes_at(points: np.ndarray, field: Field) -> np.ndarray:
 def polygon(ones: np.ndarray, field: Field) -> np.ndarray:
     """Start, the control points of a chromosome in their order, and target: (points, 2)."""
     points = np.empty((len(ones) + 2, 2))
-    order = ones.copy()
-    for k in range(1, len(order)):
-        gene, place = order[k], k
-        while place > 0 and field.rank[order[place - 1]] > field.rank[gene]:
-            order[place] = order[place - 1]
-            place -= 1
-        order[place] = gene
+    order = ones[ascending(field.rank[ones])]
     for axis in range(2):
         points[0, axis], points[-1, axis] = field.start[axis], field.target[axis]
         for i in range(len(order)):
