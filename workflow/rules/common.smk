@@ -11,9 +11,11 @@ from pathlib import Path
 SOURCE = str(Path(str(workflow.current_basedir)).parents[1] / "src")
 sys.path.insert(0, SOURCE)
 os.environ.update(PYTHONPATH=SOURCE, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="1", NUMBA_NUM_THREADS="1")
+INTERPRETER = sys.executable
 # Snakemake puts the path of its interpreter into shell commands unquoted; here the folder may have any name.
 sys.executable = shlex.quote(sys.executable)
 
+from bezierplan.running import forks
 from bezierplan.study import alternatives, checked, experiments, page, reading, targets
 
 try:
@@ -21,6 +23,9 @@ try:
     reading.check_folder()
 except checked.Fault as fault:
     sys.exit(str(fault))
+
+# What the directive `script` calls: a fork of one process with all libraries, instead of a new interpreter.
+script = forks.Forks(INTERPRETER, script).script
 
 RESULTS = "results/{scale}/{study}"
 ALTERNATIVE = f"{RESULTS}/sensitivity/{{alternative}}"

@@ -1,0 +1,139 @@
+"""Run the scripts of jobs in forks of one process that has imported what they need.
+
+To start Python and to import numba, pandas and seaborn takes one to two seconds, longer than most jobs work. Snakemake starts an
+interpreter for each script; here one process imports these libraries once per workflow, while no job waits, and forks a child per job. A
+child inherits modules, never results: the parent reads no file of the workflow.
+"""
+
+import contextlib
+import importlib
+import inspect
+import logging
+import os
+import pickle
+import select
+import signal
+import socket
+import subprocess
+import sys
+import threading
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+# What jobs import, in the order in which the first jobs of a workflow need it.
+MODULES = (
+    "snakemake.iocontainers",
+    "pyarrow.dataset",
+    "bezierplan.running.problems",
+    "bezierplan.running.execution",
+    "scipy.sparse.csgraph",
+    "bezierplan.running.worlds",
+    "bezierplan.running.rides",
+    "bezierplan.analysis.results",
+    "bezierplan.analysis.claims.job",
+    "scipy.stats",
+    "bezierplan.figures.sheet",
+    "seaborn",
+    "matplotlib.backends.backend_agg",
+    "matplotlib.backends.backend_svg",
+    "bezierplan.figures.page.job",
+)
+DONE = b"\n"
+
+
+class Forks:
+    """The process that is forked, seen from Snakemake. It starts with the first job and ends with Snakemake, or when this object goes."""
+
+    def __init__(self, interpreter: str, script: Callable[..., None]) -> None:
+        """Take the path of Python's interpreter, and Snakemake's function that runs a script in an interpreter of its own."""
+        self._interpreter, self._script, self._names = interpreter, script, inspect.signature(script)
+        self._starting, self._control = threading.Lock(), None
+
+    def script(self, *given: Any) -> None:
+        """Run a script as Snakemake's function of the same name does, which is called with the same arguments.
+
+        Raises subprocess.CalledProcessError if the script fails, after the script has said why on stderr.
+        """
+        from snakemake.iocontainers import Snakemake
+        from snakemake.script import SourceCache, get_source
+
+        job = self._names.bind(*given).arguments
+        cache = SourceCache(job["sourcecache_path"], job["runtime_sourcecache_path"])
+        file, source, language, *_ = get_source(job["path"], cache, job["basedir"], job["wildcards"], job["params"])
+        # Elsewhere libraries may not survive a fork; and a container or another environment has a Python of its own.
+        if language != "python" or sys.platform != "linux" or job["container_img"] or job["conda_env"] or job["env_modules"]:
+            self._script(*given)
+            return
+        names = ("input", "output", "params", "wildcards", "threads", "resources", "log", "config", "rulename", "bench_iteration")
+        name = file.get_path_or_uri(secret_free=True)
+        if not self._done(pickle.dumps((name, source, Snakemake(*(job[each] for each in names))))):
+            raise subprocess.CalledProcessError(1, name)
+
+    def _done(self, job: bytes) -> bool:
+        """Whether a job succeeds."""
+        ours, theirs = socket.socketpair()
+        with ours:
+            with theirs, self._starting:
+                if self._control is None:
+                    self._control = self._start()
+                socket.send_fds(self._control, [DONE], [theirs.fileno()])
+            # A job that dies at once leaves nobody to read.
+            with contextlib.suppress(ConnectionError):
+                ours.sendall(job)
+                ours.shutdown(socket.SHUT_WR)
+                return ours.recv(1) == DONE
+            return False
+
+    def _start(self) -> socket.socket:
+        ours, theirs = socket.socketpair()
+        with theirs:
+            subprocess.Popen([self._interpreter, "-m", __name__], stdin=theirs)
+        return ours
+
+
+def serve(control: socket.socket) -> None:
+    """Fork a child for each socket that arrives; import what jobs need while none arrives; return when the other end has closed."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for children
+    steps = [*(partial(importlib.import_module, name) for name in MODULES), compile_first]
+    while True:
+        if steps and not select.select([control], [], [], 0)[0]:
+            # The jobs that need a module report what is wrong with it.
+            with contextlib.suppress(Exception):
+                steps.pop(0)()
+            continue
+        arrived, sockets, *_ = socket.recv_fds(control, 1, 1)
+        if not arrived:
+            return
+        if os.fork() == 0:
+            control.close()
+            run(socket.socket(fileno=sockets[0]))
+        os.close(sockets[0])
+
+
+def compile_first() -> None:
+    """Compile a function, for the first one takes numba half a second more than the others, cached or not."""
+    import numba
+
+    numba.njit(lambda: 0)()
+
+
+def run(parent: socket.socket) -> None:
+    """Run, in a child, the script that a socket brings, and end the process. An exception ends it as it would end an interpreter."""
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    with parent.makefile("rb") as stream:
+        name, source, snakemake = pickle.load(stream)
+    exec(compile(source, name, "exec"), {"__name__": "__main__", "__file__": name, "snakemake": snakemake})
+    logging.shutdown()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    parent.send(DONE)
+    os._exit(0)
+
+
+if __name__ == "__main__":
+    with socket.socket(fileno=os.dup(0)) as control, open(os.devnull, "rb") as nothing:
+        os.dup2(nothing.fileno(), 0)
+        serve(control)
