@@ -31,7 +31,7 @@ extended: .venv/ready ## everything with hundreds to thousands of repeats, into 
 test: lint ## lint, the smoke subset, and all tests (ARGS go to pytest)
 	@$(UNLOCK)
 	$(SNAKEMAKE) smoke
-	$(RUN) -m pytest -n auto $(ARGS)
+	$(RUN) -m pytest -n auto --dist loadfile $(ARGS)
 
 lint: .venv/ready ## style of Python, Snakemake and JavaScript files, and who may import whom
 	$(RUN) -m ruff check

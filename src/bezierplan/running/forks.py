@@ -67,11 +67,11 @@ class Forks:
             return
         names = ("input", "output", "params", "wildcards", "threads", "resources", "log", "config", "rulename", "bench_iteration")
         name = file.get_path_or_uri(secret_free=True)
-        if not self._done(pickle.dumps((name, source, Snakemake(*(job[each] for each in names))))):
+        if not self.succeeds(name, source, Snakemake(*(job[each] for each in names))):
             raise subprocess.CalledProcessError(1, name)
 
-    def _done(self, job: bytes) -> bool:
-        """Whether a job succeeds."""
+    def succeeds(self, name: str, source: str, snakemake: Any) -> bool:
+        """Run a script in a fork, with the object that scripts know as `snakemake`, and say whether it came to its end."""
         ours, theirs = socket.socketpair()
         with ours:
             with theirs, self._starting:
@@ -80,7 +80,7 @@ class Forks:
                 socket.send_fds(self._control, [DONE], [theirs.fileno()])
             # A job that dies at once leaves nobody to read.
             with contextlib.suppress(ConnectionError):
-                ours.sendall(job)
+                ours.sendall(pickle.dumps((name, source, snakemake)))
                 ours.shutdown(socket.SHUT_WR)
                 return ours.recv(1) == DONE
             return False

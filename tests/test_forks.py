@@ -1,0 +1,110 @@
+"""Scripts of jobs in forks of one process: what a script sees, and how failures and ends are reported."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+from snakemake.script import script
+
+from bezierplan.running.forks import MODULES, Forks
+
+
+@pytest.fixture
+def forks():
+    return Forks(sys.executable, script)
+
+
+def gone(process, seconds=20):
+    """Whether a process ends in time."""
+    until = time.monotonic() + seconds
+    while time.monotonic() < until:
+        try:
+            state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+        except (FileNotFoundError, ProcessLookupError):
+            return True
+        if state == "Z":
+            return True
+        time.sleep(0.05)
+    return False
+
+
+def test_script_gets_its_object_and_no_input(forks, tmp_path):
+    told = tmp_path / "told"
+    source = "import sys\nopen(snakemake.output, 'w').write(repr((__name__, __file__, snakemake.params, sys.stdin.read())))"
+    assert forks.succeeds("one.py", source, SimpleNamespace(output=str(told), params={"a": 1}))
+    assert told.read_text() == repr(("__main__", "one.py", {"a": 1}, ""))
+
+
+def test_what_jobs_need_is_imported_while_no_job_waits(forks, tmp_path):
+    told = tmp_path / "told"
+    source = "import os, sys\nfile, names = snakemake\nprint(os.getppid(), set(names) <= set(sys.modules), file=open(file, 'a'))"
+    until = time.monotonic() + 120
+    while time.monotonic() < until and not (told.exists() and "True" in told.read_text()):
+        assert forks.succeeds("modules.py", source, (str(told), MODULES))
+        time.sleep(0.2)
+    parents, imported = zip(*map(str.split, told.read_text().splitlines()), strict=True)
+    assert imported[-1] == "True"
+    assert len(set(parents)) == 1
+
+
+@pytest.mark.parametrize(
+    ("source", "told"),
+    [
+        ("import sys; sys.exit('song.yaml: wrong')", "song.yaml: wrong\n"),
+        ("raise ValueError('wrong')", "ValueError: wrong\n"),
+        ("def broken(", "SyntaxError"),
+        ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", ""),
+        ("import os; os._exit(0)", ""),
+    ],
+)
+def test_script_that_does_not_come_to_its_end_fails_and_the_next_one_runs(forks, capfd, source, told):
+    assert not forks.succeeds("bad.py", source, None)
+    assert told in capfd.readouterr().err
+    assert forks.succeeds("good.py", "pass", None)
+
+
+def test_many_scripts_at_once(forks, tmp_path):
+    source = "import time; time.sleep(0.01 * snakemake[0]); open(snakemake[1], 'w').write('done'); assert snakemake[0] % 3"
+    files = [tmp_path / str(k) for k in range(12)]
+    with ThreadPoolExecutor(12) as threads:
+        ends = list(threads.map(lambda k: forks.succeeds("many.py", source, (k, str(files[k]))), range(12)))
+    assert ends == [k % 3 != 0 for k in range(12)]
+    assert all(file.read_text() == "done" for file in files)
+
+
+def test_large_object_of_a_script_that_does_not_read_it(forks):
+    assert forks.succeeds("large.py", "assert len(snakemake) == 10**7", bytes(10**7))
+
+
+def test_parent_of_forks_ends_with_them(forks, tmp_path):
+    told = tmp_path / "told"
+    assert forks.succeeds("parent.py", "import os; open(snakemake, 'w').write(str(os.getppid()))", str(told))
+    del forks._control
+    assert gone(int(told.read_text()))
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux can end a process with its parent")
+def test_jobs_end_with_a_workflow_that_is_killed(tmp_path):
+    told = tmp_path / "told"
+    job = """
+import os, time
+from bezierplan.running.log import end_with_parent
+end_with_parent()
+open(snakemake, "w").write(str(os.getpid()))
+time.sleep(600)
+"""
+    workflow = (
+        f"import sys; from bezierplan.running.forks import Forks; Forks(sys.executable, print).succeeds('long.py', {job!r}, {str(told)!r})"
+    )
+    with subprocess.Popen([sys.executable, "-c", workflow]) as process:
+        while not (told.exists() and told.read_text()):
+            assert process.poll() is None
+            time.sleep(0.05)
+        os.kill(process.pid, signal.SIGKILL)
+    assert gone(int(told.read_text()))
