@@ -345,3 +345,29 @@ def test_every_artefact_is_a_named_target(tree):
 def test_report_shows_every_artefact_with_its_caption(tree):
     snakemake(tree, "--report", "report.zip")
     assert (tree / "report.zip").stat().st_size > 100_000
+
+
+def test_snakemake_looks_for_jobs_no_more_often_than_jobs_end(tree):
+    shutil.rmtree(tree / "results/full/song2016/figures")
+    counted = """
+import sys
+from snakemake import cli
+from snakemake.scheduling.job_scheduler import JobScheduler
+select, looks = JobScheduler.job_selector, []
+JobScheduler.job_selector = lambda self, jobs: looks.append(time()) or select(self, jobs)
+from time import time
+try:
+    cli.main(sys.argv[1:])
+finally:
+    print("looks:", len(looks))
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", counted, "--workflow-profile", "none", "--cores", "1", "--rerun-triggers", *TRIGGERS],
+        cwd=tree,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    jobs = int(re.search(r"^total +(\d+)", done.stderr, flags=re.M)[1])
+    assert jobs > 5
+    assert int(re.search(r"looks: (\d+)", done.stdout)[1]) <= jobs

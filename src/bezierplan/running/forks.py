@@ -21,6 +21,8 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
+from bezierplan.running.log import end_with_parent
+
 # What jobs import, in the order in which the first jobs of a workflow need it.
 MODULES = (
     "snakemake.iocontainers",
@@ -134,6 +136,7 @@ def run(parent: socket.socket) -> None:
 
 
 if __name__ == "__main__":
+    end_with_parent()
     with socket.socket(fileno=os.dup(0)) as control, open(os.devnull, "rb") as nothing:
         os.dup2(nothing.fileno(), 0)
         serve(control)
