@@ -94,6 +94,20 @@ def test_how_a_job_is_logged_does_not_count(tree):
     assert digest(tree, "bezierplan.running.execution") == before
 
 
+def test_syntax_that_was_kept_is_read_and_a_damaged_copy_is_made_anew(tree):
+    module = "bezierplan.running.execution"
+    first = digest(tree, module)
+    kept = sorted((tree.parent / ".cache" / "syntax").iterdir())
+    contents = [file.read_bytes() for file in kept]
+    for k, file in enumerate(kept):
+        file.write_bytes(contents[k][: (k % 3) * 40])
+    assert digest(tree, module) == first
+    assert [file.read_bytes() for file in kept] == contents
+    for file in kept:
+        file.write_text('["another tree", []]')
+    assert digest(tree, module) != first
+
+
 KERNELS = """
 import numpy as np
 from bezierplan.planners.parts import genetic

@@ -5,7 +5,9 @@ in which numba keeps the compiled kernels of a module, because numba itself does
 """
 
 import ast
+import contextlib
 import hashlib
+import json
 import os
 import sys
 from functools import cache
@@ -18,6 +20,12 @@ ROOT = PACKAGE.name
 
 # Modules that affect how a job starts and ends, but never what it writes.
 NEUTRAL = {f"{ROOT}.running.{name}" for name in ("digest", "kernel_cache", "log")}
+
+
+def cache_folder() -> Path:
+    """`.cache` in the working tree or, if that is not writable, in the user's home."""
+    tree = PACKAGE.parents[1]
+    return (tree if os.access(tree, os.W_OK) else Path.home()) / ".cache"
 
 
 class _Module(NamedTuple):
@@ -45,10 +53,33 @@ def _module(name: str) -> _Module:
     return _Module(PACKAGE.parent, name)
 
 
-@cache
-def _parsed(file: Path) -> tuple[str, frozenset[tuple[int, str, str]]]:
+class _Syntax(NamedTuple):
     """What a file computes, as text: its syntax tree without docstrings; and what it imports: (leading dots, module, name in it)."""
-    tree = ast.parse(file.read_text(encoding="utf-8"))
+
+    tree: str
+    imports: list[list[int | str]]
+
+
+@cache
+def _syntax(file: Path) -> _Syntax:
+    """The syntax of a file, kept from earlier processes: to parse the package takes as long as to import it."""
+    source = file.read_bytes()
+    kept = cache_folder() / "syntax" / f"{hashlib.sha256(source).hexdigest()}.{sys.implementation.cache_tag}.json"
+    try:
+        return _Syntax(*json.loads(kept.read_bytes()))
+    except (OSError, ValueError, TypeError):
+        parsed = _parsed(source)
+    # Nothing depends on whether it can be kept.
+    with contextlib.suppress(OSError):
+        kept.parent.mkdir(parents=True, exist_ok=True)
+        part = kept.with_suffix(f".{os.getpid()}")
+        part.write_text(json.dumps(parsed))
+        part.replace(kept)
+    return parsed
+
+
+def _parsed(source: bytes) -> _Syntax:
+    tree = ast.parse(source)
     imports = set()
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
@@ -57,7 +88,7 @@ def _parsed(file: Path) -> tuple[str, frozenset[tuple[int, str, str]]]:
             imports.update((node.level, node.module or "", alias.name) for alias in node.names)
         elif isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) and ast.get_docstring(node) is not None:
             node.body = node.body[1:]
-    return ast.dump(tree), frozenset(imports)
+    return _Syntax(ast.dump(tree), sorted(map(list, imports)))
 
 
 @cache
@@ -66,7 +97,7 @@ def _imports(module: _Module) -> set[_Module]:
     file = module.file()
     packages = module.name.split(".") if file.name == "__init__.py" else module.name.split(".")[:-1]
     found = set()
-    for level, base, name in _parsed(file)[1]:
+    for level, base, name in _syntax(file).imports:
         above = packages[: len(packages) - level + 1] if level else []
         base = ".".join([*above, *filter(None, [base])])
         for full in filter(None, {base, ".".join(filter(None, [base, name]))}):
@@ -91,7 +122,7 @@ def source_digest(*modules: str) -> str:
     while todo:
         module = todo.pop()
         if module not in texts and module.file() and module.name not in NEUTRAL:
-            texts[module] = f"{module.name} {_parsed(module.file())[0]}"
+            texts[module] = f"{module.name} {_syntax(module.file()).tree}"
             todo += _imports(module)
     return hashlib.sha256("\n".join(sorted(texts.values())).encode()).hexdigest()[:16]
 
@@ -114,13 +145,11 @@ def kernel_folder(module: str, file: str) -> Path:
 
 
 def point_numba_cache() -> None:
-    """Set the folder for compiled kernels: `.cache/kernels` in the working tree or, if that is not writable, in the user's home.
+    """Set the folder for compiled kernels.
 
     numba reads the variables once, on import; so an earlier import is corrected as well.
     """
-    tree = PACKAGE.parents[1]
-    place = tree if os.access(tree, os.W_OK) else Path.home()
-    given = {"CACHE_DIR": str(place / ".cache" / "kernels"), "CACHE_LOCATOR_CLASSES": LOCATORS}
+    given = {"CACHE_DIR": str(cache_folder() / "kernels"), "CACHE_LOCATOR_CLASSES": LOCATORS}
     for name, value in given.items():
         os.environ[f"NUMBA_{name}"] = value
         if "numba" in sys.modules:

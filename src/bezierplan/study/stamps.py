@@ -10,9 +10,9 @@ import sys
 from functools import cache
 from pathlib import Path
 
-from bezierplan.running.digest import PACKAGE
+from bezierplan.running.digest import PACKAGE, cache_folder
 
-STAMPS = PACKAGE.parents[1] / ".cache" / "studies"
+STAMPS = cache_folder() / "studies"
 
 # A folder with more than this, in bytes, is checked at every start: reading it would take longer.
 MOST_READ = 100_000_000
