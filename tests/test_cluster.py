@@ -14,21 +14,10 @@ from pathlib import Path
 
 import pytest
 import slurm
+import trees
 import yaml
 
 ROOT = Path(__file__).parents[1]
-TREE = (
-    "Snakefile",
-    "Makefile",
-    "environment.txt",
-    "environment-build.txt",
-    "environment-cluster.txt",
-    "workflow",
-    "src",
-    "config",
-    "profiles",
-    "docs",
-)
 (LINES,) = re.findall(r"^## From a laptop to a cluster$.*?^```sh\n(.*?)^```$", (ROOT / "README.md").read_text(), flags=re.M | re.S)
 COMMANDS = [re.split(r"\s+# ", line)[0] for line in LINES.splitlines()]
 PROFILES = {name: yaml.safe_load((ROOT / "profiles" / name / "profile.yaml").read_text()) for name in ("default", "slurm", "cluster")}
@@ -39,11 +28,7 @@ RUN = "results/smoke/song2016/runs/routes/smooth/0.parquet"
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory):
     """A copy of the tree whose configuration names song2016 alone."""
-    tree = tmp_path_factory.mktemp("cluster") / "tree"
-    tree.mkdir()
-    for name in TREE:
-        (shutil.copytree if (ROOT / name).is_dir() else shutil.copy2)(ROOT / name, tree / name)
-    (tree / "config" / "config.yaml").write_text("studies: [song2016]\n")
+    tree = trees.copy(tmp_path_factory.mktemp("cluster") / "tree")
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", tree / ".venv"], check=True)
     (site,) = (tree / ".venv").glob("lib/python*/site-packages")
     (site / "original.pth").write_text(f"{sysconfig.get_path('purelib')}\n")

@@ -134,3 +134,9 @@ def test_a_kernel_outlives_an_edit_that_cannot_change_it(tree):
     again, other = kernel(tree)
     assert again == 0
     assert other != folder
+
+
+def test_a_kernel_outlives_a_move(tree, tmp_path_factory):
+    assert kernel(tree)[0] == 0
+    moved = shutil.copytree(tree.parent, tmp_path_factory.mktemp("moved") / "tree")
+    assert kernel(moved / "src") == (1, str(moved / ".cache" / "kernels" / Path(kernel(tree)[1]).name))

@@ -11,21 +11,9 @@ import subprocess
 from pathlib import Path
 
 import pytest
+import trees
 
 ROOT = Path(__file__).parents[1]
-TREE = (
-    "Snakefile",
-    "Makefile",
-    "README.md",
-    "environment.txt",
-    "environment-build.txt",
-    "workflow",
-    "src",
-    "config",
-    "profiles",
-    "docs",
-    "results/README.md",
-)
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(\w*)\n(.*?)^```$", README, flags=re.M | re.S)
 COMMANDS = [re.split(r"\s+# ", line)[0] for language, block in BLOCKS if language == "sh" for line in block.splitlines()]
@@ -57,13 +45,8 @@ def test_commands_that_are_not_executed_as_printed_stand_in_the_readme():
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory):
     """A copy of the tree after `make smoke`, and beside it the README's own study; a blank in the path."""
-    tree = tmp_path_factory.mktemp("readme") / "a clone"
-    for name in TREE:
-        source, copied = ROOT / name, tree / name
-        copied.parent.mkdir(parents=True, exist_ok=True)
-        (shutil.copytree if source.is_dir() else shutil.copy2)(source, copied)
+    tree = trees.copy(tmp_path_factory.mktemp("readme") / "a clone")
     (tree / ".venv").symlink_to(ROOT / ".venv")
-    (tree / "config" / "config.yaml").write_text("studies: [song2016]\n")
     study = tree.parent / "mystudy"
     study.mkdir()
     for language, block in BLOCKS:

@@ -11,10 +11,10 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+import trees
 import yaml
 
 ROOT = Path(__file__).parents[1]
-TREE = ("Snakefile", "workflow", "src", "config", "profiles", "Makefile", "environment.txt", "environment-build.txt")
 GENETIC = ("nonsmooth", "smooth", "smooth_cubic", "smooth_single", "random_search")
 METHODS = (*GENETIC, "shortest_path", "straight_line", "rounded")
 EXPERIMENTS = "config/studies/song2016/experiments.yaml"
@@ -90,14 +90,8 @@ PAGE = {"page": 1}
 @pytest.fixture(scope="module")
 def finished(tmp_path_factory):
     """A tree in which everything was made, kept as a snapshot."""
-    tree = tmp_path_factory.mktemp("workflow") / "tree"
-    tree.mkdir()
-    for name in TREE:
-        source = ROOT / name
-        copy = shutil.copytree if source.is_dir() else shutil.copy2
-        copy(source, tree / name)
+    tree = trees.copy(tmp_path_factory.mktemp("workflow") / "tree")
     (tree / ".venv").symlink_to(ROOT / ".venv")
-    (tree / "config" / "config.yaml").write_text("studies: [song2016]\n")
     for old, new in SMALL.items():
         edit(tree / EXPERIMENTS, old, new)
     snakemake(tree)
@@ -272,20 +266,23 @@ def processes_in(folder):
 
 # The kernel of Linux ends a job whose workflow dies (PR_SET_PDEATHSIG, `running.log`); macOS has no such call, and no /proc to look into.
 @pytest.mark.skipif(sys.platform != "linux", reason="jobs end with a killed workflow on Linux only")
-def test_killed_workflow_leaves_no_job_and_make_goes_on_from_there(finished, tree):
+@pytest.mark.parametrize(
+    ("kill", "moment"), [(os.kill, "runs/*/*/*.parquet"), (os.killpg, "problems/*.parquet"), (os.killpg, "tables/*.csv")]
+)
+def test_killed_workflow_leaves_no_job_and_make_goes_on_from_there(finished, tree, kill, moment):
     shutil.rmtree(tree / "results")
     command = [sys.executable, "-m", "snakemake"]
-    killed = subprocess.Popen(command, cwd=tree, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    killed = subprocess.Popen(command, cwd=tree, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
     deadline = time.monotonic() + 120
-    while not list(tree.glob("results/full/song2016/runs/*/*/*.parquet")):
+    while not list(tree.glob(f"results/full/song2016/{moment}")):
         assert time.monotonic() < deadline
         assert killed.poll() is None
         time.sleep(0.05)
-    killed.send_signal(signal.SIGKILL)
+    kill(killed.pid, signal.SIGKILL)
     killed.wait()
     time.sleep(0.5)
     assert processes_in(tree) == []
-    assert len(list(tree.glob("results/full/song2016/runs/*/*/?.parquet"))) < 8
+    assert not (tree / "results/full/index.html").exists()
     subprocess.run(["make", "reproduce"], cwd=tree, check=True, capture_output=True)
     assert digests(tree) == digests(finished)
 

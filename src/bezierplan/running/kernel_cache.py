@@ -4,6 +4,7 @@ numba finds the class by the name set in `digest.point_numba_cache`.
 """
 
 from collections.abc import Callable
+from pathlib import Path
 from types import FunctionType
 from typing import Any
 
@@ -26,8 +27,8 @@ class KernelCacheLocator(UserProvidedCacheLocator):
         self._disambiguator = str(self._lineno) if "<locals>" in py_func.__qualname__ else "0"
 
     def get_source_stamp(self) -> str:
-        """The source of a cached kernel: the folder alone identifies it."""
-        return self._cache_path
+        """The source of a cached kernel: the folder's name alone identifies it, wherever the folder lies."""
+        return Path(self._cache_path).name
 
     def get_disambiguator(self) -> str:
         """Distinguishes functions with the same name."""
