@@ -82,6 +82,17 @@ def test_large_object_of_a_script_that_does_not_read_it(forks):
     assert forks.succeeds("large.py", "assert len(snakemake) == 10**7", bytes(10**7))
 
 
+def test_next_script_runs_after_the_process_that_is_forked_was_killed(forks, tmp_path):
+    told = tmp_path / "told"
+    source = "import os; open(snakemake, 'w').write(str(os.getppid()))"
+    assert forks.succeeds("parent.py", source, str(told))
+    killed = int(told.read_text())
+    os.kill(killed, signal.SIGKILL)
+    assert gone(killed)
+    assert forks.succeeds("parent.py", source, str(told))
+    assert int(told.read_text()) != killed
+
+
 def test_parent_of_forks_ends_with_them(forks, tmp_path):
     told = tmp_path / "told"
     assert forks.succeeds("parent.py", "import os; open(snakemake, 'w').write(str(os.getppid()))", str(told))

@@ -77,9 +77,7 @@ class Forks:
         ours, theirs = socket.socketpair()
         with ours:
             with theirs, self._starting:
-                if self._control is None:
-                    self._control = self._start()
-                socket.send_fds(self._control, [DONE], [theirs.fileno()])
+                self._hand_over(theirs)
             # A job that dies at once leaves nobody to read.
             with contextlib.suppress(ConnectionError):
                 ours.sendall(pickle.dumps((name, source, snakemake)))
@@ -87,11 +85,16 @@ class Forks:
                 return ours.recv(1) == DONE
             return False
 
-    def _start(self) -> socket.socket:
-        ours, theirs = socket.socketpair()
+    def _hand_over(self, job: socket.socket) -> None:
+        """Send the child's end of a job's socket to the process that is forked, which is started if there is none, or none any more."""
+        if self._control is not None:
+            with contextlib.suppress(ConnectionError):
+                socket.send_fds(self._control, [DONE], [job.fileno()])
+                return
+        self._control, theirs = socket.socketpair()
         with theirs:
             subprocess.Popen([self._interpreter, "-m", __name__], stdin=theirs)
-        return ours
+        socket.send_fds(self._control, [DONE], [job.fileno()])
 
 
 def serve(control: socket.socket) -> None:
