@@ -72,30 +72,38 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     x, hue = panel["x"], panel["hue"]
     groups, bars = style.in_order(frame[x], panel), style.in_order(frame[hue], panel)
     width = _FILLED / len(bars)
+    points = width / len(groups) * axes.get_window_extent().width * 72 / axes.figure.dpi
+    lines = 1 if points >= style.SMALLEST_TEXT else 2  # under narrow bars every other number stands lower
+    height = 9 if panel["below"] == "count" else 24
     for number, (bar, look) in enumerate(zip(bars, style.bars(len(bars)))):
         own = frame[frame[hue] == bar]
         at = own[x].map(groups.index).to_numpy() + (number - (len(bars) - 1) / 2) * width
-        _draw_bars(axes, own, at, width, panel["below"], look | {"label": style.printed(bar, hue, scene.labels)})
+        _draw_bars(axes, own, at, width, look | {"label": style.printed(bar, hue, scene.labels)})
+        _write_below(axes, own, at, panel["below"], 2 + number % lines * height)
     axes.set_xlim(-0.5, len(groups) - 0.5)
     names = [scene.labels.get(group, group) if isinstance(group, str) else f"{group:g}" for group in groups]
     if sum(map(len, names)) > _ONE_LINE:
         names = [name.replace(" ", "\n") for name in names]
     axes.set_xticks(range(len(groups)), names)
-    axes.tick_params(axis="x", length=0, pad=32 if panel["below"] != "count" else 18)  # below the text under the bars
+    axes.tick_params(axis="x", length=0, pad=8 + lines * height)
     axes.set_xlabel(style.column_name(x, scene.labels))
     axes.set_ylabel(axis_label(panel["metric"], scene, panel["statistic"]))
     axes.grid(visible=True, axis="y")
     return f"below each bar: {panel['below']} of feasible runs"
 
 
-def _draw_bars(axes: Axes, frame: pd.DataFrame, at: np.ndarray, width: float, counted: str, look: dict) -> None:
-    """Bars at places (n,) with their intervals, and below each the share or the count of feasible runs."""
+def _draw_bars(axes: Axes, frame: pd.DataFrame, at: np.ndarray, width: float, look: dict) -> None:
+    """Bars at places (n,) with their intervals."""
     axes.bar(at, frame["value"], width, zorder=2, **look)
     if frame["bound"].notna().any():
         ends = at - width / 2, at + width / 2
         axes.hlines(frame["bound"], *ends, label="exact shortest path", zorder=4, **style.BOUND)
     axes.vlines(at, frame["low95"], frame["high95"], color=style.BLACK, linewidth=0.8, zorder=3, label="95 % interval")
+
+
+def _write_below(axes: Axes, frame: pd.DataFrame, at: np.ndarray, counted: str, distance: float) -> None:
+    """Below each bar, at places (n,), the share or the count of feasible runs, at a distance in points."""
     for place, runs, feasible in zip(at, frame["runs"], frame["feasible_runs"]):
-        below = {"xycoords": ("data", "axes fraction"), "xytext": (0, -2), "textcoords": "offset points"}
+        below = {"xycoords": ("data", "axes fraction"), "xytext": (0, -distance), "textcoords": "offset points"}
         text = f"{feasible:g}" if counted == "count" else f"{100 * feasible / runs:.0f} %"
         axes.annotate(text, (place, 0), rotation=90, ha="center", va="top", **below)
