@@ -51,7 +51,7 @@ def assert_sound(problem, plan, turning_radius):
     found = check(curves.bezier_pieces(plan.path), region(problem.workspace))
     assert found.feasible
     assert plan.path.points[0].tolist() == list(problem.start)
-    assert np.allclose(plan.path.points[-1], problem.target, atol=1e-12)
+    assert plan.path.points[-1].tolist() == list(problem.target)
     bound = shortest_path(problem)
     assert plan.objective >= bound.length - 1e-6
     if plan.extra["tight_turns"] == 0 and turning_radius > 0:

@@ -226,6 +226,7 @@ def _chain(legs: np.ndarray, sweeps: np.ndarray, centres: np.ndarray, radii: np.
             points.append(centres[number] + np.array([a + handle * _quarter(a), b - handle * _quarter(b), b]))
             owner.append((number + 1, number + 1))
         points[-1][-1] = legs[number + 1, 0]
+    points[-1][-1] = legs[-1, 1]  # to the last bit
     return np.concatenate(points), np.array(owner)
 
 
