@@ -124,6 +124,13 @@ def test_random_circles(seed, turning_radius, offset):
         assert_sound(problem, plan, turning_radius)
 
 
+def test_path_ends_at_the_target_to_the_last_bit():
+    """In this world the last leg, begun at its first point, misses the target by a bit."""
+    rng = np.random.default_rng(869)
+    problem = Problem("", Circles((-10.0, 10.0, -10.0, 10.0), rng.uniform(-9, 9, (9, 2)), np.full(9, 1.5), "m"), (0.0, 0.0), (4.0, 6.0))
+    assert_sound(problem, rounded(problem, 0.4), 0.4)
+
+
 @settings(max_examples=40)
 @given(st.integers(0, 10_000), st.sampled_from([0.1, 0.5, 3.0]), st.sampled_from([0.0, 0.3]))
 def test_random_cells(seed, turning_radius, offset):
