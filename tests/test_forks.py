@@ -14,6 +14,9 @@ from snakemake.script import script
 
 from bezierplan.running.forks import MODULES, Forks
 
+# Nothing to test elsewhere: there Snakemake starts an interpreter for each script, as `Forks.script` says.
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="jobs are forks on Linux only")
+
 
 @pytest.fixture
 def forks():
@@ -100,7 +103,6 @@ def test_parent_of_forks_ends_with_them(forks, tmp_path):
     assert gone(int(told.read_text()))
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="only Linux can end a process with its parent")
 def test_jobs_end_with_a_workflow_that_is_killed(tmp_path):
     told = tmp_path / "told"
     job = """
@@ -110,9 +112,7 @@ end_with_parent()
 open(snakemake, "w").write(str(os.getpid()))
 time.sleep(600)
 """
-    workflow = (
-        f"import sys; from bezierplan.running.forks import Forks; Forks(sys.executable, print).succeeds('long.py', {job!r}, {str(told)!r})"
-    )
+    workflow = f"from bezierplan.running.forks import Forks; Forks({sys.executable!r}, print).succeeds('long.py', {job!r}, {str(told)!r})"
     with subprocess.Popen([sys.executable, "-c", workflow]) as process:
         while not (told.exists() and told.read_text()):
             assert process.poll() is None

@@ -939,7 +939,7 @@ SPOILT = {
 
 @pytest.mark.parametrize("fault", SPOILT)
 def test_snakemake_ends_in_one_line(fault, folder):
-    """Exit code 1, and of the whole output one line: no traceback, whatever the file holds; within 10 s of CPU (3 on a free machine)."""
+    """Exit code 1, and of the whole output one line: no traceback, whatever the file holds; within 5 s of CPU time."""
     name, content = SPOILT[fault]
     (folder / name).unlink()
     os.mkfifo(folder / name) if content is None else write(folder / name, content)
@@ -950,7 +950,7 @@ def test_snakemake_ends_in_one_line(fault, folder):
     )
     after = os.times()
     assert done.returncode == 1
-    assert after.children_user + after.children_system - before.children_user - before.children_system < 10
+    assert after.children_user + after.children_system - before.children_user - before.children_system < 5
     assert "Traceback" not in done.stderr + done.stdout
     lines = [line for line in (done.stderr + done.stdout).splitlines() if line.strip()]
     assert len(lines) == 1, lines

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from playwright.sync_api import expect, sync_playwright
 
 sys.path.insert(0, str(Path(__file__).parent))
 from page_content import page as small_page
@@ -23,11 +24,11 @@ pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no chromium on this ma
 
 @pytest.fixture(scope="module")
 def browser():
-    from playwright.sync_api import sync_playwright
-
     # The sandbox of the browser does not start for root, as in a container.
     arguments = ["--no-sandbox"] if os.geteuid() == 0 else []
     with sync_playwright() as playwright:
+        # The page answers a click a moment later, on a busy machine much later: what is expected is waited for.
+        expect.set_options(timeout=60_000)
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=arguments)
         yield browser
         browser.close()
@@ -95,96 +96,94 @@ def test_narrow_page_does_not_scroll_sideways(visit, file):
 
 def test_without_scripts_tables_verdicts_and_figures_are_there(visit, file):
     tab = visit(file, java_script_enabled=False)
-    assert tab.locator("h1").is_visible()
+    expect(tab.locator("h1")).to_be_visible()
     tab.locator("details.table > summary").first.click()
-    assert tab.locator("details.table table").first.is_visible()
+    expect(tab.locator("details.table table").first).to_be_visible()
     assert all(tab.locator("figure img").nth(n).get_attribute("src").startswith("data:") for n in range(tab.locator("figure img").count()))
-    assert tab.locator(".search").is_hidden()
+    expect(tab.locator(".search")).to_be_hidden()
 
 
 def test_hostile_words_do_not_run(visit, small):
     tab = visit(small)
     tab.locator("#page-query").fill("script")
     assert tab.evaluate("window.broken") is None
-    assert "</script>" in tab.locator("section.paper h2").first.inner_text()
+    expect(tab.locator("section.paper h2").first).to_contain_text("</script>")
 
 
 def test_table_sorts_and_filters(visit, small):
     tab = visit(small, "one/listed")
     rows = tab.locator("[id='one/listed'] tbody tr")
-    tab.locator("[id='one/listed'] .dt-search input").wait_for()
     heading = tab.locator("[id='one/listed'] th").first
-    first = lambda: rows.first.locator("td").first.inner_text()  # noqa: E731
-    heading.click()
-    assert first() == "0"
-    heading.click()
-    assert first() == "11"
+    for order, first in (("ascending", "0"), ("descending", "11")):
+        heading.click()
+        expect(heading).to_have_attribute("aria-sort", order)
+        expect(rows.first.locator("td").first).to_have_text(first)
     tab.locator("[id='one/listed'] .dt-search input").fill("7")
-    assert rows.count() == 1
+    expect(rows).to_have_count(1)
 
 
 def test_numbers_sort_by_value_and_stay_linked(visit, small):
     tab = visit(small, "one/table1/b/length/mean")
     cell = tab.locator("[id='one/table1/b/length/mean']")
-    assert cell.is_visible()
-    assert "not reproduced" in cell.inner_text()
-    assert tab.locator("#page-tip").is_visible()
-    assert "95 % interval 10.2 to 11.1" in tab.locator("#page-tip").inner_text()
+    expect(cell).to_be_visible()
+    expect(cell).to_contain_text("not reproduced")
+    expect(tab.locator("#page-tip")).to_be_visible()
+    expect(tab.locator("#page-tip")).to_contain_text("95 % interval 10.2 to 11.1")
 
 
 def test_address_opens_a_claim_even_if_a_filter_hides_it(visit, small):
     tab = visit(small)
     tab.locator("button[data-verdict=supported]").click()
-    assert tab.locator("[id='one/C2']").is_hidden()
+    expect(tab.locator("[id='one/C2']")).to_be_hidden()
     tab.evaluate("location.hash = 'one/C2'")
     tab.locator("[id='one/C2'] .forest").first.wait_for()
-    assert tab.locator("[id='one/C1']").is_visible()
+    expect(tab.locator("[id='one/C1']")).to_be_visible()
 
 
 def test_filter_shows_claims_of_one_verdict(visit, small):
     tab = visit(small)
     tab.locator("button[data-verdict=contradicted]").click()
-    assert tab.locator(".claims").first.locator(".claim:visible").count() == 1
+    expect(tab.locator(".claims").first.locator(".claim:visible")).to_have_count(1)
     tab.locator("button[data-verdict=contradicted]").click()
-    assert tab.locator(".claims").first.locator(".claim:visible").count() == 2
+    expect(tab.locator(".claims").first.locator(".claim:visible")).to_have_count(2)
 
 
 def test_search_works_by_keyboard(visit, small):
     tab = visit(small)
     tab.keyboard.press("/")
     tab.keyboard.type("C2 best")
-    assert tab.locator("#page-hits a").count() == 1
+    expect(tab.locator("#page-hits a")).to_have_count(1)
     tab.keyboard.press("ArrowDown")
     tab.keyboard.press("Enter")
     tab.locator("[id='one/C2'] .facts").wait_for()
-    assert tab.locator("#page-hits").is_hidden()
+    expect(tab.locator("#page-hits")).to_be_hidden()
     assert tab.url.endswith("#one/C2")
 
 
 def test_search_finds_a_number_by_the_words_of_its_table(visit, small):
     tab = visit(small)
     tab.locator("#page-query").fill("objective mean")
-    assert tab.locator("#page-hits a").first.get_attribute("href") == "#one/table1/a/objective/mean"
+    expect(tab.locator("#page-hits a").first).to_have_attribute("href", "#one/table1/a/objective/mean")
 
 
 def test_viewer_draws_the_chosen_run(visit, small):
     tab = visit(small)
     run = tab.locator("#viewer select[name=run]")
-    assert tab.locator("#viewer-map .path").get_attribute("d") == "M0.5 -0.5L2 -1.5L3.5 -2.5"
-    assert tab.locator("#viewer-map .hit").count() == 0
-    assert tab.locator("#viewer-map .cells").get_attribute("d") == "M1 -2h2v1h-2z"
+    expect(tab.locator("#viewer-map .path")).to_have_attribute("d", "M0.5 -0.5L2 -1.5L3.5 -2.5")
+    expect(tab.locator("#viewer-map .hit")).to_have_count(0)
+    expect(tab.locator("#viewer-map .cells")).to_have_attribute("d", "M1 -2h2v1h-2z")
     run.focus()
     tab.keyboard.press("End")
     tab.locator("#viewer-map .hit").wait_for(state="attached")
-    assert tab.locator("#viewer-command").inner_text() == "python -m bezierplan replay one/first/p/a/2"
-    assert "not feasible" in tab.locator("#viewer-facts").inner_text()
+    expect(tab.locator("#viewer-command")).to_have_text("python -m bezierplan replay one/first/p/a/2")
+    expect(tab.locator("#viewer-facts")).to_contain_text("not feasible")
 
 
 def test_address_of_a_run_opens_it_in_the_viewer(visit, small):
     tab = visit(small, "one/first/p/a/1")
-    assert tab.locator("#viewer select[name=run] option:checked").inner_text() == "worst"
+    expect(tab.locator("#viewer select[name=run] option:checked")).to_have_text("worst")
     tab.evaluate("location.hash = 'one/first/p/a/77'")
-    assert tab.locator("#viewer-note", has_text="does not hold run one/first/p/a/77").count() == 1
+    expect(tab.locator("#viewer-note")).to_contain_text("does not hold run one/first/p/a/77")
 
 
 def circle(tab):
@@ -204,8 +203,8 @@ def at(tab, time):
 
 def test_circles_move_and_the_way_grows_with_the_slider(visit, small):
     tab = visit(small, "one/circles/p/a/0")
-    assert tab.locator("#viewer-step").inner_text() == "step 3 of 4"
-    assert tab.locator("#viewer-map .path").get_attribute("d") == "M0.5 -0.5L2.5 -0.5L2.5 -1"
+    expect(tab.locator("#viewer-step")).to_have_text("step 3 of 4")
+    expect(tab.locator("#viewer-map .path")).to_have_attribute("d", "M0.5 -0.5L2.5 -0.5L2.5 -1")
     at(tab, 0)
     assert circle(tab) == (3.0, 1.0)
     at(tab, 2)
@@ -220,12 +219,12 @@ def test_circles_move_and_the_way_grows_with_the_slider(visit, small):
 def test_cells_change_at_their_moment_and_the_collision_shows_from_its_time(visit, small):
     tab = visit(small, "one/cells/p/a/0")
     at(tab, 1.96)
-    assert tab.locator("#viewer-map .cells").get_attribute("d") == "M1 -2h2v1h-2z"
-    assert tab.locator("#viewer-map .hit").count() == 0
+    expect(tab.locator("#viewer-map .cells")).to_have_attribute("d", "M1 -2h2v1h-2z")
+    expect(tab.locator("#viewer-map .hit")).to_have_count(0)
     at(tab, 2.03)
-    assert tab.locator("#viewer-map .cells").get_attribute("d") == "M2 -2h1v1h-1zM3 -1h1v1h-1z"
-    assert tab.locator("#viewer-map .hit").count() == 1
-    assert "first collision at step 2" in tab.locator("#viewer-facts").inner_text()
+    expect(tab.locator("#viewer-map .cells")).to_have_attribute("d", "M2 -2h1v1h-1zM3 -1h1v1h-1z")
+    expect(tab.locator("#viewer-map .hit")).to_have_count(1)
+    expect(tab.locator("#viewer-facts")).to_contain_text("first collision at step 2")
 
 
 def test_drive_plays_by_keyboard_pauses_and_ends(visit, small):
@@ -237,11 +236,11 @@ def test_drive_plays_by_keyboard_pauses_and_ends(visit, small):
     )
     tab.locator("#viewer-clock").focus()
     tab.keyboard.press("Home")
-    assert tab.locator("#viewer-step").inner_text() == "step 0 of 4"
+    expect(tab.locator("#viewer-step")).to_have_text("step 0 of 4")
     tab.locator("#viewer-clock").evaluate("(clock) => { clock.max = 1000; }")
     tab.keyboard.press("Tab")
     tab.locator("#viewer-play").click()
-    assert tab.locator("#viewer-play").inner_text() == "Pause"
+    expect(tab.locator("#viewer-play")).to_have_text("Pause")
     tab.wait_for_function("document.getElementById('viewer-clock').value > 0.5")
     tab.locator("#viewer-play").click()
     stood = tab.locator("#viewer-clock").input_value()
@@ -250,7 +249,7 @@ def test_drive_plays_by_keyboard_pauses_and_ends(visit, small):
 
 
 def test_run_that_is_no_drive_has_no_clock(visit, small):
-    assert visit(small, "one/first/p/a/1").locator("#viewer-time").is_hidden()
+    expect(visit(small, "one/first/p/a/1").locator("#viewer-time")).to_be_hidden()
 
 
 def test_page_of_the_smallest_scale_shows_its_studies(visit, smoke):
