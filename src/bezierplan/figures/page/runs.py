@@ -54,13 +54,10 @@ def chosen(study: str, experiment: str, described: dict[str, Any]) -> Chosen:
     groups = [("", ranked)]
     if len(bounds) <= MOST_PROBLEMS:
         groups = [*ranked.groupby("problem", sort=False), *(groups if len(bounds) > 1 else [])]
-    by_method = [(problem, dict(list(runs[["method", "id", "gap", "feasible"]].groupby("method", sort=False)))) for problem, runs in groups]
-    shown = [
-        _shown(experiment, problem, method, runs[method])
-        for problem, runs in by_method
-        for method in described["methods"]
-        if method in runs
-    ]
+    shown = []
+    for problem, runs in groups:
+        by_method = dict(list(runs[["method", "id", "gap", "feasible"]].groupby("method", sort=False)))
+        shown += [_shown(experiment, problem, method, by_method[method]) for method in described["methods"] if method in by_method]
     named = {name for each in shown for name in (each.best, each.median, each.worst, *each.failed) if name}
     kept = [_drawn(tables[file], rows.index) for file, rows in ranked[ranked["id"].isin(named)].groupby("file", sort=False)]
     rows = pd.concat(kept) if kept else ranked
