@@ -47,6 +47,7 @@ def claim(identity: str, verdict: str, **more) -> content.Claim:
     given |= {
         "shown_in": ["one/table1"],
         "comparisons": [comparison(-1.0, -2.0, -0.2), comparison(0.4, None, None, "?")],
+        "decisive": 0,
         "variant": "metric=length",
     }
     given |= {"readings": [content.Reading(variant="metric=objective", verdict="contradicted", holds="0 of 2")]}

@@ -140,31 +140,53 @@ def said(sentences):
 
 def test_answer_counts_numbers_and_claims_and_links_to_those_that_fail():
     sentences = page().answer
-    words = said(sentences)
-    assert words[0].startswith("Of 3 published numbers that can be judged, 1 (33 %) are reproduced, 1 (33 %) agree")
-    assert words[1] == "Of 2 sentences that the papers state, 1 is supported and 1 is contradicted."
-    assert words[2].startswith(
-        "one reproduces in part: 1 reproduced, 1 not, 1 not decisive; 1 of 2 claims supported; against the paper: C2"
-    )
+    assert said(sentences) == [
+        "Of 3 published numbers, 1 (33\u00a0%) is reproduced, 1 (33\u00a0%) is not; tests of the rest (1) are too weak to tell.",
+        "Of 2 claims of the papers, tested at the 95\u00a0% level, 1 holds and 1 fails.",
+        "one reproduces in part (1 of 2 decisive numbers); 1 of 2 claims hold, C2 fails.",
+        "Of 1 supported claims that can be resampled, 1 would show again in at least 80\u00a0% of experiments of the paper's size.",
+        "Of 2 claims that can be read in more than one way, 1 keeps its verdict in every reading.",
+        "The papers' own numbers contradict each other or an exact bound in 1 of 1 checks: one.",
+    ]
     assert content.Part(text="C2", address="one/C2") in sentences[2]
-    assert "1 of 2 claims that can be read in several ways" in " ".join(words)
-    assert "1 of 1 checks" in " ".join(words)
-    assert "39.6 %" in words[-1]
+
+
+def test_five_papers_are_answered_in_ten_sentences():
+    own = page().studies["one"]
+    good = own.model_copy(update={"claims": own.claims[:1]})
+    sentences = answer.answer(dict.fromkeys("abcd", own) | {"e": good})
+    assert len(sentences) == 10
+    assert said(sentences)[2:7:4] == [
+        "a reproduces in part (1 of 2 decisive numbers); 1 of 2 claims hold, C2 fails.",
+        "e reproduces in part (1 of 2 decisive numbers); 1 of 1 claims hold, none fails.",
+    ]
+
+
+def test_claims_that_fail_are_named_with_the_comparison_that_decides():
+    own = page().studies["one"]
+    assert [(key, claim.id) for key, claim in answer.failing({"x": own, "y": own})] == [("x", "C2"), ("y", "C2")]
+    words = [build.evidence(own.claims[0].model_copy(update={"decisive": n})) for n in (0, 1)]
+    assert words[0] == "exact arc length, a lower than b: effect -1 unit (95\u00a0% interval -2 to -0.2)"
+    assert words[1] == "exact arc length, a lower than b: effect 0.4 unit"
+    assert build.evidence(own.claims[0].model_copy(update={"decisive": None})) == ""
+    failed = comparison(None, None, None, "-").model_copy(update={"counted": "0 of 10, 10 of 10"})
+    claim = own.claims[0].model_copy(update={"comparisons": [failed], "decisive": 0})
+    assert build.evidence(claim) == "exact arc length, a lower than b: a value in 0 of 10 and 10 of 10 runs"
 
 
 @pytest.mark.parametrize(
-    ("good", "bad", "count", "word"),
+    ("good", "bad", "weak", "words"),
     [
-        (1, 0, 16, "can hardly be judged"),
-        (3, 0, 3, "reproduces"),
-        (3, 1, 4, "mostly reproduces"),
-        (1, 3, 4, "hardly reproduces"),
-        (2, 2, 4, "reproduces in part"),
-        (0, 3, 4, "does not reproduce"),
+        (1, 0, 15, "has too few decisive numbers to tell (1 of 16)"),
+        (3, 0, 0, "reproduces (3 of 3 decisive numbers)"),
+        (3, 1, 0, "mostly reproduces (3 of 4 decisive numbers)"),
+        (1, 3, 0, "hardly reproduces (1 of 4 decisive numbers)"),
+        (2, 2, 0, "reproduces in part (2 of 4 decisive numbers)"),
+        (0, 3, 1, "does not reproduce (0 of 3 decisive numbers)"),
     ],
 )
-def test_degree_of_reproduction_follows_the_shares_of_verdicts(good, bad, count, word):
-    assert answer._degree(good, bad, count).startswith(word)
+def test_degree_of_reproduction_follows_the_shares_of_verdicts(good, bad, weak, words):
+    assert answer._degree(good, bad, weak) == words
 
 
 def test_scale_without_judged_numbers_says_so():
@@ -282,9 +304,12 @@ def test_column_that_the_page_does_not_know_is_kept_with_the_claim():
         "variant": np.nan,
         "artefact": "table1, figure2",
     }
-    (found,) = gather._claims("one", pd.DataFrame([row | {"verdict_at_paper_size": "undecided"}]), None, [], {})
+    judged = pd.DataFrame([row | {"verdict_at_paper_size": "undecided"}])
+    (found,) = gather._claims("one", judged, None, [], {}, {"table1", "figure2"})
     assert found.more == {"verdict_at_paper_size": "undecided"}
     assert found.shown_in == ["one/table1", "one/figure2"]
+    (found,) = gather._claims("one", judged, None, [], {}, {"table1"})
+    assert found.shown_in == ["one/table1"]
 
 
 def test_best_readings_and_the_one_in_force_are_shown_with_what_they_explain():

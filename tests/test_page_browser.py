@@ -97,8 +97,8 @@ def test_narrow_page_does_not_scroll_sideways(visit, file):
 def test_without_scripts_tables_verdicts_and_figures_are_there(visit, file):
     tab = visit(file, java_script_enabled=False)
     expect(tab.locator("h1")).to_be_visible()
-    tab.locator("details.table > summary").first.click()
-    expect(tab.locator("details.table table").first).to_be_visible()
+    tab.locator(".paper details.table > summary").first.click()
+    expect(tab.locator(".paper details.table table").first).to_be_visible()
     assert all(tab.locator("figure img").nth(n).get_attribute("src").startswith("data:") for n in range(tab.locator("figure img").count()))
     expect(tab.locator(".search")).to_be_hidden()
 
@@ -164,6 +164,35 @@ def test_search_finds_a_number_by_the_words_of_its_table(visit, small):
     tab = visit(small)
     tab.locator("#page-query").fill("objective mean")
     expect(tab.locator("#page-hits a").first).to_have_attribute("href", "#one/table1/a/objective/mean")
+
+
+@pytest.mark.parametrize(
+    ("question", "addresses", "answer"),
+    [
+        ("What are the published and the reproduced mean objective of a?", ["one/table1/a/objective/mean"], "10.51 → 10.71 not told apart"),
+        ("Are the paths of a lower than those of b?", ["one/C1", "one/C2", "one/C3"], "Method a is the best (C1)."),
+        ("Which claims of one fail?", ["one/C2"], "C2 Method a is the best (C2)."),
+        ("Which claims of one hold", ["one/C1"], "claim, supported"),
+        ("the path of a's worst feasible run", ["one/first/p/a/1"], "worst feasible run"),
+    ],
+)
+def test_question_in_plain_words_finds_its_answer_in_one_step(visit, small, question, addresses, answer):
+    tab = visit(small)
+    tab.locator("#page-query").fill(question)
+    hits = tab.locator("#page-hits a")
+    for hit, address in enumerate(addresses):
+        expect(hits.nth(hit)).to_have_attribute("href", f"#{address}")
+    expect(hits.first).to_contain_text(answer)
+    expect(hits).to_have_count(len(addresses))
+
+
+def test_claims_that_fail_are_listed_with_the_reason(visit, small):
+    tab = visit(small)
+    tab.locator("summary", has_text="claims that fail, and why").click()
+    expect(tab.locator(".failing li")).to_have_count(1)
+    expect(tab.locator(".failing")).to_contain_text("exact arc length, a lower than b: effect -1 unit (95\u00a0% interval -2 to -0.2).")
+    tab.locator(".failing a").click()
+    tab.locator("[id='one/C2'] .facts").wait_for()
 
 
 def test_viewer_draws_the_chosen_run(visit, small):

@@ -1,5 +1,6 @@
 """The workflow itself, on a copy of the tree with a small song2016: what an edit re-runs, and that results depend on names alone."""
 
+import json
 import os
 import re
 import shutil
@@ -236,6 +237,26 @@ def test_figures_and_page_made_again_have_equal_bytes(tree):
     page.unlink()
     snakemake(tree)
     assert {file.name: file.read_bytes() for file in (page, *folder.iterdir())} == before
+
+
+def untimed(text):
+    """The data of a page without CPU times and what is made of them, and its pictures without those that show CPU times."""
+    data = json.loads(re.search(r'id="page-data">(.*?)</script>', text).group(1))
+    for study in data["studies"].values():
+        study["worth"] = [each | {"cpu": 0} for each in study["worth"]]
+        study["worth_in_words"] = re.sub(r"at [^ ]+( to [^ ]+)? times the baseline's CPU", "", study["worth_in_words"])
+        for table in study["tables"]:
+            times = [n for n, name in enumerate(table["columns"]) if "(s" in name]
+            table["rows"] = [[None if n in times else value for n, value in enumerate(row)] for row in table["rows"]]
+    return data, dict(re.findall(r'alt="(\w+): [^"]*" src="(data:image[^"]*)"', text))
+
+
+def test_two_runs_give_the_same_page_but_for_times(finished, tree):
+    shutil.rmtree(tree / "results/full")
+    snakemake(tree)
+    (data, pictures), (again, drawn) = (untimed((place / "results/full/index.html").read_text()) for place in (finished, tree))
+    assert again == data
+    assert {name for name, picture in pictures.items() if drawn[name] != picture} <= {"work"}
 
 
 def test_one_core_and_another_order_give_the_same_content(finished, tree):

@@ -9,6 +9,7 @@ rule worth:
             "results/{scale}/worth.csv",
             category="summary",
             labels={"item": "worth", "shows": "each method beside the exact shortest path with rounded corners"},
+            caption="../report/summary.rst",
         ),
     log:
         "results/{scale}/worth.log",
@@ -24,7 +25,12 @@ rule summary:
     output:
         numbers="results/{scale}/numbers.csv",
         claims="results/{scale}/claims.csv",
-        summary=report("results/{scale}/summary.md", category="summary", labels={"item": "summary", "shows": "the outcome of every study"}),
+        summary=report(
+            "results/{scale}/summary.md",
+            category="summary",
+            labels={"item": "summary", "shows": "the outcome of every study"},
+            caption="../report/summary.rst",
+        ),
     log:
         "results/{scale}/summary.log",
     params:

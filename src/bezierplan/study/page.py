@@ -17,8 +17,7 @@ def file(scale: str) -> str:
 def inputs(given: Studies, scale: str) -> dict[str, list[str]]:
     """Input files of the page: everything that is made at the scale, and the runs behind it."""
     made, runs = _made(given, scale), [_runs(given, scale, key) for key in given]
-    summary = f"results/{scale}/summary.md"
-    named = [f"results/{scale}/{name}.csv" for name in ("numbers", "claims", "worth")] if summary in made else []
+    named = [f"results/{scale}/{name}.csv" for name in ("numbers", "claims", "worth")] if _summary(scale) in made else []
     merged = {
         name: list(dict.fromkeys(each for files in runs for each in files[name])) for name in ("runs", "problems", "bounds", "traces")
     }
@@ -44,16 +43,25 @@ def _tried(folder: str) -> dict[str, str]:
 
 
 def _artefacts(given: Studies, scale: str) -> list[tuple[str, str]]:
-    """Study and name of every table and figure of a scale."""
+    """Study and name of every table and figure of a scale, also of a table that is as at `full` if the summary counts it."""
     if scale == "smoke":
         return jobs.smoke(given)[0]
-    return [(key, name) for key, study in given.items() for name in targets.artefacts_of(study, scale)]
+    counted = set(targets.summary_inputs(given, scale)["comparisons"]) if _summary(scale) in targets.files_of_scale(given, scale) else set()
+    return [
+        (key, name)
+        for key, study in given.items()
+        for name in [*study.tables, *study.figures]
+        if name in targets.artefacts_of(study, scale) or counted.intersection(targets.files_of(given, scale, key, name))
+    ]
+
+
+def _summary(scale: str) -> str:
+    return f"results/{scale}/summary.md"
 
 
 def _made(given: Studies, scale: str) -> list[str]:
-    if scale == "smoke":
-        return [each for study, name in _artefacts(given, scale) for each in targets.files_of(given, scale, study, name)]
-    return targets.files_of_scale(given, scale)
+    own = [each for study, name in _artefacts(given, scale) for each in targets.files_of(given, scale, study, name)]
+    return own if scale == "smoke" else list(dict.fromkeys([*targets.files_of_scale(given, scale), *own]))
 
 
 def _runs(given: Studies, scale: str, key: str) -> dict[str, list[str]]:

@@ -1,13 +1,21 @@
-"""The answer in a few sentences, computed from the content of the page: which papers reproduce, how far, what fails, how surely."""
+"""The answer in a few short sentences, computed from the content of the page: which papers reproduce, how far, what fails, how surely."""
 
 from collections import Counter
-from statistics import median
 
-from bezierplan.analysis.claims.verdicts import DECIDED, MOSTLY, VERDICTS
+from bezierplan.analysis.claims.verdicts import DECIDED, MOSTLY
 from bezierplan.figures.page.content import Claim, Number, Part, Study
 
 Sentence = list[Part]
 
+# What the verdict on a claim says in short; any other verdict leaves the claim undecided.
+IN_SHORT = {
+    "supported": "hold",
+    "mostly": "hold in part",
+    "in part": "hold in part",
+    "seldom": "hold in part",
+    "contradicted": "fail",
+    "no effect": "fail",
+}
 # Least probability that an experiment of the paper's size shows the same.
 _LIKELY = 0.8
 
@@ -20,8 +28,17 @@ def answer(studies: dict[str, Study]) -> list[Sentence]:
         runs = sum(shown.count for study in studies.values() for shown in study.shown if not shown.problem) or "no"
         return [[Part(text=f"A subset that shows how the page works: {runs} runs, too few to judge numbers or claims.")]]
     of_studies = [_of_study(key, study) for key, study in studies.items() if study.claims or _counted(study)]
-    sentences = [_numbers(counted), _claims(claims), *of_studies, _replication(claims), _readings(claims), _audit(studies), _gaps(studies)]
+    sentences = [_numbers(counted), _claims(claims), *of_studies, _replication(claims), _readings(claims), _audit(studies)]
     return [sentence for sentence in sentences if sentence]
+
+
+def failing(studies: dict[str, Study]) -> list[tuple[str, Claim]]:
+    """Sentences of papers that fail, each with the name of its study."""
+    return [(key, claim) for key, study in studies.items() for claim in _sentences(study) if _fails(claim)]
+
+
+def _fails(claim: Claim) -> bool:
+    return IN_SHORT.get(claim.verdict) == "fail"
 
 
 def _counted(study: Study) -> list[Number]:
@@ -33,70 +50,62 @@ def _sentences(study: Study) -> list[Claim]:
     return [claim for claim in study.claims if not claim.finding]
 
 
-def _share(part: int, whole: int) -> str:
-    return f"{part} ({100 * part / whole:.0f} %)"
-
-
 def _numbers(counted: list[Number]) -> Sentence:
     if not counted:
         return []
+    good, bad, weak = _degrees(counted)
+
+    def share(part: int) -> str:
+        return f"{part} ({100 * part / len(counted):.0f}\u00a0%)"
+
+    said = f"{share(good)} {_verb(good, 'is', 'are')} reproduced, {share(bad)} {_verb(bad, 'is', 'are')} not"
+    rest = f"; tests of the rest ({weak}) are too weak to tell" if weak else ""
+    return [Part(text=f"Of {len(counted)} published numbers, {said}{rest}.")]
+
+
+def _degrees(counted: list[Number]) -> tuple[int, int, int]:
+    """How many numbers are reproduced, how many are not, and how many agree in a test that could hardly have failed."""
     found = Counter(number.verdict for number in counted)
-    words = {
-        "reproduced": "are reproduced",
-        "not told apart": "agree, but within an interval too wide to tell methods apart",
-        "cannot fail": "agree where no number could have failed",
-        "not reproduced": "are not reproduced",
-    }
-    parts = [f"{_share(found[name], len(counted))} {said}" for name, said in words.items() if found[name]]
-    return [Part(text=f"Of {len(counted)} published numbers that can be judged, {_joined(parts)}.")]
+    good, bad = found["reproduced"], found["not reproduced"]
+    return good, bad, len(counted) - good - bad
 
 
 def _claims(claims: list[Claim]) -> Sentence:
     if not claims:
         return []
-    found = Counter(claim.verdict for claim in claims)
-    parts = [f"{found[name]} {_said(name, found[name])}" for name in (*VERDICTS, *sorted(found.keys() - set(VERDICTS))) if found[name]]
-    return [Part(text=f"Of {len(claims)} sentences that the papers state, {_joined(parts)}.")]
-
-
-def _said(verdict: str, count: int) -> str:
-    verb = "is" if count == 1 else "are"
-    words = {
-        "mostly": "hold" + "s" * (count == 1) + " mostly",
-        "in part": "hold" + "s" * (count == 1) + " in part",
-        "seldom": "hold" + "s" * (count == 1) + " seldom",
-        "no effect": "show" + "s" * (count == 1) + " no effect",
-        "undecided": f"{verb} undecided",
-    }
-    return words.get(verdict, f"{verb} {verdict}")
+    found = Counter(IN_SHORT.get(claim.verdict, "undecided") for claim in claims)
+    singular = {"hold": "holds", "hold in part": "holds in part", "fail": "fails", "undecided": "is undecided"}
+    plural = {word: word for word in singular} | {"undecided": "are undecided"}
+    parts = [f"{found[word]} {_verb(found[word], singular[word], plural[word])}" for word in singular if found[word]]
+    return [Part(text=f"Of {len(claims)} claims of the papers, tested at the 95\u00a0% level, {_joined(parts)}.")]
 
 
 def _of_study(key: str, study: Study) -> Sentence:
     """How far a study reproduces, and which of its claims fail."""
     counted, claims = _counted(study), _sentences(study)
-    good = sum(number.verdict == "reproduced" for number in counted)
-    bad = sum(number.verdict == "not reproduced" for number in counted)
-    supported = sum(claim.verdict == "supported" for claim in claims)
-    failed = [claim for claim in claims if claim.verdict in ("contradicted", "no effect")]
-    said = [f" {good} reproduced, {bad} not, {len(counted) - good - bad} not decisive"] if counted else []
-    said += [f" {supported} of {len(claims)} claims supported"] if claims else []
-    parts = [Part(text=key, address=study.address), Part(text=f" {_degree(good, bad, len(counted))}:{';'.join(said)}")]
-    if failed:
-        parts.append(Part(text="; against the paper: "))
-        for n, claim in enumerate(failed):
-            parts += [Part(text=", ")] if n else []
-            parts.append(Part(text=claim.id, address=claim.address))
+    parts, failed = [Part(text=key, address=study.address)], [claim for claim in claims if _fails(claim)]
+    if counted:
+        good, bad, weak = _degrees(counted)
+        parts.append(Part(text=f" {_degree(good, bad, weak)}" + ("; " if claims else "")))
+    if claims:
+        supported = sum(claim.verdict == "supported" for claim in claims)
+        parts.append(Part(text=f"{'' if counted else ': '}{supported} of {len(claims)} claims hold, " + ("" if failed else "none")))
+        parts += _listed([(claim.id, claim.address) for claim in failed])
+        parts.append(Part(text=" fail" if len(failed) > 1 else " fails"))
     return [*parts, Part(text=".")]
 
 
-def _degree(good: int, bad: int, count: int) -> str:
+def _degree(good: int, bad: int, weak: int) -> str:
     """How far numbers reproduce, in words; the same shares as in verdicts on claims."""
-    if good + bad < DECIDED * count or not count:
-        return "can hardly be judged by its numbers"
-    share = good / (good + bad)
+    decisive, count = good + bad, good + bad + weak
+    if decisive < DECIDED * count:
+        return f"has too few decisive numbers to tell ({decisive} of {count})"
+    share = good / decisive
     if share in (0, 1):
-        return "reproduces" if share else "does not reproduce"
-    return "mostly reproduces" if share >= MOSTLY else "hardly reproduces" if share <= 1 - MOSTLY else "reproduces in part"
+        degree = "reproduces" if share else "does not reproduce"
+    else:
+        degree = "mostly reproduces" if share >= MOSTLY else "hardly reproduces" if share <= 1 - MOSTLY else "reproduces in part"
+    return f"{degree} ({good} of {decisive} decisive numbers)"
 
 
 def _replication(claims: list[Claim]) -> Sentence:
@@ -104,8 +113,8 @@ def _replication(claims: list[Claim]) -> Sentence:
     if not known:
         return []
     likely = sum(share >= _LIKELY for share in known)
-    text = f"A fresh experiment of the paper's size would show a supported claim again with a median probability of {median(known):.2f}"
-    return [Part(text=f"{text}; {likely} of {len(known)} reach {_LIKELY:g}. Intervals are at the 95 % level.")]
+    again = f"{likely} would show again in at least {100 * _LIKELY:g}\u00a0% of experiments of the paper's size"
+    return [Part(text=f"Of {len(known)} supported claims that can be resampled, {again}.")]
 
 
 def _readings(claims: list[Claim]) -> Sentence:
@@ -113,30 +122,32 @@ def _readings(claims: list[Claim]) -> Sentence:
     if not several:
         return []
     same = sum(all(reading.verdict == claim.verdict for reading in claim.readings) for claim in several)
-    return [Part(text=f"{same} of {len(several)} claims that can be read in several ways have the same verdict in every reading.")]
+    text = f"Of {len(several)} {_verb(len(several), 'claim', 'claims')} that can be read in more than one way, {same}"
+    return [Part(text=f"{text} {_verb(same, 'keeps its', 'keep their')} verdict in every reading.")]
 
 
 def _audit(studies: dict[str, Study]) -> Sentence:
+    """What is wrong with the printed numbers themselves."""
     checked = [row for study in studies.values() for row in study.audit if row.consistent is not None]
     if not checked:
         return []
     bad = sum(not row.consistent for row in checked)
     where = [(key, f"{study.address}/audit") for key, study in studies.items() if any(row.consistent is False for row in study.audit)]
-    parts = [Part(text=f"Without any run, {bad} of {len(checked)} checks find printed numbers that contradict each other or a bound")]
-    for n, (key, place) in enumerate(where):
-        parts += [Part(text=", " if n else ": "), Part(text=key, address=place)]
-    return [*parts, Part(text=".")]
+    text = f"The papers' own numbers contradict each other or an exact bound in {bad} of {len(checked)} checks"
+    return [Part(text=text + (": " if where else "")), *_listed(where), Part(text=".")]
 
 
-def _gaps(studies: dict[str, Study]) -> Sentence:
-    """The median excess length over the exact bound, study by study."""
+def _listed(places: list[tuple[str, str]]) -> Sentence:
+    """Words, each of which leads to its address, in a list."""
     parts: Sentence = []
-    for key, study in studies.items():
-        gaps = [number.gap for number in _counted(study) if number.gap is not None]
-        if gaps:
-            parts += [Part(text=", " if parts else ""), Part(text=key, address=study.address), Part(text=f" {100 * median(gaps):.1f} %")]
-    before = "Feasible paths exceed the exact shortest path in the median table cell by: "
-    return [Part(text=before), *parts, Part(text=".")] if parts else []
+    for n, (words, place) in enumerate(places):
+        parts += [Part(text=" and " if n == len(places) - 1 else ", ")] if n else []
+        parts.append(Part(text=words, address=place))
+    return parts
+
+
+def _verb(count: int, one: str, many: str) -> str:
+    return one if count == 1 else many
 
 
 def _joined(words: list[str]) -> str:

@@ -6,7 +6,8 @@ from importlib import resources
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from bezierplan.figures.page import HERE, content, pictures, search
+from bezierplan.analysis.metrics import METRICS
+from bezierplan.figures.page import HERE, answer, content, pictures, search
 from bezierplan.figures.page.gather import printed_key
 
 # Verdict -> the class that colours it and its symbol; another verdict gets the last one.
@@ -45,6 +46,9 @@ def html(page: content.Page, folder: Path) -> str:
         "counts": counts,
         "entries": search.entries,
         "tip": tip,
+        "evidence": evidence,
+        "failing": answer.failing,
+        "meaning": meaning,
         "marks": MARKS,
         "picture": lambda figure: Markup(pictures.data_uri(folder / figure.svg)),
         "size": lambda figure: pictures.size(folder / figure.svg),
@@ -155,3 +159,21 @@ def tip(number: content.Number) -> str:
     if number.bound is not None:
         parts.append(f"exact bound {number.bound:.5g}" + ("" if number.gap is None else f", gap {100 * number.gap:.1f} %"))
     return "; ".join(parts)
+
+
+def evidence(claim: content.Claim) -> str:
+    """The comparison that determines the verdict on a claim, in words; empty if there is none."""
+    if claim.decisive is None:
+        return ""
+    found, (low, high) = claim.comparisons[claim.decisive], claim.comparisons[claim.decisive].interval
+    what = f"{meaning(found.metric) or found.metric.replace('_', ' ')}, {found.name}"
+    if found.effect is None:
+        return f"{what}: a value in {found.counted.replace(', ', ' and ')} runs" if found.counted else what
+    unit = "" if found.unit in ("", "-") or found.test == "share" else f" {found.unit}"
+    interval = "" if low is None or high is None else f" (95\u00a0% interval {short(low, 3)} to {short(high, 3)})"
+    return f"{what}: {'share' if found.test == 'share' else 'effect'} {short(found.effect, 3)}{unit}{interval}"
+
+
+def meaning(metric: str) -> str:
+    """What a metric measures, in a phrase; empty if it is not one of the metrics of runs."""
+    return METRICS[metric].meaning if metric in METRICS else ""

@@ -94,6 +94,7 @@ class Comparison(Record):
     effect_published: float | None = Field(description="the effect in the printed numbers")
     p: float | None
     n: float | None = Field(description="number of replicates")
+    counted: str = Field("", description="how many replicates of each group have a value, out of how many")
     reason: str
 
 
@@ -132,6 +133,7 @@ class Claim(Record):
     size: str = Field(description="our effect compared with the printed one")
     shown_in: list[Address] = Field(description="the tables and figures that show it")
     comparisons: list[Comparison]
+    decisive: int | None = Field(None, description="index in `comparisons` of the one that determines the verdict")
     variant: str = Field(description="the primary values")
     readings: list[Reading]
     choices: list[Choice]
@@ -224,6 +226,7 @@ class Study(Record):
     figures: list[Figure]
     audit: list[Audited]
     assumptions: list[Assumption]
+    gap: float | None = Field(None, description="median gap of the numbers that count in the outcome")
     worth: list[Worth] = []
     worth_in_words: str = Field("", description="what follows from `worth`")
     explanations: list[Explanation] = Field([], description="the best readings tried, the best first, and the one in force")

@@ -1,6 +1,8 @@
 """The content of the page, from the csv files of a scale. Columns are read by name, and those that a file lacks stay empty."""
 
+from collections.abc import Set
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 import pandas as pd
@@ -70,15 +72,18 @@ def _study(
     judged = files.get("claims", pd.DataFrame(columns=["study", "id", "primary", "verdict"]))
     choices = _choices(files.get("sensitivity"), judged)
     own = None if numbers is None else numbers[numbers["study"] == key]
+    tables = [_table(key, name, table, folder, own, job["labels"]) for name, table in job["tables"].items()]
+    gaps = [number.gap for table in tables for number in table.numbers if number.counted and number.gap is not None]
     return content.Study(
         address=address(key),
         title=job["title"],
         outcome={name: count for name, count in outcome.items() if isinstance(count, int)},
-        claims=_claims(key, judged, files.get("checks"), choices, job["labels"]),
-        tables=[_table(key, name, table, folder, own, job["labels"]) for name, table in job["tables"].items()],
+        claims=_claims(key, judged, files.get("checks"), choices, job["labels"], job["tables"].keys() | job["figures"].keys()),
+        tables=tables,
         figures=[_figure(key, name, figure) for name, figure in job["figures"].items()],
         audit=[_audited(row) for _, row in files["audit"].iterrows()] if "audit" in files else [],
         assumptions=[_assumption(key, each, choices) for each in job["assumptions"]],
+        gap=median(gaps) if gaps else None,
         shown=[],
         labels=job["labels"],
         **(other.of_worth(key, measured) if measured is not None else {}),
@@ -166,12 +171,16 @@ def _heading(metric: str, statistic: str, spec: dict, labels: dict[str, str]) ->
     return f"{style.column_name(metric, labels)}: {statistic}"
 
 
-def _claims(study: str, judged: pd.DataFrame, checks: pd.DataFrame | None, choices: list[content.Choice], labels: dict[str, str]) -> list:
+def _claims(
+    study: str, judged: pd.DataFrame, checks: pd.DataFrame | None, choices: list[content.Choice], labels: dict[str, str], there: Set[str]
+) -> list[content.Claim]:
+    """Claims; there: the tables and figures on the page, to which claims lead."""
     claims = []
     for identity, rows in judged.groupby("id", sort=False):
         row = rows[rows["primary"].astype(bool)].iloc[0]
         variant = _text(row, "variant")
         own = checks[(checks["id"] == identity) & (checks["variant"].fillna("") == variant)] if checks is not None else pd.DataFrame()
+        comparisons = [_comparison(each, labels) for _, each in own.iterrows()]
         claims.append(
             content.Claim(
                 address=address(study, identity),
@@ -186,15 +195,22 @@ def _claims(study: str, judged: pd.DataFrame, checks: pd.DataFrame | None, choic
                 reason=_text(row, "reason"),
                 replication=_number(row, "replication_probability"),
                 size=_text(row, "size"),
-                shown_in=[address(study, name) for name in _text(row, "artefact").replace(",", " ").split()],
-                comparisons=[_comparison(each, labels) for _, each in own.iterrows()],
-                variant=variant,
-                readings=[_reading(each) for _, each in rows[~rows["primary"].astype(bool)].iterrows()],
+                shown_in=[address(study, name) for name in _text(row, "artefact").replace(",", " ").split() if name in there],
+                comparisons=comparisons,
+                decisive=_decisive(row, comparisons),
+                variant=_labelled(variant, labels),
+                readings=[_reading(each, labels) for _, each in rows[~rows["primary"].astype(bool)].iterrows()],
                 choices=[choice for choice in choices if choice.claim == identity],
                 more={name: cell(row[name]) for name in judged if name not in _CLAIM_COLUMNS},
             )
         )
     return claims
+
+
+def _decisive(row: pd.Series, comparisons: list[content.Comparison]) -> int | None:
+    """Which comparison a claim's row repeats: the one that determines its verdict."""
+    wanted = _number(row, "effect"), _interval(row, "low95", "high95"), _number(row, "p")
+    return next((n for n, each in enumerate(comparisons) if each.deciding and (each.effect, each.interval, each.p) == wanted), None)
 
 
 def _comparison(row: pd.Series, labels: dict[str, str]) -> content.Comparison:
@@ -214,6 +230,7 @@ def _comparison(row: pd.Series, labels: dict[str, str]) -> content.Comparison:
         effect_published=_number(row, "effect_published"),
         p=_number(row, "p"),
         n=_number(row, "n"),
+        counted=_text(row, "counted"),
         reason=_text(row, "reason"),
     )
 
@@ -230,8 +247,8 @@ def _labelled(words: str, labels: dict[str, str]) -> str:
     return ", ".join(parts)
 
 
-def _reading(row: pd.Series) -> content.Reading:
-    return content.Reading(variant=_text(row, "variant"), verdict=_text(row, "verdict"), holds=_text(row, "holds"))
+def _reading(row: pd.Series, labels: dict[str, str]) -> content.Reading:
+    return content.Reading(variant=_labelled(_text(row, "variant"), labels), verdict=_text(row, "verdict"), holds=_text(row, "holds"))
 
 
 def _choices(tried: pd.DataFrame | None, judged: pd.DataFrame) -> list[content.Choice]:

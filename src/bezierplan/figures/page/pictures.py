@@ -10,12 +10,12 @@ from urllib.parse import quote
 from bezierplan.figures.page.content import Comparison
 
 # Coordinates are in points, so two decimals are finer than any screen or printer.
-_TAG, _LONG_NUMBER = re.compile(r"<[^>]+>"), re.compile(r"-?\d+\.\d{3,}")
+_TAG, _LONG_NUMBER = re.compile(r"<[^/>][^>]*>"), re.compile(r"-?\d+\.\d{3,}")
 _HEAD = re.compile(r"<\?xml.*?\?>|<!DOCTYPE.*?>|<metadata>.*?</metadata>", re.DOTALL)
 _STYLE, _CLIP, _ID = re.compile(r'\bstyle="([^"]*)"'), re.compile(r'\bclip-path="([^"]*)"'), re.compile(r'\bid="([^"]*)"')
 _OUTLINE, _STEP, _REFERENCE = re.compile(r'\bd="([^"]*)"'), re.compile(r"([A-Za-z])([^A-Za-z]*)"), re.compile(r'(?:url\(|href=")#([^)"]*)')
-# What may stand in a quoted attribute as part of a data URI; `"`, `&`, `%` and `#` may not.
-_SAFE = " /:;,=<>()'!*@$+?[]{}|^`~"
+# What may not stand in a quoted attribute as part of a data URI.
+_UNSAFE = re.compile(r"""[^-.\w /:;,=<>()'!*@$+?\[\]{}|^`~]""", re.ASCII)
 
 
 def data_uri(file: Path) -> str:
@@ -33,23 +33,24 @@ def data_uri(file: Path) -> str:
 
     def shorter(tag: re.Match) -> str:
         text = tag.group()
-        if text.startswith("</"):
-            return text
-        text = _OUTLINE.sub(lambda found: f'd="{_stepwise(found.group(1))}"', text)
+        if ' d="' in text:
+            text = _OUTLINE.sub(lambda found: f'd="{_stepwise(found.group(1))}"', text)
         if "#" in text:
             clip = _CLIP.search(text)
             if clip and _STYLE.search(text):
                 text = _STYLE.sub(lambda found: f'style="{found.group(1)}; clip-path: {clip.group(1)}"', _CLIP.sub("", text))
             text = _REFERENCE.sub(lambda found: found.group().replace(f"#{found.group(1)}", f"#{names[found.group(1)]}"), text)
-        text = _ID.sub(lambda found: f'id="{names[found.group(1)]}"' if found.group(1) in names else "", text)
-        text = _STYLE.sub(lambda found: classed(found.group(1)), text)
+        if 'id="' in text:
+            text = _ID.sub(lambda found: f'id="{names[found.group(1)]}"' if found.group(1) in names else "", text)
+        if "style=" in text:
+            text = _STYLE.sub(lambda found: classed(found.group(1)), text)
         text = " ".join(_LONG_NUMBER.sub(_rounded, text).split()).replace(" >", ">").replace(" />", "/>")
         return text if "'" in text else text.replace('"', "'")
 
     text = _TAG.sub(shorter, text)
     rules = "".join(f".{name}{{{rule}}}" for rule, name in styles.items())
     text = text.replace("</style>", f"{rules}</style>", 1)
-    return "data:image/svg+xml," + quote(re.sub(r">\s+<", "><", text.strip()), safe=_SAFE)
+    return "data:image/svg+xml," + _UNSAFE.sub(lambda letter: quote(letter.group(), safe=""), re.sub(r">\s+<", "><", text.strip()))
 
 
 def _stepwise(outline: str) -> str:

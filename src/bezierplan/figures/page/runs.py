@@ -54,12 +54,10 @@ def chosen(study: str, experiment: str, described: dict[str, Any]) -> Chosen:
     groups = [("", ranked)]
     if len(bounds) <= MOST_PROBLEMS:
         groups = [*ranked.groupby("problem", sort=False), *(groups if len(bounds) > 1 else [])]
-    shown = [
-        _shown(experiment, problem, method, of_method)
-        for problem, runs in groups
-        for method in described["methods"]
-        if not (of_method := runs[runs["method"] == method]).empty
-    ]
+    shown = []
+    for problem, runs in groups:
+        by_method = dict(list(runs[["method", "id", "gap", "feasible"]].groupby("method", sort=False)))
+        shown += [_shown(experiment, problem, method, by_method[method]) for method in described["methods"] if method in by_method]
     named = {name for each in shown for name in (each.best, each.median, each.worst, *each.failed) if name}
     kept = [_drawn(tables[file], rows.index) for file, rows in ranked[ranked["id"].isin(named)].groupby("file", sort=False)]
     rows = pd.concat(kept) if kept else ranked
@@ -88,7 +86,9 @@ def _drawn(table: Any, rows: pd.Index) -> pd.DataFrame:
 
 
 def _shown(experiment: str, problem: str, method: str, runs: pd.DataFrame) -> content.Shown:
-    ordered = runs[runs["feasible"]].sort_values(["gap", "id"], kind="stable")["id"].tolist()
+    feasible = runs[runs["feasible"]]
+    # Much faster than pandas, which first numbers the ids.
+    ordered = [name for _, name in sorted(zip(feasible["gap"].fillna(np.inf), feasible["id"], strict=True))]
     failed = runs.loc[~runs["feasible"], "id"].tolist()[:MOST_FAILED]
     best, median, worst = (ordered[0], ordered[(len(ordered) - 1) // 2], ordered[-1]) if ordered else (None, None, None)
     number = {"count": len(runs), "feasible": len(ordered)}

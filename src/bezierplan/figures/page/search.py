@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from bezierplan.figures.page.answer import IN_SHORT
 from bezierplan.figures.page.content import Number, Page, Shown, Study
 
 
@@ -25,7 +26,9 @@ def _of_study(key: str, study: Study) -> Iterator[Entry]:
     yield Entry("paper", study.address, study.title, key)
     for claim in study.claims:
         compared = " ".join(each.name for each in claim.comparisons)
-        yield Entry(f"claim, {claim.verdict}", claim.address, f"{claim.id} {claim.statement}", f"{key} {claim.verdict} {compared}")
+        said = IN_SHORT.get(claim.verdict, "undecided")
+        more = f"{key} claims {said} {said.replace('hold', 'holds').replace('fail', 'fails')} {compared}"
+        yield Entry(f"claim, {claim.verdict}", claim.address, f"{claim.id} {claim.statement}", more)
     for table in study.tables:
         yield Entry("table", table.address, f"{_words(table.name)}: {table.title}", key)
         yield from (_of_number(number, table.name, f"{key} {table.title}") for number in table.numbers if number.published is not None)
@@ -44,7 +47,7 @@ def _of_number(number: Number, table: str, more: str) -> Entry:
     values = f"{number.published:.4g} → {'–' if number.ours is None else f'{number.ours:.4g}'} {number.verdict}"
     column = number.column if number.statistic in number.column else f"{number.column}, {number.statistic}"
     keys = " ".join(str(value) for value in number.keys.values())
-    more = f"{more} {number.metric} {number.statistic} {keys}"
+    more = f"{more} published reproduced {number.metric} {number.statistic} {keys}"
     return Entry(f"number, {table}", number.address, f"{number.row}: {column}: {values}", more, not number.primary)
 
 

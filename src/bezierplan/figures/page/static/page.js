@@ -5,13 +5,9 @@ const find = (id) => document.getElementById(id);
 
 let library;
 
-function loadLibrary() {
-  library ??= import(URL.createObjectURL(new Blob([find("page-tables").textContent], { type: "text/javascript" })));
-  return library;
-}
-
 async function enhance(table) {
-  const { jQuery } = await loadLibrary();
+  library ??= import(URL.createObjectURL(new Blob([find("page-tables").textContent], { type: "text/javascript" })));
+  const { jQuery } = await library;
   const many = table.tBodies[0].rows.length > 8;
   jQuery(table).DataTable({
     paging: false, info: false, order: [], autoWidth: false, searching: many,
@@ -115,17 +111,21 @@ for (const filter of document.querySelectorAll(".filter")) {
   });
 }
 
-// Search: every word must occur in an entry.
+// Search: entries in which most of the words begin a word of theirs; of these, first the ones whose shown text has the words themselves.
 
 let index;
+const EMPTY = new Set("a an and are by did do does for how in is it its of on or s the to was were what which with".split(" "));
+const wordsOf = (text) => text.toLowerCase().split(/[^\p{L}\p{N}-]+/u).filter(Boolean);
 const query = find("page-query"), hits = find("page-hits"), found = find("page-found");
 
 function search() {
-  const words = query.value.toLowerCase().split(/\s+/).filter(Boolean);
+  const words = wordsOf(query.value).filter((word) => !EMPTY.has(word));
   index ??= JSON.parse(find("page-index").textContent).map(([kind, address, text, more, later]) => (
-    { kind, address, text, later, all: `${kind} ${address} ${text} ${more}`.toLowerCase() }));
-  const matching = words.length ? index.filter((each) => words.every((word) => each.all.includes(word))) : [];
-  const rank = (each) => (each.later ? 2 : 0) + (words.every((word) => each.text.toLowerCase().split(/[^\p{L}\d-]+/u).includes(word)) ? 0 : 1);
+    { kind, address, text, later, all: ` ${wordsOf(`${kind} ${address} ${text} ${more}`).join(" ")}` }));
+  const scored = index.map((each) => [words.filter((word) => each.all.includes(` ${word}`)).length, each]);
+  const most = Math.max(...scored.map(([score]) => score));
+  const matching = most ? scored.filter(([score]) => score === most).map(([, each]) => each) : [];
+  const rank = (each) => (each.later ? 2 : 0) + (words.every((word) => wordsOf(each.text).includes(word)) ? 0 : 1);
   const best = matching.map((each) => [rank(each), each]).sort((one, other) => one[0] - other[0]).slice(0, 30);
   hits.replaceChildren(...best.map(([, each]) => {
     const link = Object.assign(document.createElement("a"), { href: `#${encodeURI(each.address)}`, textContent: each.text });
