@@ -52,11 +52,11 @@ OBJECTIVE = chaotic_pso._objective(PROBLEM, chaotic_pso.Settings(**SETTINGS))
 def _fitness(z, objective):
     """Fitness (k,) of particles (k, dimensions), as the swarm's own kernel computes it."""
     samples = objective.free.shape[1]
-    x, y, scratch = np.empty(samples), np.empty(samples), np.empty(samples)
+    curve, scratch = np.empty((2, samples)), np.empty(samples)
     fitness = np.empty(len(z))
     for i in range(len(z)):
-        length = penalised.length(z[i], objective, x, y, scratch)
-        violation, _ = penalised.violation(x, y, objective, scratch)
+        length = penalised.length(z[i], objective, curve, scratch)
+        violation, _ = penalised.violation(curve, objective, scratch)
         fitness[i] = penalised.fitness(length, violation, objective)
     return fitness
 
