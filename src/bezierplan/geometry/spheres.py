@@ -2,8 +2,9 @@
 
 Whether a path is free is decided in rational arithmetic, without rounding. On a Bezier piece the squared distance to a centre, and the
 distance to a wall, are polynomials; their Bernstein coefficients enclose their values. A polynomial is halved until all coefficients of
-every part are high enough or a value at an end is certainly too low. As in `checker`, two thresholds guarantee that this ends: a path that is
-nowhere deeper than `TOLERANCE` is free, one that is somewhere deeper than twice that collides, and in between either verdict is possible.
+every part are high enough or a value at an end is certainly too low. As in `checker`, two thresholds guarantee that this ends: a path that
+is nowhere deeper than `TOLERANCE` is free, one that is somewhere deeper than twice that collides, and in between either verdict is
+possible.
 """
 
 import math
@@ -100,8 +101,8 @@ def least_length(problem: Problem) -> float:
 
 
 def shortest_around(start: np.ndarray, target: np.ndarray, centre: np.ndarray, radius: float) -> float:
-    """Length of the shortest path between two points (3,) outside one sphere: the straight line, or two tangents and an arc of a great circle,
-    in the plane of both points and the centre.
+    """Length of the shortest path between two points (3,) outside one sphere: the straight line, or two tangents and an arc of a great
+    circle, in the plane of both points and the centre.
     """
     from_start, from_target = np.subtract(start, centre), np.subtract(target, centre)
     a, b = math.hypot(*from_start), math.hypot(*from_target)

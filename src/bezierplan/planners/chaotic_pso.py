@@ -2,7 +2,8 @@
 that of the cognitive term (CPSO-I) or of the social term (CPSO-II) (tharwat2018, Sections 3.2 and 4).
 
 A particle is (x_1, ..., x_n, y_1, ..., y_n), the coordinates of the n free control points of one curve; among spheres, z_1, ..., z_n follow
-(Section 6). The curve is linear in them, so to the kernels every curve kind is a constant matrix. Obstacles are tested at samples of the curve.
+(Section 6). The curve is linear in them, so to the kernels every curve kind is a constant matrix. Obstacles are tested at samples of the
+curve.
 
 All methods draw the same numbers: positions, moves and the start of the chaotic sequence come from three generators; positions are drawn
 particle by particle, and for each move r1 before r2; the number that the chaotic sequence replaces is drawn and discarded.
@@ -41,11 +42,11 @@ _SPREAD = 0.05
 class Swarm(NamedTuple):
     """Result of a swarm after `done` iterations.
 
-    positions: (done + 1, d n) in d dimensions, and fitness: (done + 1,) of its best path after iteration 0, 1, ..., done. violation: that of the last of
-    them. infeasible: number of evaluated paths that collide; colliding_samples: colliding samples of all evaluated paths, summed over
-    obstacles. best_colliding_samples: those of the best path, summed over the iterations. best_infeasible: number of iterations, including
-    the initial one, after which the best path collides. zeta_clipped: number of clipped values of the chaotic sequence. zeta_collapsed_at:
-    the iteration at which the sequence collapsed, or 0.
+    positions: (done + 1, d n) in d dimensions, and fitness: (done + 1,) of its best path after iteration 0, 1, ..., done. violation: that
+    of the last of them. infeasible: number of evaluated paths that collide; colliding_samples: colliding samples of all evaluated paths,
+    summed over obstacles. best_colliding_samples: those of the best path, summed over the iterations. best_infeasible: number of
+    iterations, including the initial one, after which the best path collides. zeta_clipped: number of clipped values of the chaotic
+    sequence. zeta_collapsed_at: the iteration at which the sequence collapsed, or 0.
     """
 
     positions: np.ndarray

@@ -32,6 +32,9 @@ PLANNER = "chaotic_pso"
 
 _STEPS = 200
 
+# Room around what is drawn, as a share of its extent.
+_MARGIN = 0.05
+
 _LOOK = {
     "line": {**style.REFERENCE, "label": "straight line", "zorder": 4},
     "path": {**style.RUN_SHOWN, "label": "path", "zorder": 5},
@@ -78,9 +81,9 @@ def problem(workspace: Spheres, start: list[float], target: list[float]) -> Prob
 def data(
     workspace: Spheres, *, start: list[float], target: list[float], method: str, settings: dict[str, Any], name: str, runs: int, plane: str
 ) -> pd.DataFrame:
-    """What is drawn, and a row for each run; columns: part, x, y, z (in the workspace's unit), size (a sphere's radius), run (its name),
-    length, claimed_feasible (by the planner's own test), feasible (by the exact check), method, straight_line and bound (lengths, in
-    units; `spheres.least_length`).
+    """What is drawn, and a row for each run; columns: part, x, y, z (in the workspace's unit), size and obstacle (a sphere's radius and
+    number), run (its name), length, claimed_feasible (by the planner's own test), feasible (by the exact check), method, straight_line and
+    bound (lengths, in units; `spheres.least_length`).
 
     Parts: corner (of the bounds), sphere, start, target, line (the straight one), run, and of the shortest feasible run path and control.
     settings: all of the planner. name: that from which the runs take their seeds. Raises ValueError for a feasible path below the bound.
@@ -102,7 +105,7 @@ def data(
     table = pd.DataFrame(found)
     parts = [
         _places("corner", np.reshape(workspace.bounds, (3, 2)).T),
-        _places("sphere", workspace.centres).assign(size=workspace.radii),
+        _places("sphere", workspace.centres).assign(size=workspace.radii, obstacle=range(len(workspace.radii))),
         *(_places(part, np.array(points)) for part, points in (("start", [start]), ("target", [target]), ("line", [start, target]))),
         table,
     ]
@@ -112,7 +115,7 @@ def data(
         path = paths[best]
         samples = curves.sample_matrix(path.curve, len(path.points), _STEPS + 1) @ path.points
         parts += [_places("path", samples).assign(run=best), _places("control", path.points).assign(run=best)]
-    columns = ["part", "x", "y", "z", "size", "run", "length", "claimed_feasible", "feasible"]
+    columns = ["part", "x", "y", "z", "size", "obstacle", "run", "length", "claimed_feasible", "feasible"]
     drawn = pd.concat(parts, ignore_index=True).reindex(columns=columns)
     return drawn.assign(method=method, straight_line=np.linalg.norm(np.subtract(target, start)), bound=bound)
 
@@ -129,6 +132,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     unit = scene.workspaces[panel["workspace"]].unit
     flat = frame.assign(part=frame["part"].replace("sphere", "circle"), x=frame[across], y=frame[up])
     workspaces.shade(axes, flat)
+    _look_closer(axes, flat)
     workspaces.scale(axes, unit)
     axes.set_xlabel(f"{across} ({unit})")
     axes.set_ylabel(f"{up} ({unit})")
@@ -138,8 +142,18 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
             axes.plot(own["x"], own["y"], **look)
     runs, row = frame[frame["part"] == "run"], frame.iloc[0]
     free, claimed = runs[runs["feasible"].astype(bool)], runs["claimed_feasible"].astype(bool).sum()
-    shortest = f"the shortest: {free['length'].min():.3f} {unit}" if len(free) else "none is drawn"
+    shortest = f"{free['length'].min():.3f} {unit}" if len(free) else "none"
     return (
-        f"{len(free)} of {len(runs)} runs are free ({claimed} by the planner's samples), {shortest}\n"
-        f"straight line: {row['straight_line']:.3f} {unit}, no free path is below {row['bound']:.3f} {unit}"
+        f"{len(free)} of {len(runs)} runs are free, {claimed} by their own test\n"
+        f"shortest free path: {shortest}\n"
+        f"straight line: {row['straight_line']:.3f} {unit}, lower bound: {row['bound']:.3f} {unit}"
     )
+
+
+def _look_closer(axes: Axes, flat: pd.DataFrame) -> None:
+    """Show what is drawn with a margin, up to the walls of the box."""
+    corners, drawn = flat[flat["part"] == "corner"], flat[(flat["part"] != "corner") & flat["x"].notna()]
+    reach = drawn["size"].fillna(0) + _MARGIN * max(np.ptp(drawn["x"]), np.ptp(drawn["y"]))
+    for column, limit in (("x", axes.set_xlim), ("y", axes.set_ylim)):
+        wall = corners[column]
+        limit(max((drawn[column] - reach).min(), wall.min()), min((drawn[column] + reach).max(), wall.max()))

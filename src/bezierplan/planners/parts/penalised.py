@@ -1,8 +1,10 @@
-"""The length of a particle's curve, and the penalty for the circles, spheres and polygons it meets; a particle holds the free control points.
+"""The length of a particle's curve, and the penalty for the circles, spheres and polygons it meets; a particle holds the free control
+points.
 
-Kernels take the number of dimensions d, 2 or 3, from the shape of their arrays. tharwat2018 has circles only. Its measure, depth as a share of the circle's radius, is read as depth below the obstacle's edge as a share of
-the largest such depth, which for a circle is the same; so it applies to a polygon too, whose largest depth is the radius of its largest
-inscribed circle. The border is no obstacle: the swarm's own bounds keep the control points inside.
+Kernels take the number of dimensions d, 2 or 3, from the shape of their arrays. tharwat2018 has circles only. Its measure, depth as a share
+of the circle's radius, is read as depth below the obstacle's edge as a share of the largest such depth, which for a circle is the same; so
+it applies to a polygon too, whose largest depth is the radius of its largest inscribed circle. The border is no obstacle: the swarm's own
+bounds keep the control points inside.
 """
 
 from typing import TYPE_CHECKING, Literal, NamedTuple
