@@ -39,7 +39,7 @@ SEEDS = 200
 GOOD = 8.0
 
 STUDY = reading.load(reading.read_config({"studies": ["tharwat2018"]}))["tharwat2018"]
-PROBLEM = Problem("public", files.load(STUDY.workspaces["public"], STUDY.folder), (0.0, 0.0), (4.0, 6.0))
+PROBLEM = Problem("public", files.load(STUDY.workspaces["public"].plain(), STUDY.folder), (0.0, 0.0), (4.0, 6.0))
 SETTINGS = STUDY.resolved("pso") | STUDY.presets["profile"]["tuned"] | {"stall_limit": 0}
 PARTICLES, ITERATIONS, DIMENSIONS = SETTINGS["particles"], SETTINGS["iterations"], 2 * SETTINGS["control_points"]
 EVALUATIONS = PARTICLES * (ITERATIONS + 1)
