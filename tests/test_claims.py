@@ -306,16 +306,24 @@ def test_extremes_need_the_size_of_the_papers_experiment():
 
 
 @pytest.mark.parametrize("paired", [True, False])
-def test_units_that_would_decide_detect_an_effect_as_large_as_the_margin(paired):
-    def row(n):
-        return judge({"checks": [LOWER]}, table({"a": sample("a", n=n), "b": sample("b", n=n)}), paired={"tried": paired})
+@pytest.mark.parametrize(("shift", "verdict"), [(-0.4, "supported"), (0.0, "no effect"), (0.1, "no effect"), (0.4, "contradicted")])
+def test_units_that_would_decide(shift, verdict, paired):
+    """The margin is 0.3, and samples of any size have the same mean and deviation."""
 
-    claim, check = (frame.iloc[0] for frame in row(20))
-    assert claim["verdict"] == "undecided"
-    _, decided = (frame.iloc[0] for frame in row(claim["units_to_decide"]))
-    assert decided["least_detectable"] == pytest.approx(check["margin"], rel=0.25)
-    supported = judge({"checks": [LOWER]}, table({"a": sample("a", -2), "b": sample("b")}))[0].iloc[0]
-    assert (supported["verdict"], supported["units_to_decide"] is pd.NA) == ("supported", True)
+    def judged_with(n):
+        runs = table({"a": sample("a", shift, n=n), "b": sample("b", n=n)})
+        return judge({"checks": [LOWER | {"statistic": "mean"}]}, runs, paired={"tried": paired})[0].iloc[0]
+
+    few = judged_with(20)
+    assert few["verdict"] == "undecided"
+    assert judged_with(math.ceil(1.3 * few["units_to_decide"]))[["verdict", "units_to_decide"]].to_list() == [verdict, pd.NA]
+    assert judged_with(few["units_to_decide"] // 2)["verdict"] == "undecided"
+
+
+def test_no_number_of_units_decides_an_effect_as_large_as_the_margin_or_one_without_interval():
+    claim = judge({"checks": [LOWER]}, table({"a": sample("a", LOWER["margin"] * (1 - 1e-12)), "b": sample("b")}))[0].iloc[0]
+    assert (claim["verdict"], claim["units_to_decide"] is pd.NA) == ("undecided", True)
+    assert judged(LOWER | {"statistic": "range"}, ALIKE)["units_to_decide"] is pd.NA
 
 
 # From marks to a verdict.
@@ -332,6 +340,8 @@ VERDICTS = [
     ("+0000?", "seldom", "supported"),
     ("+-???", "undecided", "supported"),
     ("+?", "undecided", "supported"),
+    ("++?", "undecided", "supported"),
+    ("+++?", "mostly", "supported"),
     ("-0", "contradicted", "no effect"),
     ("-?", "contradicted", "undecided"),
     ("--", "contradicted", "contradicted"),

@@ -57,7 +57,7 @@ def test_each_line_is_that_of_its_group():
 
 
 def history():
-    columns = {"objective": [9.0, 7.0, 6.0], "median": [19.0, 17.0, 16.0], "quantile10": [4.0, 3.0, 2.0], "quantile90": [29.0, 28.0, 27.0]}
+    columns = {"objective": [9.0, 7.0, 6.0], "median": [19.0, 17.0, 16.0], "quartile1": [4.0, 3.0, 2.0], "quartile3": [29.0, 28.0, 27.0]}
     columns |= {"low95": [8.0, 6.5, 5.5], "high95": [10.0, 7.5, 6.5]}
     run = {"problem": "across", "method": "a", "id": "s/first/across/a/3", "repeat": 3, "curve": "bezier", "length": 6.0}
     return pd.DataFrame({"generation": [0, 1, 2], **columns, "bound": 1.5, "reference": 1.75, **run, **COUNTS, "feasible": True})

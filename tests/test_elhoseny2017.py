@@ -7,12 +7,14 @@ import numpy as np
 import pandas as pd
 import pytest
 from faults import told
-from studies import arguments
+from studies import arguments, studies, study
 
 from bezierplan.analysis import audit
 from bezierplan.analysis.papers import elhoseny2017
 from bezierplan.analysis.results import Results
-from bezierplan.study import checked, reading
+from bezierplan.running import execution, problems
+from bezierplan.study import checked, reading, targets
+from bezierplan.study.jobs import job, problems_job
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "elhoseny2017"
 PUBLISHED = {file.stem: audit.read_published(str(file)) for file in sorted((FOLDER / "published").glob("*.csv"))}
@@ -220,3 +222,25 @@ def test_memory_is_of_the_fields_of_the_study():
     cells = table["occupied cells"]
     assert (cells.xs(500, level="side") == 501**2 / 1e6).all(), "obstacles take no cells of their own"
     assert table["certified check"].xs(500, level="side").is_monotonic_increasing, "but edges"
+
+
+@pytest.mark.parametrize("problem", ["case1_100", "case1_100_dense"])
+def test_the_control_without_the_loop_evaluates_as_many_paths(problem):
+    """Claim C19 compares both: evaluations on three fields for each number of obstacles."""
+    own = study("elhoseny2017")
+    made, _ = problems.build_all(problems_job(own, "fields100", "full"), own.folder)
+    names = [f"{problem}_{layout}_{obstacles}" for layout in range(3) for obstacles in (5, 10, 15, 20, 25)]
+    evaluations = {}
+    for method in ("mga", "mga_plain_100"):
+        described = job(own, "fields100", method, "full", 0)
+        plans = [execution.run(described, next(iter(execution.conditions([name], {}))), 0, made[name]) for name in names]
+        evaluations[method] = sum(plan.evaluations for plan in plans)
+    assert evaluations["mga_plain_100"] == pytest.approx(evaluations["mga"], rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("key", "fitted"), [("song2016", set()), ("meledje", {"table2", "table3", "table4", "table5"}), ("ma2020", {"table1", "table2"})]
+)
+def test_numbers_to_which_a_map_was_fitted_are_not_compared_with_its_bound(key, fitted):
+    layouts = targets.audit_params(studies(), "smoke", key)["job"]["layouts"]
+    assert {name for name, layout in layouts.items() if layout["fitted"]} == fitted

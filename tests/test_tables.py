@@ -388,3 +388,26 @@ def test_a_printed_length_is_compared_with_the_metric_that_the_table_reads_it_as
     file.write_text("method,metric,statistic,n,unit,value\nplain,length,mean,10,m,3\nplain,cpu_s,mean,10,s,4\n")
     assert comparison.read_published(str(file), SPEC | {"reads": {"length": "cells4"}})["metric"].to_list() == ["cells4", "cpu_s"]
     assert comparison.read_published(str(file), SPEC)["metric"].to_list() == ["length", "cpu_s"]
+
+
+def test_printed_ranks_that_no_runs_have_are_impossible():
+    """Two methods' mean ranks add to 3 on every problem, up to rounding; on the long one these do not."""
+    spec = {
+        "index": ["method"],
+        "columns": ["problem", "value"],
+        "values": [{"metric": "rank", "statistic": "mean", "label": "mean rank", "decimals": 1}],
+    }
+    ours = results()
+    runs = ours.runs[ours.runs["method"] != "faster"].assign(objective=ours.runs["length"], condition=ours.runs["problem"], vary="")
+    numbers = {"long": (1.2, 1.6), "brief": (1.4, 1.7)}
+    rows = [
+        (problem, method, "rank", "mean", 20, "-", each) for problem, two in numbers.items() for method, each in zip(("plain", "fast"), two)
+    ]
+    printed = pd.DataFrame(rows, columns=["problem", "method", "metric", "statistic", "n", "unit", "value"])
+    table = comparison.compare(ours._replace(runs=runs), spec, printed, {}, [], "study/table1")
+    assert table.set_index(["problem", "method"])["possible"].to_dict() == {
+        ("long", "plain"): False,
+        ("long", "fast"): False,
+        ("brief", "plain"): True,
+        ("brief", "fast"): True,
+    }

@@ -277,12 +277,11 @@ def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> list[dict]:
         if count < 2:
             continue
         numbers = [possible.printed(text) for text in texts]
-        total = count * (count + 1) // 2
-        low, high = sum(each.low for each in numbers), sum(each.high for each in numbers)
+        total = possible.rank_sum(count)
         added = f"{' + '.join(texts)} = {_text(sum(each.value for each in numbers))}; {count} x {count + 1} / 2 = {total}"
         place = _place(own.iloc[0], within, "metric") + ", all rows"
         rule = f"mean ranks of {count} rows add to {total}, up to rounding"
-        rows.append(_row(item, place, rule, float(sum(each.value for each in numbers)), total, low <= total <= high, added))
+        rows.append(_row(item, place, rule, float(sum(each.value for each in numbers)), total, possible.are_ranks(numbers), added))
         for (_, row), number in zip(own.iterrows(), numbers):
             fits = number.high >= 1 and number.low <= count
             told = f"1 <= {row['printed']} <= {count}"

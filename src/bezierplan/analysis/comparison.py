@@ -21,7 +21,7 @@ One row for each group of runs, metric and statistic; an empty cell means that t
 | can_fail | whether a number on the published one's side of ours could have been rejected (`statistics.can_fail`) |
 | power | share of the numbers that matter (`_rivals`) that would have been rejected instead of the published one |
 | verdict | not reproduced; cannot fail; not told apart (reproduced, with a power below one half); reproduced |
-| possible | whether the metric can have the published value at all. A length below the bound is judged, not left out |
+| possible | whether the metric can have the published value at all, and ranks add up. A length below the bound is judged, not left out |
 | share_claimed | share of all runs whose path passed the planner's own test |
 | share_feasible | share of all runs whose path the certified checker accepts |
 | bound | least length of the problem, of the metric's kind (`metrics.Metric`); for several problems, the median over the runs |
@@ -29,12 +29,13 @@ One row for each group of runs, metric and statistic; an empty cell means that t
 """
 
 import math
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import metrics, statistics, tables
+from bezierplan.analysis import metrics, possible, statistics, tables
 from bezierplan.analysis.results import Results, published_table
 from bezierplan.workspaces.seeds import generator
 
@@ -83,8 +84,24 @@ def compare(
     both["unit"] = [metrics.unit(metric, workspace_unit) for metric in both["metric"]]
     described = pd.DataFrame([_described(row, keys, name, _rivals(row, given, published)) for _, row in both.iterrows()], index=both.index)
     table = both.join(described).reindex(columns=keys + _COLUMNS)
+    table.loc[_impossible_ranks(both, published, spec), "possible"] = False
     whole, marks = ("n_published", "n_ours", "n_asked"), ("reproduced", "can_fail", "possible")
     return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))
+
+
+def _impossible_ranks(both: pd.DataFrame, published: pd.DataFrame, spec: dict) -> np.ndarray:
+    """Which rows (n,) hold published mean ranks that no runs have, for those of all rows of the table do not add up."""
+    found = np.zeros(len(both), dtype=bool)
+    ranks = published[(published["metric"] == "rank") & (published["statistic"] == "mean")]
+    ours = (both["metric"] == "rank") & (both["statistic"] == "mean") & both["value_published"].notna() & both["decimals"].notna()
+    if ranks.empty or not ours.any():
+        return found
+    half = Fraction(10) ** -int(both.loc[ours, "decimals"].iloc[0]) / 2
+    within = [column for column in spec.get("columns", []) if column in published and column not in ("value", "statistic")]
+    for place, own in ranks.groupby(within, sort=False) if within else [((), ranks)]:
+        if len(own) > 1 and not possible.are_ranks([possible.Printed(Fraction(str(value)), half) for value in own["value"]]):
+            found |= (ours & (both[within] == list(place)).all(axis=1)).to_numpy()
+    return found
 
 
 def _side_by_side(ours: pd.DataFrame, published: pd.DataFrame, given: list[str], variant_of: dict[str, str]) -> pd.DataFrame:
@@ -176,15 +193,15 @@ def _judged(
     published = row["value_published"]
     if pd.isna(published):
         return {"can_fail": None, "possible": None}
-    possible = _possible(row["statistic"], (row["least"], row["most"]), size)
+    limits = _limits(row["statistic"], (row["least"], row["most"]), size)
     half = 0.0 if pd.isna(row["decimals"]) else 0.5 * 10.0 ** -row["decimals"]
     # A value below a bound of our own map is judged; a value that the metric cannot have on any map is not.
-    on_any_map = isinstance(metrics.METRICS[row["metric"]].least, str) or published >= possible[0] - half
-    judged = {"possible": bool(on_any_map and published <= possible[1] + half)}
+    on_any_map = isinstance(metrics.METRICS[row["metric"]].least, str) or published >= limits[0] - half
+    judged = {"possible": bool(on_any_map and published <= limits[1] + half)}
     if reproduced is None:
         return judged | {"can_fail": None}
     ends = (predicted[0] - half, predicted[1] + half)
-    can_fail = not reproduced or statistics.can_fail(published, ours, predicted, possible)
+    can_fail = not reproduced or statistics.can_fail(published, ours, predicted, limits)
     power = statistics.told_apart(rivals if len(rivals) else ours * np.array([1 - MATTERS, 1 + MATTERS]), ends)
     if not reproduced:
         verdict = "not reproduced"
@@ -195,7 +212,7 @@ def _judged(
     return judged | {"can_fail": can_fail, "power": power, "verdict": verdict}
 
 
-def _possible(statistic: str, single: tuple[float, float], size: int | None) -> tuple[float, float]:
+def _limits(statistic: str, single: tuple[float, float], size: int | None) -> tuple[float, float]:
     """The range of a statistic of runs whose single values lie in a given range."""
     if statistic in ("std", "iqr", "range"):
         return 0.0, math.inf

@@ -10,6 +10,7 @@ variance", American Mathematical Monthly 107, 353.
 """
 
 import math
+from collections.abc import Sequence
 from fractions import Fraction
 from typing import NamedTuple
 
@@ -152,3 +153,16 @@ def digits_p(counts: list[int]) -> float:
                 more[placed + count, count**2 :] += chance * chances[placed, : limit - count**2]
         chances = more
     return min(1.0, max(0.0, 1.0 - chances.sum()))
+
+
+# Mean ranks
+
+
+def rank_sum(count: int) -> int:
+    """What the mean ranks of so many rows add to."""
+    return count * (count + 1) // 2
+
+
+def are_ranks(numbers: Sequence[Printed]) -> bool:
+    """Whether printed numbers can be the mean ranks of as many rows: they add to `rank_sum`, up to rounding."""
+    return sum(each.low for each in numbers) <= rank_sum(len(numbers)) <= sum(each.high for each in numbers)

@@ -156,7 +156,7 @@ def report(
 def _listed(claims: pd.DataFrame) -> str:
     """Claims with their verdicts, as markdown."""
     columns = ["statement", "verdict", "verdict_papers_size", "replication_probability", "readings", "holds", "where_it_holds"]
-    columns += ["units_to_decide", "published", "effect", "n"]
+    columns += ["units_to_decide", "published", "effect", "size", "n"]
     shown = claims[[name for name in columns if name in claims]].astype(object).fillna("")
     for column in shown.columns.intersection(["effect", "replication_probability"]):
         shown[column] = [f"{value:.3g}" if isinstance(value, float) else value for value in shown[column]]

@@ -11,6 +11,7 @@ from bezierplan.study.model import (
     Arguments,
     Column,
     Experiment,
+    Flag,
     Function,
     Line,
     Metric,
@@ -93,6 +94,11 @@ class Pivot(Table):
     monotone: list[Monotone] = Field(
         [],
         description="orders that the published numbers must keep, which the audit checks: {metric, statistic, along, direction, because}",
+    )
+    fitted: Flag = Field(
+        False,
+        description="true if the workspaces were reconstructed so that the published lengths are possible: the audit does not compare them "
+        "with its bounds; left out: false",
     )
     primary: Where = Field({}, description="column → the value whose rows count as the paper's reading in the summary; left out: all rows")
 

@@ -73,7 +73,7 @@ def table_job(study: Study, table: str, scale: str) -> dict:
     where = {"method": experiment.methods} | spec.where
     return {
         "name": f"{study.key}/{table}",
-        "spec": spec.plain("monotone") | {"where": where},
+        "spec": spec.plain("monotone", "fitted") | {"where": where},
         "labels": study.labels,
         "variants": {name: method for name, method in study.variants().items() if name in experiment.methods},
         "baselines": [name for name in study.methods_of(spec.experiment) if name in study.baselines],

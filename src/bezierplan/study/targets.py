@@ -274,11 +274,14 @@ def _audited(study: Study) -> dict[str, Pivot]:
 
 
 def _layout(table: Pivot) -> dict:
-    """What the audit needs to know of a table: columns within whose values rows are ranked, metrics of only some runs, required orders."""
+    """What the audit needs to know of a table: columns within whose values rows are ranked, metrics of only some runs, required orders,
+    and whether its workspaces were fitted to it.
+    """
     return {
         "columns": [name for name in table.columns if name not in ("value", "statistic")],
         "selected": sorted({entry.metric for entry in table.values if entry.where}),
         "monotone": [rule.plain() for rule in table.monotone],
+        "fitted": table.fitted,
     }
 
 

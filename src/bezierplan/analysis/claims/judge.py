@@ -16,7 +16,7 @@ procedure). If all have to hold, every mark on its own must be + to support the 
 | verdict | all have to hold | any may hold |
 | --- | --- | --- |
 | supported | every mark + on its own | at least one + |
-| mostly | + in three quarters or more of the decided ones (+, -, 0), but not all | |
+| mostly | + in three quarters or more of the decided ones (+, -, 0), but not all; if there is no - and no 0, of all | |
 | in part | + in more than a quarter and less than three quarters of them | |
 | seldom | + in a quarter of them or less | |
 | contradicted | no +, and a - | every mark - on its own |
@@ -40,7 +40,7 @@ Columns of claims.csv, one row per claim and variant:
 | where_it_holds | which of them are + in the family, in words; if none, where the opposite holds; empty if all or none do |
 | published | how many of those that are printed hold in the printed numbers, by value alone |
 | effect ... p_family | of the decisive comparison: the worst -, otherwise that with the largest p; columns as below |
-| units_to_decide | of an undecided claim: about how many units every comparison marked ? needs to detect an effect as large as the margin |
+| units_to_decide | of an undecided claim: about how many units would decide every comparison marked ?, were our effects the true ones |
 | replication_probability | share of experiments of the paper's size, drawn from our runs, in which the claim holds by values alone |
 | size | our effect compared with the printed one: alike (the printed one lies in our interval), smaller, larger, opposite |
 | artefact | the tables and figures that show it |
@@ -76,7 +76,7 @@ import pandas as pd
 
 from bezierplan.analysis import metrics
 from bezierplan.analysis.claims import comparisons, effects, verdicts
-from bezierplan.analysis.claims.effects import Comparison, Finding
+from bezierplan.analysis.claims.effects import ALPHA, Comparison, Finding
 from bezierplan.analysis.claims.kinds import OfRuns, kind_of, option
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.analysis.claims.variants import in_variant, variants, with_work
@@ -94,6 +94,9 @@ CHECK_COLUMNS = [
     *("margin", "least_detectable"),
     *("rho", "r_squared", "effect_published", "published", "timed", "reason"),
 ]
+
+# No experiment has more units; an effect that needs more lies at the margin.
+MOST_UNITS = 10**9
 
 
 class _Judged(NamedTuple):
@@ -319,12 +322,24 @@ def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> 
 
 
 def _units_to_decide(deciding: list[_Judged]) -> int | Any:
-    """Units with which every undecided comparison would detect an effect as large as its margin, for the error shrinks with the square root
-    of their number; missing if no comparison has both a margin and a least detectable effect.
+    """Units with which every comparison marked ? would be decided if our effects were the true ones; missing beyond `MOST_UNITS`.
+
+    Errors shrink with the square root of the number of units. An effect as large as the margin needs a p below `ALPHA` in the family; a
+    smaller one needs an interval within the margin.
     """
-    findings = [each.finding for each in deciding if each.mark_family == "?"]
-    needed = [f.n * (f.least_detectable / f.margin) ** 2 for f in findings if f.margin > 0 and math.isfinite(f.least_detectable)]
-    return max(math.ceil(max(needed)), 1) if needed else pd.NA
+    from scipy.special import ndtri
+
+    needed = [0.0]
+    for each in deciding:
+        f = each.finding
+        if each.mark_family != "?":
+            continue
+        if f.toward:
+            ratio = np.divide(ndtri(1 - ALPHA / 2), ndtri(1 - each.p_family / 2))
+        else:
+            ratio = np.divide(max(f.high - f.effect, f.effect - f.low), f.margin - abs(f.effect))
+        needed.append(max(f.n * ratio**2, f.n + 1))
+    return math.ceil(max(needed)) if max(needed) < MOST_UNITS and not np.isnan(needed).any() else pd.NA
 
 
 def _size(each: _Judged) -> str:

@@ -54,7 +54,7 @@ def verdict(alone: Sequence[str], together: Sequence[str], holds: str) -> str:
     if holds == "any":
         return "contradicted" if set(alone) == {"-"} else "undecided" if "?" in found else "no effect"
     if "+" in found:
-        return _partly(together) if found & {"-", "0"} else "undecided"
+        return _partly(together)
     if "-" in found:
         return "contradicted"
     return "undecided" if "?" in found else "no effect"
@@ -64,6 +64,8 @@ def _partly(marks: Sequence[str]) -> str:
     decided = [mark for mark in marks if mark != "?"]
     if len(decided) < DECIDED * len(marks):
         return "undecided"
+    if set(decided) == {"+"}:  # whatever the others are
+        return "mostly" if len(decided) >= MOSTLY * len(marks) else "undecided"
     share = decided.count("+") / len(decided)
     return "mostly" if share >= MOSTLY else "seldom" if share <= 1 - MOSTLY else "in part"
 

@@ -75,8 +75,8 @@ def data(
 
     Objectives are the planner's own, in units, over all runs, feasible or not; bound is the exact shortest length.
 
-    With `pick`, columns: those of `paths.picked`, generation, objective (of the picked run; empty without one), median, quantile10 and
-    quantile90, bound. With `hue`, columns: those of `lines.constants`, the hue's own name, runs and feasible_runs (counts), generation,
+    With `pick`, columns: those of `paths.picked`, generation, objective (of the picked run; empty without one), median, quartile1 and
+    quartile3, bound. With `hue`, columns: those of `lines.constants`, the hue's own name, runs and feasible_runs (counts), generation,
     objective (the statistic), low95 and high95 (its 95 % bootstrap interval), bound (empty if problems differ in it). With `reference`, a
     column of that name: the length of the best known path of the methods' own kind, empty if problems differ in it. With `printed`, a
     column of that name: the mean that this published table has for a group, in the row of the last generation.
@@ -99,11 +99,11 @@ def _of_one_run(results: Results, pick: dict[str, Any], generations: int) -> pd.
 
     run, names = picked(results, pick)
     histories = np.array([_lengthened(history, generations) for history in results.runs["history"]])
-    low, median, high = np.quantile(histories, [0.1, 0.5, 0.9], axis=0)
+    low, median, high = np.quantile(histories, [0.25, 0.5, 0.75], axis=0)
     shown = np.full(generations, np.nan) if run is None else _lengthened(run["history"], generations)
     frame = pd.DataFrame({"generation": range(generations), "objective": shown})
-    frame = frame.assign(median=median, quantile10=low, quantile90=high, bound=results.runs["bound"].iloc[0], **names)
-    return frame[[*names, "generation", "objective", "median", "quantile10", "quantile90", "bound"]]
+    frame = frame.assign(median=median, quartile1=low, quartile3=high, bound=results.runs["bound"].iloc[0], **names)
+    return frame[[*names, "generation", "objective", "median", "quartile1", "quartile3", "bound"]]
 
 
 def _of_groups(results: Results, hue: str, statistic: str, generations: int) -> pd.DataFrame:
@@ -164,8 +164,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 
 def _draw_one_run(axes: Axes, frame: pd.DataFrame) -> None:
     generation = frame["generation"]
-    band = {"color": style.LIGHT_BLUE, "linewidth": 0, "label": "10 to 90 % of all runs"}
-    axes.fill_between(generation, frame["quantile10"], frame["quantile90"], **band)
+    band = {"color": style.LIGHT_BLUE, "linewidth": 0, "label": "quartiles of all runs"}
+    axes.fill_between(generation, frame["quartile1"], frame["quartile3"], **band)
     axes.plot(generation, frame["median"], label="median of all runs", **style.OURS)
     if frame["objective"].notna().any():
         axes.plot(generation, frame["objective"], label="run shown", **style.RUN_SHOWN)
