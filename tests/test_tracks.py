@@ -66,10 +66,10 @@ def test_ways_are_those_of_the_runs(found):
     points = np.stack([way[["x", "y"]].to_numpy() for way in ways], axis=1)
     run = found.runs.set_index("id").loc[ways[0]["run"].iloc[0]]
     again = chaotic_pso._objective(FIELD, chaotic_pso.Settings(**JOB["settings"]))
-    buffers = [np.empty(SETTINGS["samples"]) for _ in range(3)]
+    curve, scratch = np.empty((2, SETTINGS["samples"])), np.empty(SETTINGS["samples"])
     for best, position in zip(run["history"], points[:, 1:-1]):
-        length = penalised.length(position.T.ravel(), again, *buffers)
-        violation, _ = penalised.violation(buffers[0], buffers[1], again, buffers[2])
+        length = penalised.length(position.T.ravel(), again, curve, scratch)
+        violation, _ = penalised.violation(curve, again, scratch)
         assert penalised.fitness(length, violation, again) == pytest.approx(best, rel=1e-12)
     np.testing.assert_array_equal(points[-1].ravel(), run["path_points"])
 

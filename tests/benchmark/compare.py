@@ -39,7 +39,7 @@ SEEDS = 200
 GOOD = 8.0
 
 STUDY = reading.load(reading.read_config({"studies": ["tharwat2018"]}))["tharwat2018"]
-PROBLEM = Problem("public", files.load(STUDY.workspaces["public"], STUDY.folder), (0.0, 0.0), (4.0, 6.0))
+PROBLEM = Problem("public", files.load(STUDY.workspaces["public"].plain(), STUDY.folder), (0.0, 0.0), (4.0, 6.0))
 SETTINGS = STUDY.resolved("pso") | STUDY.presets["profile"]["tuned"] | {"stall_limit": 0}
 PARTICLES, ITERATIONS, DIMENSIONS = SETTINGS["particles"], SETTINGS["iterations"], 2 * SETTINGS["control_points"]
 EVALUATIONS = PARTICLES * (ITERATIONS + 1)
@@ -52,11 +52,11 @@ OBJECTIVE = chaotic_pso._objective(PROBLEM, chaotic_pso.Settings(**SETTINGS))
 def _fitness(z, objective):
     """Fitness (k,) of particles (k, dimensions), as the swarm's own kernel computes it."""
     samples = objective.free.shape[1]
-    x, y, scratch = np.empty(samples), np.empty(samples), np.empty(samples)
+    curve, scratch = np.empty((2, samples)), np.empty(samples)
     fitness = np.empty(len(z))
     for i in range(len(z)):
-        length = penalised.length(z[i], objective, x, y, scratch)
-        violation, _ = penalised.violation(x, y, objective, scratch)
+        length = penalised.length(z[i], objective, curve, scratch)
+        violation, _ = penalised.violation(curve, objective, scratch)
         fitness[i] = penalised.fitness(length, violation, objective)
     return fitness
 

@@ -18,7 +18,7 @@ def benchmark_fields() -> None:
     print(f"\n{'random fields':16}{'evaluations/s':>16}{'ms a run':>12}{'side':>8}  obstacles")
     for side, home in itertools.product((100, 200), ("published_like", "dense")):
         described = {"side": side, "start": (0, 0), "target": (side, side), "obstacles": 15}
-        fields = [random_field.field(study.workspaces[home], described | {"layout": i}, home) for i in range(runs)]
+        fields = [random_field.field(study.workspaces[home].plain(), described | {"layout": i}, home) for i in range(runs)]
         problems = [Problem(home, grid, (0.0, 0.0), (float(side), float(side))) for grid in fields]
         for method in study.experiments["fields100"].methods:
             planner, settings = planner_module(study.planner(method)), study.resolved(method)

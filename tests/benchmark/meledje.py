@@ -21,7 +21,9 @@ def benchmark_node_genetic() -> None:
     Prepared once a map: the least energy of all paths, and up to `TABLE_CELLS` cells a table of all edges, whose size is printed.
     """
     study = reading.load(reading.read_config({"studies": ["meledje"]}))["meledje"]
-    maps = {name: (files.load(study.workspaces[name], study.folder), study.problems[name]["settings"]) for name in list(study.problems)[:4]}
+    maps = {
+        name: (files.load(study.workspaces[name].plain(), study.folder), study.problems[name].settings) for name in list(study.problems)[:4]
+    }
     maps |= {f"{side} x {side}": (_grid_in_the_way(side), {}) for side in (16, 32, 64, 128)}
     print(f"\n{'node_genetic':16}{'prepared in s':>16}{'ms a run':>12}{'MB of edges':>16}")
     for name, (grid, own) in maps.items():

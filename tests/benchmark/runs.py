@@ -26,7 +26,7 @@ def _methods(study: definition.Study) -> Iterator[tuple[str, str]]:
     """Every method with the first experiment that it takes part in; baselines are the same everywhere and left out."""
     seen = set(study.baselines)
     for experiment, description in study.experiments.items():
-        for method in description["methods"]:
+        for method in description.methods:
             if method not in seen:
                 seen.add(method)
                 yield experiment, method

@@ -38,7 +38,7 @@ def bare_minimum(cells, occupied, basis, first_point, last_point, first_sample, 
 def benchmark_binary_genetic() -> None:
     """Each method of song2016 on its longest route."""
     study = reading.load(reading.read_config({"studies": ["song2016"]}))["song2016"]
-    grid = files.load(study.workspaces["figure2"], study.folder)
+    grid = files.load(study.workspaces["figure2"].plain(), study.folder)
     problem = Problem("0_240", grid, grid.centre(0), grid.centre(240))
     runs = 20
     print(f"{'binary_genetic':16}{'evaluations/s':>16}{'ms a run':>12}{'bare minimum/s':>16}{'times the minimum':>20}")

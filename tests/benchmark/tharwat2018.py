@@ -12,7 +12,7 @@ from bezierplan.workspaces.problem import Problem
 def benchmark_chaotic_pso() -> None:
     """Methods of tharwat2018 among its three circles, without the early stop; runs of one evaluation show what lies around the search."""
     study = reading.load(reading.read_config({"studies": ["tharwat2018"]}))["tharwat2018"]
-    circles = files.load(study.workspaces["equal"], study.folder)
+    circles = files.load(study.workspaces["equal"].plain(), study.folder)
     problem = Problem("equal", circles, (0.0, 0.0), (4.0, 6.0))
     runs = 200
 

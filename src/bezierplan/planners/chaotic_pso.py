@@ -1,8 +1,9 @@
 """Particle swarm optimisation of a path's control points, plain (PSO) or with a chaotic sequence instead of one of its two random numbers:
 that of the cognitive term (CPSO-I) or of the social term (CPSO-II) (tharwat2018, Sections 3.2 and 4).
 
-A particle is (x_1, ..., x_n, y_1, ..., y_n), the coordinates of the n free control points of one curve. The curve is linear in them, so to
-the kernels every curve kind is a constant matrix. Obstacles are tested at samples of the curve.
+A particle is (x_1, ..., x_n, y_1, ..., y_n), the coordinates of the n free control points of one curve; among spheres, z_1, ..., z_n follow
+(Section 6). The curve is linear in them, so to the kernels every curve kind is a constant matrix. Obstacles are tested at samples of the
+curve.
 
 All methods draw the same numbers: positions, moves and the start of the chaotic sequence come from three generators; positions are drawn
 particle by particle, and for each move r1 before r2; the number that the chaotic sequence replaces is drawn and discarded.
@@ -41,11 +42,11 @@ _SPREAD = 0.05
 class Swarm(NamedTuple):
     """Result of a swarm after `done` iterations.
 
-    positions: (done + 1, 2 n) and fitness: (done + 1,) of its best path after iteration 0, 1, ..., done. violation: that of the last of
-    them. infeasible: number of evaluated paths that collide; colliding_samples: colliding samples of all evaluated paths, summed over
-    obstacles. best_colliding_samples: those of the best path, summed over the iterations. best_infeasible: number of iterations, including
-    the initial one, after which the best path collides. zeta_clipped: number of clipped values of the chaotic sequence. zeta_collapsed_at:
-    the iteration at which the sequence collapsed, or 0.
+    positions: (done + 1, d n) in d dimensions, and fitness: (done + 1,) of its best path after iteration 0, 1, ..., done. violation: that
+    of the last of them. infeasible: number of evaluated paths that collide; colliding_samples: colliding samples of all evaluated paths,
+    summed over obstacles. best_colliding_samples: those of the best path, summed over the iterations. best_infeasible: number of
+    iterations, including the initial one, after which the best path collides. zeta_clipped: number of clipped values of the chaotic
+    sequence. zeta_collapsed_at: the iteration at which the sequence collapsed, or 0.
     """
 
     positions: np.ndarray
@@ -226,7 +227,7 @@ def plan(
 
 
 def track(problem: Problem, rng: np.random.Generator, **settings: Any) -> np.ndarray:
-    """Control points (iterations done + 1, control points, 2) of the best path after every iteration of the run that `plan` makes with the
+    """Control points (iterations done + 1, control points, d) of the best path after every iteration of the run that `plan` makes with the
     same generator and settings, in units (tharwat2018, Figure 12)."""
     positions = search(problem, rng, Settings(**settings)).positions
     return np.array([_points(position, settings["curve"], problem) for position in positions])
@@ -235,11 +236,11 @@ def track(problem: Problem, rng: np.random.Generator, **settings: Any) -> np.nda
 def search(problem: Problem, rng: np.random.Generator, settings: Settings, start: np.ndarray | None = None) -> Swarm:
     """The search behind `plan` and `track`."""
     initial, moves, chaos = rng.spawn(3)
-    particles, iterations, dimensions = settings.particles, settings.iterations, 2 * settings.control_points
+    particles, iterations, dimensions = settings.particles, settings.iterations, len(problem.start) * settings.control_points
     if dimensions == 0:
         particles, iterations = 1, 0
     objective = _objective(problem, settings)
-    low, high = np.repeat(np.reshape(problem.workspace.bounds, (2, 2)).T, dimensions // 2, axis=1)
+    low, high = np.repeat(np.reshape(problem.workspace.bounds, (-1, 2)).T, settings.control_points, axis=1)
     shares = initial.random((particles, dimensions))
     if start is not None:
         around = int(_AROUND * particles)
@@ -248,7 +249,7 @@ def search(problem: Problem, rng: np.random.Generator, settings: Settings, start
         shares[0] = known
     x = low + (high - low) * shares
     if settings.straight_line_particle:
-        x[0] = _straight_line(problem, settings.curve, dimensions // 2)
+        x[0] = _straight_line(problem, settings.curve, settings.control_points)
     zeta, clipped, collapsed_at = _zeta(chaos, (iterations, particles, dimensions), settings)
     rules = _Rules(
         stall_limit=settings.stall_limit,
@@ -285,7 +286,7 @@ def _objective(problem: Problem, settings: Settings) -> Objective:
     return Objective(
         ends=np.array([problem.start, problem.target]).T @ ends,
         free=free,
-        circles=penalised.round_obstacles(problem.workspace, settings.d_min),
+        balls=penalised.round_obstacles(problem.workspace, settings.d_min),
         polygons=penalised.polygonal_obstacles(problem.workspace, settings.d_min),
         penalty=get_args(Penalty).index(settings.penalty),
         beta=float(settings.beta),
@@ -306,18 +307,19 @@ def _free(curve: str, control_points: int) -> np.ndarray:
 
 
 def _points(position: np.ndarray, curve: str, problem: Problem) -> np.ndarray:
-    """Control points (n + 2, 2) of a particle (2 n,)."""
-    n = len(position) // 2
-    points = np.empty((n + 2, 2))
+    """Control points (n + 2, d) of a particle (d n,)."""
+    d = len(problem.start)
+    n = len(position) // d
+    points = np.empty((n + 2, d))
     points[list(curves.ends(curve))] = problem.start, problem.target
-    points[_free(curve, n)] = position.reshape(2, n).T
+    points[_free(curve, n)] = position.reshape(d, n).T
     return points
 
 
 def _straight_line(problem: Problem, curve: str, control_points: int) -> np.ndarray:
-    """The particle (2 n,) whose curve is the straight line, traversed at constant speed."""
+    """The particle (d n,) whose curve is the straight line, traversed at constant speed."""
     start, way = np.array(problem.start), np.subtract(problem.target, problem.start)
-    points = np.empty((control_points + 2, 2))
+    points = np.empty((control_points + 2, len(start)))
     if curve == "ferguson":
         points[::2] = start + np.outer(np.linspace(0, 1, control_points // 2 + 1), way)
         points[1::2] = way / (control_points // 2)
@@ -357,7 +359,7 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
     iterations = len(zeta)
     particles, dimensions = x.shape
     samples = objective.free.shape[1]
-    curve_x, curve_y, scratch = np.empty(samples), np.empty(samples), np.empty(samples)
+    curve, scratch = np.empty((len(objective.ends), samples)), np.empty(samples)
     v = np.zeros_like(x)
     p, p_fitness = np.empty_like(x), np.full(particles, np.inf)
     g, g_fitness = np.empty((iterations + 1, dimensions)), np.full(iterations + 1, np.inf)
@@ -378,10 +380,10 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
                     _draw(rng, r)
                 _move(rng, r, x[i], v[i], p[i], attractor, zeta[before, min(i, zeta.shape[1] - 1)], w, limit, rules)
                 _hold(x[i], v[i], low, high, rules.bound_rule)
-            length = penalised.length(x[i], objective, curve_x, curve_y, scratch)
+            length = penalised.length(x[i], objective, curve, scratch)
             if not rules.count_collisions and penalised.least_fitness(length, objective) >= p_fitness[i]:
                 continue
-            violation, colliding = penalised.violation(curve_x, curve_y, objective, scratch)
+            violation, colliding = penalised.violation(curve, objective, scratch)
             infeasible += violation > FEASIBLE
             colliding_samples += colliding
             fitness = penalised.fitness(length, violation, objective)

@@ -12,6 +12,7 @@ from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.claims.kinds import Check
+from bezierplan.figures.panels import Panel, spheres
 from bezierplan.planners import planner_module
 from bezierplan.running import problems, worlds
 from bezierplan.running.execution import conditions, settings_in
@@ -42,7 +43,9 @@ def check(study: Study) -> None:
         if name in study.tables:
             raise Fault(f"{place}: figures: {name}: a table has this name already")
         for panel in figure.panels:
-            _check_names(design, functions, panel, f"{place}: figures: {name}: panels: {panel.place}")
+            where = f"{place}: figures: {name}: panels: {panel.place}"
+            _check_names(design, functions, panel, where)
+            _check_dimensions(study, panel, where)
     place = relative(study.folder / "claims.yaml")
     _check_ids(study.claims, f"{place}: claims")
     for claim in study.claims:
@@ -139,6 +142,10 @@ def _check_workspace(study: Study, name: str, place: str) -> None:
 def _check_problem(study: Study, built: Callable[[str], Problem], name: str, place: str) -> None:
     """Start and target are free; in the first layout if the workspace is random."""
     problem, home = study.problems[name], study.workspace_of(name)
+    if home.kind == "spheres":
+        raise Fault(
+            f"{place}: workspace: {problem.workspace}: has three dimensions; a panel of kind spheres plans there, and no experiment"
+        )
     drawn = [kind for kind, model in kinds().items() if model.drawn]
     if bool(home.drawn) != (problem.layouts is not None):
         needed = (
@@ -302,6 +309,26 @@ def _check_claim(design: Design, functions: dict[str, Callable], claim: Claim, p
             if group != "rest" and group not in values:
                 raise Fault(f"{where}: group: {group}: unknown{design.hint(group, values)}")
         design.check_mixtures(each, in_first_variant(claim, each), where)
+
+
+def _check_dimensions(study: Study, panel: Panel, place: str) -> None:
+    """Only panels of kind `spheres` show a workspace of that kind, and no other; what they plan there is valid."""
+    workspace = study.workspaces.get(getattr(panel, "workspace", None))
+    if workspace and panel.plans != (workspace.kind == "spheres"):
+        fit = "of kind spheres" if panel.plans else "in the plane, since only panels of kind spheres show others"
+        raise Fault(f"{place}: workspace: {panel.workspace}: a workspace of kind {workspace.kind}; expected one {fit}")
+    if not panel.plans:
+        return
+    _known(panel.method, study.methods, f"{place}: method")
+    if study.methods[panel.method].planner != spheres.PLANNER:
+        raise Fault(f"{place}: method: {panel.method}: its planner cannot plan among spheres; expected a method of {spheres.PLANNER}")
+    for setting in panel.settings:
+        _known(setting, study.accepted(panel.method), f"{place}: settings")
+    check_settings(planner_module(spheres.PLANNER), study.resolved(panel.method) | panel.settings, place)
+    try:
+        spheres.problem(files.load(workspace.plain(), study.folder), panel.start, panel.target)
+    except ValueError as error:
+        raise Fault(f"{place}: {error}") from None
 
 
 # assumptions.yaml

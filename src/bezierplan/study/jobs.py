@@ -6,6 +6,7 @@ A script receives a job: plain values only, so that Snakemake can detect changes
 import itertools
 from typing import Any
 
+from bezierplan.figures.panels import Panel
 from bezierplan.planners import PLACE
 from bezierplan.study.alternatives import experiments_of_claims
 from bezierplan.study.artefacts import Comparison
@@ -92,7 +93,7 @@ def figure_job(study: Study, figure: str, scale: str) -> dict:
     experiments = experiments_of(study, figure)
     bare = sorted({panel.workspace for panel in spec.panels if getattr(panel, "workspace", None)})
     return {
-        "spec": spec.plain(),
+        "spec": spec.plain() | {"panels": [panel.plain() | _planned(study, panel) for panel in spec.panels]},
         "module": study.module(),
         "labels": study.labels,
         "workspaces": {name: study.workspaces[name].plain() for name in bare},
@@ -100,6 +101,13 @@ def figure_job(study: Study, figure: str, scale: str) -> dict:
         "jobs": _jobs_rerun(study, figure, scale),
         "unit": _unit(study, experiments[0]) if experiments else study.workspaces[bare[0] if bare else next(iter(study.workspaces))].unit,
     }
+
+
+def _planned(study: Study, panel: Panel) -> dict[str, Any]:
+    """What a panel that plans by itself is given: the settings in force, and the name from which its runs take their seeds."""
+    if not panel.plans:
+        return {}
+    return {"settings": study.resolved(panel.method) | panel.settings, "name": f"{study.key}/{panel.workspace}/{panel.method}"}
 
 
 def _jobs_rerun(study: Study, figure: str, scale: str) -> dict[str, dict[str, dict]]:

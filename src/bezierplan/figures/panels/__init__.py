@@ -39,11 +39,13 @@ EACH = (
 class Panel(Model):
     """Keys common to all kinds of panel, and what a kind needs in addition to its panels.
 
-    published_drawn: whether published numbers are drawn. rerun: whether runs are repeated to draw what no table keeps.
+    published_drawn: whether published numbers are drawn. rerun: whether runs are repeated to draw what no table keeps. plans: whether it
+    plans by itself, with a method of the study.
     """
 
     published_drawn: ClassVar[bool] = False
     rerun: ClassVar[bool] = False
+    plans: ClassVar[bool] = False
 
     kind: Line = Field(description="the name of a file in `src/bezierplan/figures/panels`")
     title: Line = Field(None, description="one line above the panel")

@@ -1,8 +1,10 @@
-"""The length of a particle's curve, and the penalty for the circles and polygons it meets; a particle holds the free control points.
+"""The length of a particle's curve, and the penalty for the circles, spheres and polygons it meets; a particle holds the free control
+points.
 
-tharwat2018 has circles only. Its measure, depth as a share of the circle's radius, is read as depth below the obstacle's edge as a share of
-the largest such depth, which for a circle is the same; so it applies to a polygon too, whose largest depth is the radius of its largest
-inscribed circle. The border is no obstacle: the swarm's own bounds keep the control points inside.
+Kernels take the number of dimensions d, 2 or 3, from the shape of their arrays. tharwat2018 has circles only. Its measure, depth as a share
+of the circle's radius, is read as depth below the obstacle's edge as a share of the largest such depth, which for a circle is the same; so
+it applies to a polygon too, whose largest depth is the radius of its largest inscribed circle. The border is no obstacle: the swarm's own
+bounds keep the control points inside.
 """
 
 from typing import TYPE_CHECKING, Literal, NamedTuple
@@ -12,6 +14,7 @@ from numba import njit
 
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.spheres import Spheres
 
 if TYPE_CHECKING:
     from shapely import LinearRing
@@ -39,13 +42,14 @@ class Polygonal(NamedTuple):
 class Objective(NamedTuple):
     """The fitness of a path, for the kernels.
 
-    ends: (2, samples), x and y contributions of start and target to the samples. free: (n, samples), the weights of the free control
-    points. circles: (obstacles, 3), x, y and radius, in units. polygons: the other obstacles. penalty: the rule's number. beta: its factor.
+    ends: (d, samples), the contributions of start and target to the samples, by coordinate. free: (n, samples), the weights of the free
+    control points. balls: (obstacles, d + 1), centre and radius of circles or spheres, in units. polygons: the other obstacles, in the
+    plane. penalty: the rule's number. beta: its factor.
     """
 
     ends: np.ndarray
     free: np.ndarray
-    circles: np.ndarray
+    balls: np.ndarray
     polygons: Polygonal
     penalty: int
     beta: float
@@ -68,32 +72,37 @@ def least_fitness(length: float, objective: Objective) -> float:
 
 
 @njit(cache=True)
-def length(z: np.ndarray, objective: Objective, x: np.ndarray, y: np.ndarray, chords: np.ndarray) -> float:
+def length(particle: np.ndarray, objective: Objective, curve: np.ndarray, chords: np.ndarray) -> float:
     """Length of the polyline through the samples of a particle's curve (tharwat2018, eq. 19).
 
-    z: (2 n,), the particle. x, y: (samples,), the samples; overwritten. chords: (samples,) scratch.
+    particle: (d n,). curve: (d, samples), the samples; overwritten. chords: (samples,) scratch.
     """
     ends, free = objective.ends, objective.free
     n, samples = free.shape
-    for s in range(samples):
-        x[s], y[s] = ends[0, s], ends[1, s]
     # Three control points at a time, so that each sample is read and written fewer times.
     threes = n // 3 * 3
-    for k in range(0, threes, 3):
-        ax, bx, cx = z[k], z[k + 1], z[k + 2]
-        ay, by, cy = z[n + k], z[n + k + 1], z[n + k + 2]
+    for axis in range(len(ends)):
+        x, z = curve[axis], particle[axis * n : (axis + 1) * n]
         for s in range(samples):
-            x[s] = x[s] + ax * free[k, s] + bx * free[k + 1, s] + cx * free[k + 2, s]
-            y[s] = y[s] + ay * free[k, s] + by * free[k + 1, s] + cy * free[k + 2, s]
-    for k in range(threes, n):
-        zx, zy = z[k], z[n + k]
-        for s in range(samples):
-            x[s] += zx * free[k, s]
-            y[s] += zy * free[k, s]
-    # The square roots are vectorised if their sum is separate; its four partial sums need not wait for each other.
+            x[s] = ends[axis, s]
+        for k in range(0, threes, 3):
+            a, b, c = z[k], z[k + 1], z[k + 2]
+            for s in range(samples):
+                x[s] = x[s] + a * free[k, s] + b * free[k + 1, s] + c * free[k + 2, s]
+        for k in range(threes, n):
+            for s in range(samples):
+                x[s] += z[k] * free[k, s]
+    x, y = curve[0], curve[1]
     for s in range(samples - 1):
         dx, dy = x[s + 1] - x[s], y[s + 1] - y[s]
-        chords[s] = np.sqrt(dx * dx + dy * dy)
+        chords[s] = dx * dx + dy * dy
+    for axis in range(2, len(ends)):
+        x = curve[axis]
+        for s in range(samples - 1):
+            chords[s] += (x[s + 1] - x[s]) ** 2
+    # The square roots are vectorised if their sum is separate; its four partial sums need not wait for each other.
+    for s in range(samples - 1):
+        chords[s] = np.sqrt(chords[s])
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
     fours = (samples - 1) // 4 * 4
     for s in range(0, fours, 4):
@@ -106,17 +115,15 @@ def length(z: np.ndarray, objective: Objective, x: np.ndarray, y: np.ndarray, ch
     return (a + b) + (c + d)
 
 
-def round_obstacles(workspace: Circles | Polygons, d_min: float) -> np.ndarray:
-    """The circles of a workspace, grown by a distance in units: (obstacles, 3), x, y and radius; none among polygons."""
-    if not isinstance(workspace, Circles):
+def round_obstacles(workspace: Circles | Spheres | Polygons, d_min: float) -> np.ndarray:
+    """The circles or spheres of a workspace, grown by a distance in units: (obstacles, d + 1), centre and radius; none among polygons."""
+    if isinstance(workspace, Polygons):
         return np.empty((0, 3))
-    circles = np.empty((len(workspace.radii), 3))
-    circles[:, :2], circles[:, 2] = workspace.centres, workspace.radii + d_min
-    return circles
+    return np.column_stack([workspace.centres, workspace.radii + d_min])
 
 
-def polygonal_obstacles(workspace: Circles | Polygons, d_min: float) -> Polygonal:
-    """The polygons of a workspace, grown by a distance in units; none among circles."""
+def polygonal_obstacles(workspace: Circles | Spheres | Polygons, d_min: float) -> Polygonal:
+    """The polygons of a workspace, grown by a distance in units; none among circles and spheres."""
     if not isinstance(workspace, Polygons) or not workspace.obstacles:
         return Polygonal(np.empty((0, 4)), np.zeros(1, dtype=np.int64), np.empty((0, 4)), np.empty(0))
     import shapely
@@ -138,17 +145,17 @@ def _sides(ring: "LinearRing") -> np.ndarray:
 
 
 @njit(cache=True)
-def violation(x: np.ndarray, y: np.ndarray, objective: Objective, scratch: np.ndarray) -> tuple[float, int]:
+def violation(curve: np.ndarray, objective: Objective, scratch: np.ndarray) -> tuple[float, int]:
     """Violation of a path, and its number of samples in obstacles, both summed over the obstacles.
 
     The violation of an obstacle is the mean over the samples of their depth below its edge, as a share of the largest depth (tharwat2018,
     eqs. 20 and 21; the paper prints control points where only points of the path make sense).
 
-    x, y: (samples,). scratch: (samples,).
+    curve: (d, samples). scratch: (samples,).
     """
-    of_circles, in_circles = _among_circles(x, y, objective.circles, scratch)
-    of_polygons, in_polygons = _among_polygons(x, y, objective.polygons)
-    return of_circles + of_polygons, in_circles + in_polygons
+    of_balls, in_balls = _among_balls(curve, objective.balls, scratch)
+    of_polygons, in_polygons = _among_polygons(curve[0], curve[1], objective.polygons)
+    return of_balls + of_polygons, in_balls + in_polygons
 
 
 @njit(cache=True)
@@ -186,17 +193,22 @@ def _depth(x, y, edges):
 
 
 @njit(cache=True)
-def _among_circles(x, y, circles, squares):
-    """The parts of `violation` for circles (obstacles, 3)."""
-    samples = len(x)
+def _among_balls(curve, balls, squares):
+    """The parts of `violation` for circles or spheres (obstacles, d + 1)."""
+    dimensions, samples = curve.shape
+    x, y = curve[0], curve[1]
     total, colliding = 0.0, 0
-    for o in range(len(circles)):
-        x_centre, y_centre, radius = circles[o, 0], circles[o, 1], circles[o, 2]
+    for o in range(len(balls)):
+        x_centre, y_centre, radius = balls[o, 0], balls[o, 1], balls[o, dimensions]
         square = radius * radius
-        inside = 0
         for s in range(samples):
             dx, dy = x[s] - x_centre, y[s] - y_centre
             squares[s] = dx * dx + dy * dy
+        for axis in range(2, dimensions):
+            for s in range(samples):
+                squares[s] += (curve[axis, s] - balls[o, axis]) ** 2
+        inside = 0
+        for s in range(samples):
             inside += squares[s] < square
         if inside:
             depth = 0.0

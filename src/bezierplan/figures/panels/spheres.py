@@ -1,0 +1,159 @@
+"""A path that the swarm finds among spheres, projected on a plane.
+
+The panel plans by itself: problems, runs and bounds of experiments have two dimensions.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.figures import style
+from bezierplan.figures.panels import Panel
+from bezierplan.figures.panels import workspace as workspaces
+from bezierplan.geometry import curves
+from bezierplan.geometry import spheres as exact
+from bezierplan.planners import chaotic_pso
+from bezierplan.study.model import Count, Name, Setting
+from bezierplan.study.model import Workspace as Described
+from bezierplan.workspaces.kinds import of_length
+from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.seeds import generator
+from bezierplan.workspaces.spheres import Spheres
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+PLANNER = "chaotic_pso"
+"""The planner that can plan in three dimensions."""
+
+_STEPS = 200
+
+# Room around what is drawn, as a share of its extent.
+_MARGIN = 0.05
+
+_LOOK = {
+    "line": {**style.REFERENCE, "label": "straight line", "zorder": 4},
+    "path": {**style.RUN_SHOWN, "label": "path", "zorder": 5},
+    "control": {
+        "color": style.BLUE,
+        "marker": "o",
+        "markersize": 4,
+        "linewidth": 0.7,
+        "linestyle": (0, (4, 2)),
+        "label": "control points",
+        "zorder": 4.2,
+    },
+    "start": workspaces.START,
+    "target": workspaces.TARGET,
+}
+
+Place = of_length(3, "[x, y, z]")
+
+
+class Options(Panel):
+    """Keys of a panel."""
+
+    plans: ClassVar[bool] = True
+
+    workspace: Described = Field(description="the name of a workspace of kind `spheres`")
+    start: Place = Field(description="[x, y, z] in units")
+    target: Place = Field(description="[x, y, z] in units")
+    method: Name = Field(description="the name of a method of planner `chaotic_pso`")
+    settings: dict[Name, Setting] = Field({}, description="settings that take the place of the method's own, by name")
+    runs: Count = Field(description="how many runs are made, a whole number of at least 1; the shortest free path is drawn")
+    plane: Literal["xy", "xz", "yz"] = Field(description="the plane on which it is projected: xy, xz or yz")
+
+
+def problem(workspace: Spheres, start: list[float], target: list[float]) -> Problem:
+    """The problem of a panel. Raises ValueError, naming the key, unless start and target are free."""
+    ends = {"start": tuple(map(float, start)), "target": tuple(map(float, target))}
+    for end, point in ends.items():
+        if not exact.is_free(np.array([[point, point]]), workspace):
+            raise ValueError(f"{end}: {list(point)}: in a sphere or outside the box; expected a free place")
+    return Problem("", workspace, **ends)
+
+
+@Options.filled
+def data(
+    workspace: Spheres, *, start: list[float], target: list[float], method: str, settings: dict[str, Any], name: str, runs: int, plane: str
+) -> pd.DataFrame:
+    """What is drawn, and a row for each run; columns: part, x, y, z (in the workspace's unit), size and obstacle (a sphere's radius and
+    number), run (its name), length, claimed_feasible (by the planner's own test), feasible (by the exact check), method, straight_line and
+    bound (lengths, in units; `spheres.least_length`).
+
+    Parts: corner (of the bounds), sphere, start, target, line (the straight one), run, and of the shortest feasible run path and control.
+    settings: all of the planner. name: that from which the runs take their seeds. Raises ValueError for a feasible path below the bound.
+    """
+    import pandas as pd
+
+    task = problem(workspace, start, target)
+    bound = exact.least_length(task)
+    found, paths = [], {}
+    for repeat in range(runs):
+        run = f"{name}/{repeat}"
+        plan = chaotic_pso.plan(task, generator(run), **settings)
+        pieces = curves.bezier_pieces(plan.path)
+        length, feasible = exact.length(pieces), exact.is_free(pieces, workspace)
+        if feasible and length < bound * (1 - 1e-9) - 1e-7:
+            raise ValueError(f"run {run}: a free path of length {length:.12g}, below the bound {bound:.12g}")
+        found.append({"part": "run", "run": run, "length": length, "claimed_feasible": plan.claimed_feasible, "feasible": feasible})
+        paths[run] = plan.path
+    table = pd.DataFrame(found)
+    parts = [
+        _places("corner", np.reshape(workspace.bounds, (3, 2)).T),
+        _places("sphere", workspace.centres).assign(size=workspace.radii, obstacle=range(len(workspace.radii))),
+        *(_places(part, np.array(points)) for part, points in (("start", [start]), ("target", [target]), ("line", [start, target]))),
+        table,
+    ]
+    free = table[table["feasible"]]
+    if len(free):
+        best = free.loc[free["length"].idxmin(), "run"]
+        path = paths[best]
+        samples = curves.sample_matrix(path.curve, len(path.points), _STEPS + 1) @ path.points
+        parts += [_places("path", samples).assign(run=best), _places("control", path.points).assign(run=best)]
+    columns = ["part", "x", "y", "z", "size", "obstacle", "run", "length", "claimed_feasible", "feasible"]
+    drawn = pd.concat(parts, ignore_index=True).reindex(columns=columns)
+    return drawn.assign(method=method, straight_line=np.linalg.norm(np.subtract(target, start)), bound=bound)
+
+
+def _places(part: str, points: np.ndarray) -> pd.DataFrame:
+    import pandas as pd
+
+    return pd.DataFrame(points, columns=["x", "y", "z"]).assign(part=part)
+
+
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+    """Draw the rows of `data`; returns the note below the panel's title."""
+    across, up = panel["plane"]
+    unit = scene.workspaces[panel["workspace"]].unit
+    flat = frame.assign(part=frame["part"].replace("sphere", "circle"), x=frame[across], y=frame[up])
+    workspaces.shade(axes, flat)
+    _look_closer(axes, flat)
+    workspaces.scale(axes, unit)
+    axes.set_xlabel(f"{across} ({unit})")
+    axes.set_ylabel(f"{up} ({unit})")
+    for part, look in _LOOK.items():
+        own = flat[flat["part"] == part]
+        if len(own):
+            axes.plot(own["x"], own["y"], **look)
+    runs, row = frame[frame["part"] == "run"], frame.iloc[0]
+    free, claimed = runs[runs["feasible"].astype(bool)], runs["claimed_feasible"].astype(bool).sum()
+    shortest = f"{free['length'].min():.3f} {unit}" if len(free) else "none"
+    return (
+        f"{len(free)} of {len(runs)} runs are free, {claimed} by their own test\n"
+        f"shortest free path: {shortest}\n"
+        f"straight line: {row['straight_line']:.3f} {unit}, lower bound: {row['bound']:.3f} {unit}"
+    )
+
+
+def _look_closer(axes: Axes, flat: pd.DataFrame) -> None:
+    """Show what is drawn with a margin, up to the walls of the box."""
+    corners, drawn = flat[flat["part"] == "corner"], flat[(flat["part"] != "corner") & flat["x"].notna()]
+    reach = drawn["size"].fillna(0) + _MARGIN * max(np.ptp(drawn["x"]), np.ptp(drawn["y"]))
+    for column, limit in (("x", axes.set_xlim), ("y", axes.set_ylim)):
+        wall = corners[column]
+        limit(max((drawn[column] - reach).min(), wall.min()), min((drawn[column] + reach).max(), wall.max()))

@@ -1,0 +1,33 @@
+"""Spheres in a box: three dimensions, which only panels of kind `spheres` show."""
+
+from pathlib import Path
+
+import numpy as np
+from pydantic import Field
+
+from bezierplan.workspaces.kinds import Workspace, of_length
+from bezierplan.workspaces.limits import SMALLEST_GAP, check_numbers
+from bezierplan.workspaces.spheres import Spheres
+
+BOUNDS = "[x low, x high, y low, y high, z low, z high]"
+
+
+class Options(Workspace):
+    """Keys of a workspace."""
+
+    bounds: of_length(6, BOUNDS) = Field(description=BOUNDS)
+    spheres: list[of_length(4, "[x, y, z, radius]")] = Field(description="a list of [x, y, z, radius]")
+
+
+def load(description: dict, folder: Path) -> Spheres:
+    """The spheres that a description lists."""
+    bounds = tuple(map(float, description["bounds"]))
+    check_numbers(np.array(bounds), "bounds")
+    if not all(low < high for low, high in zip(bounds[::2], bounds[1::2])):
+        raise ValueError(f"bounds: {list(bounds)}; expected {BOUNDS} with low below high")
+    table = np.array(description["spheres"], dtype=float).reshape(-1, 4)
+    check_numbers(table, "spheres")
+    for i, radius in enumerate(table[:, 3]):
+        if radius <= SMALLEST_GAP:
+            raise ValueError(f"spheres: sphere {i}: radius {radius:g}; expected above {SMALLEST_GAP:g}")
+    return Spheres(bounds, table[:, :3], table[:, 3], description["unit"])
