@@ -19,7 +19,7 @@ ROOT = PACKAGE.name
 
 
 # Modules that affect how a job starts and ends, but never what it writes.
-NEUTRAL = {f"{ROOT}.running.{name}" for name in ("digest", "kernel_cache", "log")}
+NEUTRAL = {f"{ROOT}.running.{name}" for name in ("digest", "effort", "kernel_cache", "log")}
 
 
 def cache_folder() -> Path:

@@ -17,6 +17,7 @@ from numba.core.caching import Cache, IndexDataCacheFile, UserProvidedCacheLocat
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import Dispatcher
 
+from bezierplan.running import effort
 from bezierplan.running.digest import kernel_folder
 
 
@@ -77,8 +78,9 @@ def compile_once(compiled: Callable[[Dispatcher, Any], Any]) -> Callable[[Dispat
             cache = self._cache
             ours = isinstance(cache, Cache) and isinstance(cache._impl.locator, KernelCacheLocator)
             if not ours or signature in self.overloads or _is_kept(cache, signature, self.targetctx.codegen()):
-                return compiled(self, signature)
-            with _alone(Path(cache.cache_path)):
+                with effort.spending("loading kernels"):
+                    return compiled(self, signature)
+            with effort.spending("compiling"), _alone(Path(cache.cache_path)):
                 return compiled(self, signature)
 
     return compile_alone
@@ -99,9 +101,11 @@ def _alone(folder: Path) -> Iterator[None]:
         return
     folder.mkdir(parents=True, exist_ok=True)
     with open(folder / "lock", "w") as lock:
-        until = time.monotonic() + (PATIENCE if _held else math.inf)
+        start = time.monotonic()
+        until = start + (PATIENCE if _held else math.inf)
         while not _locked(lock) and time.monotonic() < until:
             time.sleep(LOOK)
+        effort.spent["waiting"] += time.monotonic() - start
         _held.append(folder)
         try:
             yield
