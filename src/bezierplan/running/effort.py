@@ -59,8 +59,9 @@ def _timed(load: Callable[[Any], Any]) -> Callable[[Any], Any]:
     return timed
 
 
-def watch_imports() -> None:
-    """Have this process note the time of its imports, from now on."""
+def begin() -> None:
+    """Start to note what this process spends, imports included. What a parent spent before this process was forked is the parent's."""
+    spent.clear()
     # There is no public hook around the loading of a module; without this one the time counts as the job's own.
     bootstrap = importlib._bootstrap
     if hasattr(bootstrap, "_load_unlocked"):
@@ -69,7 +70,8 @@ def watch_imports() -> None:
 
 def line() -> str:
     """What this process notes of its CPU time so far, that of its children included: one line."""
-    return f"{WORD} {json.dumps({'cpu': sum(os.times()[:4]), **spent})}"
+    children = os.times()
+    return f"{WORD} {json.dumps({'cpu': time.process_time() + children.children_user + children.children_system, **spent})}"
 
 
 def of_job(log: Path) -> dict[str, float] | None:

@@ -35,7 +35,7 @@ def job(given: Any) -> Iterator[Any]:
     the job's log in full and ends the process with a one-line message.
     """
     end_with_parent()
-    effort.watch_imports()
+    effort.begin()
     logging.basicConfig(filename=given.log[0], filemode="w", level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s")
     try:
         with whole_files(given.output) as output:
