@@ -3,6 +3,7 @@
 import contextlib
 import os
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -82,4 +83,20 @@ def test_stamps_that_cannot_be_written_do_no_harm(study, checks, monkeypatch, tm
     monkeypatch.setattr(stamps, "STAMPS", tmp_path / "file" / "stamps")
     reading.load([study])
     reading.load([study])
+    assert checks == ["song2016"] * 2
+
+
+def test_a_study_that_was_remembered_is_the_same_wherever_it_lies(study, checks, monkeypatch, tmp_path):
+    first = reading.load([study])["song2016"]
+    moved = Path(shutil.move(study, tmp_path / "elsewhere" / "song2016"))
+    monkeypatch.setattr(reading, "read_study", None)
+    assert reading.load([moved])["song2016"] == replace(first, folder=moved)
+
+
+@pytest.mark.parametrize("length", [0, 100])
+def test_a_damaged_stamp_counts_as_none(study, checks, length):
+    first = reading.load([study])
+    stamp = stamps.stamp_of(study)
+    stamp.write_bytes(stamp.read_bytes()[:length])
+    assert reading.load([study]) == reading.load([study]) == first
     assert checks == ["song2016"] * 2

@@ -11,6 +11,7 @@ COMMANDS = {
     "check-planner": "the contract tests of a planner, on small and degenerate problems",
     "plan": "one path on a map, checked by exact geometry",
     "forecast": "how long a target takes on some cores, how much disk, and its longest jobs",
+    "effort": "where the CPU time of the last start of the workflow went, by what it was for",
     "verify-outcome": "numbers made here beside those of docs/outcome: is this installation sound?",
     "outcome": "copy the outcome of results/extended and results/full to docs/outcome and into the README",
 }

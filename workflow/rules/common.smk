@@ -15,7 +15,7 @@ INTERPRETER = sys.executable
 # Snakemake puts the path of its interpreter into shell commands unquoted; here the folder may have any name.
 sys.executable = shlex.quote(sys.executable)
 
-from bezierplan.running import forks
+from bezierplan.running import effort, forks
 from bezierplan.study import alternatives, checked, experiments, page, reading, targets
 
 try:
@@ -25,7 +25,8 @@ except checked.Fault as fault:
     sys.exit(str(fault))
 
 # What the directive `script` calls: a fork of one process with all libraries, instead of a new interpreter.
-script = forks.Forks(INTERPRETER, script).script
+FORKS = forks.Forks(INTERPRETER, script)
+script = FORKS.script
 
 RESULTS = "results/{scale}/{study}"
 ALTERNATIVE = f"{RESULTS}/sensitivity/{{alternative}}"

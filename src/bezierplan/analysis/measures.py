@@ -8,7 +8,8 @@ requested.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
+from functools import cache, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -32,6 +33,8 @@ HEADING_SAMPLES = 2001
 # Approximate length, in units, of the parts by which a path's bending is measured, and samples of a curved piece from which they are cut.
 BENDING_PART = 0.1
 BENDING_SAMPLES = 64
+# Measures of paths that a process remembers, since several checks of claims ask for the same ones: up to some 200 MB.
+MEASURES_KEPT = 250_000
 # A smaller change of heading, in radians, is not a corner.
 CORNER = 1e-6
 # A value this many interquartile ranges beyond its quartile is an outlier in a box plot.
@@ -154,9 +157,23 @@ def _paths(runs: pd.DataFrame) -> Iterator[Path | None]:
         yield Path(curve, np.reshape(points, (-1, 2))) if curve else None
 
 
+@lru_cache(MEASURES_KEPT)
+def _measured(measure: Callable[[Path], float], curve: str, points: bytes) -> float:
+    """A measure of the path with these control points, of which equal ones are measured once; NaN without a curve."""
+    from bezierplan.workspaces.problem import Path
+
+    return measure(Path(curve, np.frombuffer(points).reshape(-1, 2))) if curve else np.nan
+
+
 def of_path(measure: Callable[[Path], float], runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
     """A measure of each run's path; NaN where the run has none."""
-    return [np.nan if path is None else measure(path) for path in _paths(runs)]
+    return of_paths([measure] * len(runs), runs)
+
+
+def of_paths(measures: Iterable[Callable[[Path], float]], runs: pd.DataFrame) -> list[float]:
+    """For each run, its own measure of its path; NaN where the run has none. Equal measures of equal paths are taken once."""
+    given = zip(measures, runs["path_curve"], runs["path_points"], strict=True)
+    return [_measured(measure, curve, np.asarray(points, dtype=float).tobytes()) for measure, curve, points in given]
 
 
 def of_path_on_grid(measure: Callable[[Path, Grid], float], runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
@@ -312,22 +329,30 @@ def length_over_polygon(path: Path) -> float:
 
 
 def obstacle_clearance(runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
-    """Smallest distance (n,) from a path in a grid to its occupied cells; infinite if there are none.
+    """Smallest distance (n,) from a path in a grid to its occupied cells; infinite if there are none."""
+    grids = {name: problems[name].workspace for name in runs["problem"].unique()}
+    measures = {name: _clearance_in(g.occupied.shape, g.occupied.tobytes(), g.cell, g.origin) for name, g in grids.items()}
+    return of_paths(runs["problem"].map(measures), runs)
+
+
+@cache
+def _clearance_in(shape: tuple[int, int], occupied: bytes, cell: float, origin: tuple[float, float]) -> Callable[[Path], float]:
+    """The smallest distance of a free path to the occupied cells of a grid, as a measure of the path.
 
     This is the checker's clearance, which counts the border, in the same grid padded with free cells so that the border is farthest.
     """
     from bezierplan.geometry import checker, curves
     from bezierplan.geometry.region import region
 
-    wide, found = {}, []
-    for path, name in zip(_paths(runs), runs["problem"]):
-        grid = problems[name].workspace
-        margin = sum(grid.occupied.shape)
-        if name not in wide:
-            wide[name] = region(Grid(np.pad(grid.occupied, margin), grid.cell, grid.unit))
-        moved = path._replace(points=(grid.in_cells(path.points) + margin) * grid.cell)
-        found.append(checker.check(curves.bezier_pieces(moved), wide[name]).clearance if grid.occupied.any() else np.inf)
-    return found
+    grid = Grid(np.frombuffer(occupied, dtype=bool).reshape(shape), cell, "", origin)
+    margin = sum(shape)
+    wide = region(Grid(np.pad(grid.occupied, margin), cell, ""))
+
+    def clearance(path: Path) -> float:
+        moved = path._replace(points=(grid.in_cells(path.points) + margin) * cell)
+        return checker.check(curves.bezier_pieces(moved), wide).clearance if grid.occupied.any() else np.inf
+
+    return clearance
 
 
 def keeps_distance(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:

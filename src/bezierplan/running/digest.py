@@ -19,7 +19,7 @@ ROOT = PACKAGE.name
 
 
 # Modules that affect how a job starts and ends, but never what it writes.
-NEUTRAL = {f"{ROOT}.running.{name}" for name in ("digest", "kernel_cache", "log")}
+NEUTRAL = {f"{ROOT}.running.{name}" for name in ("digest", "effort", "kernel_cache", "log")}
 
 
 def cache_folder() -> Path:
@@ -36,13 +36,19 @@ class _Module(NamedTuple):
 
     def file(self) -> Path | None:
         """The module's source file, or None."""
-        place = self.home.joinpath(*self.name.split("."))
-        return next((file for file in (place.with_suffix(".py"), place / "__init__.py") if file.is_file()), None)
+        return _file(self.home, self.name)
 
     def parents(self) -> set["_Module"]:
         """The packages that contain the module."""
         parts = self.name.split(".")
         return {_Module(self.home, ".".join(parts[:n])) for n in range(1, len(parts))}
+
+
+@cache
+def _file(home: Path, name: str) -> Path | None:
+    """The source file of a module, by its dotted name in a folder, or None."""
+    place = home.joinpath(*name.split("."))
+    return next((file for file in (place.with_suffix(".py"), place / "__init__.py") if file.is_file()), None)
 
 
 def _module(name: str) -> _Module:
@@ -138,6 +144,7 @@ def content_digest(*files: str) -> str:
 LOCATORS = "bezierplan.running.kernel_cache.KernelCacheLocator,InTreeCacheLocator,UserWideCacheLocator"
 
 
+@cache
 def kernel_folder(module: str, file: str) -> Path:
     """The folder of compiled kernels for the current state of a module, from this package or the user's own."""
     ours = module.split(".")[0] == ROOT and _module(module).file() is not None

@@ -51,6 +51,7 @@ class Forks:
         """Take the path of Python's interpreter, and Snakemake's function that runs a script in an interpreter of its own."""
         self._interpreter, self._script, self._names = interpreter, script, inspect.signature(script)
         self._starting, self._control = threading.Lock(), None
+        self.process: int | None = None  # the number of the process that is forked
 
     def script(self, *given: Any) -> None:
         """Run a script as Snakemake's function of the same name does, which is called with the same arguments.
@@ -93,7 +94,7 @@ class Forks:
                 return
         self._control, theirs = socket.socketpair()
         with theirs:
-            subprocess.Popen([self._interpreter, "-m", __name__], stdin=theirs)
+            self.process = subprocess.Popen([self._interpreter, "-m", __name__], stdin=theirs).pid
         socket.send_fds(self._control, [DONE], [job.fileno()])
 
 

@@ -12,6 +12,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+from bezierplan.running import effort
+
 PR_SET_PDEATHSIG = 1
 FULL = (errno.ENOSPC, errno.EDQUOT)
 """What an operating system says of a full disk, or of a user's full share of it."""
@@ -29,14 +31,16 @@ def end_with_parent() -> None:
 def job(given: Any) -> Iterator[Any]:
     """Run a job: `given` is its script's `snakemake` object; the block receives temporary names for the output files.
 
-    The files get their final names when the block ends. An exception is written to the job's log in full and ends the process with a
-    one-line message.
+    The files get their final names when the block ends, and the log says what CPU time the job took (`effort`). An exception is written to
+    the job's log in full and ends the process with a one-line message.
     """
     end_with_parent()
+    effort.begin()
     logging.basicConfig(filename=given.log[0], filemode="w", level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s")
     try:
         with whole_files(given.output) as output:
             yield output
+        logging.info(effort.line())
     except Exception as error:
         if isinstance(error, OSError) and error.errno in FULL:
             logging.raiseExceptions = False  # the log may lie on the same disk

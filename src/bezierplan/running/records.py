@@ -67,9 +67,9 @@ def measured(folder: Path, units: Callable[[Job], int]) -> dict[tuple[str, str],
         except (OSError, ValueError, KeyError, IndexError, TypeError):
             continue  # of another version of Snakemake, or of a job without a log
         if job:
-            output = folder / _output(file)
+            output = folder / output_of(file)
             noted.setdefault(job, (seconds, []))[1].append(output)
-    planner = {job: _planner_times(outputs) for job, (_, outputs) in noted.items()}
+    planner = {job: planner_times(outputs) for job, (_, outputs) in noted.items()}
     cpu, wall = (sum(column) for column in zip((0.0, 0.0), *filter(None, planner.values())))
     share = min(cpu / wall, 1.0) if wall else 1.0
     grouped: dict[tuple[str, str], list[Record]] = {}
@@ -81,14 +81,14 @@ def measured(folder: Path, units: Callable[[Job], int]) -> dict[tuple[str, str],
     return {key: Record(*(sum(column) / len(records) for column in zip(*records))) for key, records in grouped.items()}
 
 
-def _output(file: Path) -> str:
+def output_of(file: Path) -> str:
     """The output file that a file of metadata is about: its name is the output's in base 64."""
     import base64
 
     return base64.b64decode(file.name).decode(errors="replace")
 
 
-def _planner_times(outputs: Iterable[Path]) -> tuple[float, float] | None:
+def planner_times(outputs: Iterable[Path]) -> tuple[float, float] | None:
     """Seconds of the CPU and of the clock that the runs of a job took; None for a job without runs."""
     import pyarrow as pa
     import pyarrow.parquet as parquet

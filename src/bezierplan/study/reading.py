@@ -51,18 +51,19 @@ def read_config(given: Mapping[str, Any], alone: bool = False) -> Folders:
 
 
 def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
-    """The studies in folders, by name, read and checked; one whose content was checked before is only read. Raises Fault."""
+    """The studies in folders, by name, read and checked, unless the same content was before. Raises Fault."""
     studies = {}
     for folder in folders:
         changed = folders[folder] if isinstance(folders, dict) else {}
         try:
-            study = read_study(folder, changed)
+            stamp = stamps.stamp_of(folder, json.dumps(changed, sort_keys=True) if changed else "")
+            before = stamps.remembered(stamp, folder)
+            study = before or read_study(folder, changed)
             if study.key in studies:
                 raise Fault(f"{relative(folder)}: a study of the name {study.key} is there already; rename the folder")
-            stamp = stamps.stamp_of(folder, json.dumps(changed, sort_keys=True) if changed else "")
-            if stamp is None or not stamp.exists():
+            if not before:
                 check(study)
-                stamps.remember(stamp)
+                stamps.remember(stamp, study)
         except Fault as fault:
             if not changed:
                 raise

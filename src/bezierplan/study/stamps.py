@@ -1,16 +1,23 @@
-"""Which studies were checked before: one empty file for each content, so that a start checks only what has changed.
+"""Studies that were checked before: one file for each content, with the study as it was read, so that a start reads and checks only what
+has changed.
 
-Most of a start would otherwise be spent on building every problem of every study. The name of a stamp is a digest of all files in the
-study's folder and of this package, so nothing can be stale.
+Most of a start would otherwise be spent on YAML, and on building every problem of every study. The name of a stamp is a digest of all files
+in the study's folder and of this package, so nothing can be stale.
 """
 
+import contextlib
 import hashlib
 import os
+import pickle
 import sys
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
+import pydantic
+
 from bezierplan.running.digest import PACKAGE, cache_folder
+from bezierplan.study.definition import Study
 
 STAMPS = cache_folder() / "studies"
 
@@ -42,18 +49,28 @@ def stamp_of(folder: Path, changed: str = "") -> Path | None:
     return STAMPS / digest.hexdigest()[:32]
 
 
-def remember(stamp: Path | None) -> None:
-    """Keep a stamp, unless the folder of stamps cannot be written."""
+def remembered(stamp: Path | None, folder: Path) -> Study | None:
+    """The study of a stamp, which now lies in a folder; None if there is none, or the stamp is damaged."""
+    try:
+        return replace(pickle.loads(stamp.read_bytes()), folder=folder) if stamp else None
+    except Exception:  # a damaged pickle raises almost anything
+        return None
+
+
+def remember(stamp: Path | None, study: Study) -> None:
+    """Keep a study that was checked, unless the folder of stamps cannot be written."""
     if stamp:
-        try:
+        with contextlib.suppress(OSError):
             stamp.parent.mkdir(parents=True, exist_ok=True)
-            stamp.touch()
-        except OSError:
-            pass
+            part = stamp.with_suffix(f".{os.getpid()}")
+            part.write_bytes(pickle.dumps(study))
+            part.replace(stamp)
 
 
 @cache
 def _package() -> str:
-    """The version of Python, and a digest of all files of this package."""
+    """The versions of Python and of pydantic, whose models a study consists of, and a digest of all files of this package."""
     files = sorted(PACKAGE.rglob("*.py"))
-    return sys.version + "".join(f"{file.relative_to(PACKAGE)} {hashlib.sha256(file.read_bytes()).hexdigest()}" for file in files)
+    return f"{sys.version} {pydantic.VERSION}" + "".join(
+        f"{file.relative_to(PACKAGE)} {hashlib.sha256(file.read_bytes()).hexdigest()}" for file in files
+    )

@@ -135,13 +135,20 @@ def _measured_runs(check: dict, claim: dict, material: Material) -> pd.DataFrame
             runs = select(runs, conditions)
         if metrics.METRICS[check["metric"]].compute is None and check["metric"] not in runs:
             raise Untestable(f"the runs of {name} have no {check['metric']}")
-        counting = _picked(runs, check["pick"]) if "pick" in check else runs
+        counting = _compared(runs, check)
+        counting = _picked(counting, check["pick"]) if "pick" in check else counting
         values = metrics.values(counting, check["metric"], problems).fillna(_failure(check))
         values = values.loc[select(counting, outcomes).index].reindex(runs.index)
         if check.get("failures") == "last":
             values = values.fillna(np.inf)
         measured.append(select(runs.assign(value=values), conditions))
     return pd.concat(measured, ignore_index=True)
+
+
+def _compared(runs: pd.DataFrame, check: dict) -> pd.DataFrame:
+    """The runs whose values are needed: those of the groups that a check names; ranks need all runs."""
+    groups = named_groups(check)
+    return runs[runs[cell_column(check)].isin(groups)] if groups and check["metric"] != "rank" else runs
 
 
 def _picked(runs: pd.DataFrame, which: dict) -> pd.DataFrame:

@@ -1,0 +1,81 @@
+"""Where the time of the last start of the workflow in this folder went, from what its jobs and Snakemake noted."""
+
+import json
+from argparse import ArgumentParser
+from collections import Counter
+from pathlib import Path
+
+from bezierplan.running import effort, records
+from bezierplan.running.effort import Session
+
+# Rules -> what their jobs do, apart from importing and from loading and compiling kernels; of `runs` and `drives` also apart from planning.
+WORK = {
+    "runs": "checking paths, warm-up, files of runs",
+    "drives": "checking paths, warm-up, files of runs",
+    "problems": "problems and exact bounds",
+    "worlds": "problems and exact bounds",
+    "bounds": "problems and exact bounds",
+    "clairvoyant": "problems and exact bounds",
+    "table": "tables, claims, statistics",
+    "listing": "tables, claims, statistics",
+    "claims": "tables, claims, statistics",
+    "audit": "tables, claims, statistics",
+    "worth": "tables, claims, statistics",
+    "summary": "tables, claims, statistics",
+    "sensitivity": "tables, claims, statistics",
+    "alternative": "alternatives: their runs and claims",
+    "readings_of": "readings: their runs and comparisons",
+    "figure": "drawing figures",
+    "page": "the page",
+}
+ROWS = [
+    *("planning", *dict.fromkeys(WORK.values())),
+    *("importing", "loading kernels", "compiling", "importing once for all jobs, forking", "Snakemake itself"),
+]
+
+
+def main(parser: ArgumentParser, words: list[str]) -> None:
+    """Print the table. Raises FileNotFoundError if no start was noted."""
+    parser.parse_args(words)
+    try:
+        session = effort.last(Path())
+    except FileNotFoundError:
+        raise FileNotFoundError(f"{effort.SESSION}: no start of the workflow ended well in this folder; run `snakemake` first") from None
+    print("\n".join(lines(session, *spent(session, Path()))))
+
+
+def spent(session: Session, folder: Path) -> tuple[Counter[str], int, float]:
+    """CPU seconds by what they were for, the number of jobs, and the seconds of the clock in which jobs waited for kernels."""
+    found: Counter[str] = Counter({"Snakemake itself": session.snakemake, "importing once for all jobs, forking": session.forked})
+    jobs: dict[str, tuple[str, list[Path]]] = {}
+    for file in (folder / records.METADATA).glob("*"):
+        content = json.loads(file.read_text(encoding="utf-8"))
+        if content.get("log") and content["rule"] in WORK and session.started <= content["starttime"] <= session.ended:
+            jobs.setdefault(content["log"][0], (content["rule"], []))[1].append(folder / records.output_of(file))
+    waited = 0.0
+    for log, (rule, outputs) in jobs.items():
+        noted = effort.of_job(folder / log) or {"cpu": 0.0}
+        waited += noted.pop("waiting", 0.0)
+        rest = noted.pop("cpu") - sum(noted.values())
+        if rule in ("runs", "drives"):
+            planning, _ = records.planner_times(outputs) or (0.0, 0.0)
+            found["planning"] += planning
+            rest -= planning
+        found.update(noted)
+        found[WORK[rule]] += rest
+    return found, len(jobs), waited
+
+
+def lines(session: Session, found: Counter[str], jobs: int, waited: float) -> list[str]:
+    """A table in Markdown. What the cores did not do for this workflow is what remains of their time."""
+    clock = session.ended - session.started
+    whole = clock * session.cores
+    rest = {"cores idle, or busy with other programs": whole - found.total()}
+    rows = [(name, found[name]) for name in ROWS if found[name]] + list(rest.items())
+    return [
+        f"{jobs} jobs in {clock:.0f} s on {session.cores} cores; jobs waited {waited:.0f} s for kernels that another job compiled",
+        "",
+        "| what | seconds of a core | share |",
+        "| --- | --- | --- |",
+        *(f"| {name} | {seconds:.1f} | {seconds / whole:.1%} |" for name, seconds in rows),
+    ]

@@ -1,0 +1,129 @@
+"""Kernels that several processes need at the same time: one process compiles them, and nothing that happens to it stops the others."""
+
+import fcntl
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from bezierplan.running import kernel_cache
+
+MODULE = """
+from numba import njit
+
+@njit(cache=True)
+def inner(x):
+    return x + 1
+
+@njit(cache=True)
+def outer(x):
+    return inner(x) * 2
+
+@njit(cache=True)
+def wrong(x):
+    return x + "a"
+"""
+
+START = """
+import os, sys, time
+from pathlib import Path
+import bezierplan
+os.environ["NUMBA_CACHE_DIR"] = "kernels"
+import kernels_of_mine as mine
+from bezierplan.running.forks import compile_first
+from numba.core import event
+compile_first()
+Path(f"ready-{os.getpid()}").touch()
+while not Path("go").exists():
+    time.sleep(0.001)
+"""
+CALL = """
+answer = mine.outer(20)
+print(answer, *(sum(kernel.stats.cache_misses.values()) for kernel in (mine.outer, mine.inner)))
+"""
+REPORT = """
+class Report(event.Listener):
+    def on_start(self, started):
+        Path("{name}").touch()
+        time.sleep({seconds})
+    def on_end(self, ended):
+        pass
+event.register("numba:compile", Report())
+"""
+
+
+@pytest.fixture
+def start(tmp_path):
+    """Starts processes, which run some code once the file `go` is there, in a folder with a module of kernels and without compiled ones."""
+    (tmp_path / "kernels_of_mine.py").write_text(MODULE)
+    started = []
+
+    def start_one(code):
+        environment = os.environ | {"PYTHONPATH": f"{tmp_path}:{os.environ.get('PYTHONPATH', '')}"}
+        started.append(
+            subprocess.Popen([sys.executable, "-c", START + code], cwd=tmp_path, env=environment, stdout=subprocess.PIPE, text=True)
+        )
+        appear(tmp_path / f"ready-{started[-1].pid}")
+        return started[-1]
+
+    yield start_one
+    for process in started:
+        process.kill()
+        process.communicate()
+
+
+def appear(file, seconds=60):
+    """Wait for a file."""
+    until = time.monotonic() + seconds
+    while not file.exists():
+        assert time.monotonic() < until, file
+        time.sleep(0.01)
+
+
+def test_one_of_two_processes_compiles(start, tmp_path):
+    both = [start(CALL), start(CALL)]
+    (tmp_path / "go").touch()
+    answers = [process.communicate(timeout=120)[0].split() for process in both]
+    # Who loads the outer kernel never asks for the inner one.
+    assert sorted(answers) == [["42", "0", "0"], ["42", "1", "1"]]
+
+
+def test_a_process_that_is_killed_while_it_compiles_holds_up_nobody(start, tmp_path):
+    killed = start(REPORT.format(name="compiling", seconds=600) + CALL)
+    (tmp_path / "go").touch()
+    appear(tmp_path / "compiling")
+    other = start(REPORT.format(name="compiling too", seconds=0) + CALL)
+    time.sleep(2)
+    assert not (tmp_path / "compiling too").exists()
+    os.kill(killed.pid, signal.SIGKILL)
+    assert other.communicate(timeout=120)[0].split() == ["42", "1", "1"]
+
+
+def test_a_kernel_that_cannot_be_compiled_leaves_no_lock(start, tmp_path):
+    failing = start("try:\n    mine.wrong(1)\nexcept Exception as e:\n    print(type(e).__name__, flush=True)\ntime.sleep(600)")
+    (tmp_path / "go").touch()
+    assert failing.stdout.readline() == "TypingError\n"
+    assert start(CALL).communicate(timeout=120)[0].split() == ["42", "1", "1"]
+
+
+def test_a_process_that_holds_a_lock_does_not_wait_for_ever(tmp_path, monkeypatch):
+    monkeypatch.setattr(kernel_cache, "PATIENCE", 0.2)
+    above, below = tmp_path / "above", tmp_path / "below"
+    below.mkdir()
+    with open(below / "lock", "w") as other:
+        fcntl.flock(other, fcntl.LOCK_EX)
+        with kernel_cache._alone(above), kernel_cache._alone(below), kernel_cache._alone(above):
+            assert kernel_cache._held == [above, below]
+    assert kernel_cache._held == []
+
+
+def test_a_file_system_without_locks(tmp_path, monkeypatch):
+    def refuse(*_):
+        raise OSError("no locks available")
+
+    monkeypatch.setattr(fcntl, "flock", refuse)
+    with kernel_cache._alone(tmp_path):
+        assert kernel_cache._held == [tmp_path]
