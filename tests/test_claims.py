@@ -659,7 +659,7 @@ def test_where_on_an_outcome_keeps_places_without_such_runs():
 
 
 def test_rank_is_one_among_the_rows_of_the_artefact(monkeypatch):
-    among = Metric("-", "rank", False, lambda runs, problems: runs.groupby("repeat")["objective"].rank())
+    among = Metric("-", "rank", False, lambda runs, problems: runs.groupby("repeat")["objective"].rank(), among_rows=True)
     monkeypatch.setitem(metrics.METRICS, "rank", among)
     artefacts = {"table1": {"experiment": "tried", "where": {"method": ["a", "b", "d"]}}}
     claim = {"checks": [LOWER | {"metric": "rank", "than": ["d"], "margin": 0.5}], "artefact": "table1"}

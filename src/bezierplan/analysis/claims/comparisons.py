@@ -146,9 +146,9 @@ def _measured_runs(check: dict, claim: dict, material: Material) -> pd.DataFrame
 
 
 def _compared(runs: pd.DataFrame, check: dict) -> pd.DataFrame:
-    """The runs whose values are needed: those of the groups that a check names; ranks need all runs."""
+    """The runs whose values are needed: those of the groups that a check names, or all for ranks among them."""
     groups = named_groups(check)
-    return runs[runs[cell_column(check)].isin(groups)] if groups and check["metric"] != "rank" else runs
+    return runs[runs[cell_column(check)].isin(groups)] if groups and not metrics.METRICS[check["metric"]].among_rows else runs
 
 
 def _picked(runs: pd.DataFrame, which: dict) -> pd.DataFrame:

@@ -334,11 +334,12 @@ def _units_to_decide(deciding: list[_Judged]) -> int | Any:
         f = each.finding
         if each.mark_family != "?":
             continue
-        if f.toward:
-            ratio = np.divide(ndtri(1 - ALPHA / 2), ndtri(1 - each.p_family / 2))
-        else:
-            ratio = np.divide(max(f.high - f.effect, f.effect - f.low), f.margin - abs(f.effect))
-        needed.append(max(f.n * ratio**2, f.n + 1))
+        with np.errstate(divide="ignore", invalid="ignore"):
+            if f.toward:
+                ratio = np.divide(ndtri(1 - ALPHA / 2), ndtri(1 - each.p_family / 2))
+            else:
+                ratio = np.divide(max(f.high - f.effect, f.effect - f.low), f.margin - abs(f.effect))
+            needed.append(max(f.n * ratio**2, f.n + 1))
     return math.ceil(max(needed)) if max(needed) < MOST_UNITS and not np.isnan(needed).any() else pd.NA
 
 
