@@ -718,10 +718,11 @@ def test_equal_data_gives_equal_bytes_in_another_process(tmp_path):
 
 @pytest.mark.parametrize("kind", kinds_of_panel.kinds())
 def test_options_of_a_kind_are_the_arguments_of_its_data(kind):
-    """Their defaults stand in the options alone."""
+    """Their defaults stand in the options alone. A kind that plans by itself is also given the name that seeds its runs."""
     parameters = inspect.signature(sheet.kind_module(kind).data).parameters.values()
     arguments = {parameter.name: parameter.default for parameter in parameters if parameter.kind is inspect.Parameter.KEYWORD_ONLY}
-    fields = kinds_of_panel.kinds()[kind].model_fields.keys() - set(sheet.PANEL_KEYS)
+    options = kinds_of_panel.kinds()[kind]
+    fields = options.model_fields.keys() - set(sheet.PANEL_KEYS) | ({"name"} if options.plans else set())
     assert arguments == dict.fromkeys(fields, inspect.Parameter.empty)
 
 
