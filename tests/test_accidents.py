@@ -65,8 +65,8 @@ def test_full_disk_ends_a_job_with_one_line_and_leaves_no_part(tmp_path):
     try:
         subprocess.run([*namespace, "mount", "-t", "tmpfs", "tmpfs", tmp_path], capture_output=True, check=True)
     except (FileNotFoundError, subprocess.CalledProcessError):
-        # macOS has no namespaces, and some containers forbid them; nothing else gives a test a small disk. The test above needs none.
-        pytest.skip("no disk can be mounted here")
+        # Nothing else gives a test a small disk. The test above needs none: there the system's call fails.
+        pytest.skip("no disk can be mounted here: macOS has no namespaces, and some containers forbid them")
     fill = 'mount -t tmpfs -o size=200k tmpfs "$1" && { "$2" -c "$3" "$1"; echo $?; ls "$1"; }'
     done = subprocess.run([*namespace, "sh", "-c", fill, "sh", tmp_path, sys.executable, FILLS], capture_output=True, text=True, check=True)
     assert done.stderr == TOLD_FULL.format(tmp_path) + "\n"

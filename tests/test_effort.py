@@ -104,3 +104,27 @@ def test_without_a_start(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     with pytest.raises(FileNotFoundError, match="run `snakemake` first"):
         command.main(ArgumentParser(), [])
+
+
+def test_a_note_of_snakemake_counts_the_process_that_is_forked(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / ".snakemake").mkdir()
+    with subprocess.Popen(
+        [sys.executable, "-c", "import time; sum(range(10_000_000)); print(flush=True); time.sleep(60)"], stdout=subprocess.PIPE
+    ) as fork:
+        fork.stdout.readline()
+        effort.keep(3, fork.pid)
+        fork.kill()
+    noted = effort.last(tmp_path)
+    assert (noted.cores, noted.forked > 0.03, noted.snakemake > 0, noted.started < noted.ended) == (3, True, True, True)
+
+
+def test_a_note_that_cannot_be_made_is_left_out(tmp_path, monkeypatch):
+    """The workflow has ended well: neither a killed process nor a missing folder may say otherwise."""
+    monkeypatch.chdir(tmp_path)
+    with subprocess.Popen([sys.executable, "-c", ""]) as gone:
+        pass
+    effort.keep(2, gone.pid)
+    (tmp_path / ".snakemake").mkdir()
+    effort.keep(2, gone.pid)
+    assert effort.last(tmp_path).forked == 0.0

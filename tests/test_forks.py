@@ -14,8 +14,10 @@ from snakemake.script import script
 
 from bezierplan.running.forks import MODULES, Forks
 
-# Nothing to test elsewhere: there Snakemake starts an interpreter for each script, as `Forks.script` says.
-pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="jobs are forks on Linux only")
+# Nothing to test elsewhere: a fork of a process that has loaded libraries of macOS may crash, so `Forks.script` makes none there.
+pytestmark = pytest.mark.skipif(
+    sys.platform != "linux", reason="jobs are forks on Linux only; elsewhere Snakemake starts an interpreter for each"
+)
 
 
 @pytest.fixture

@@ -19,7 +19,7 @@ SMOKE = Path(__file__).parents[1] / "results" / "smoke" / "index.html"
 
 # The environment comes from PyPI, which has no browser: that belongs to the machine, and not every reader can install one. Continuous
 # integration installs it (`.ci/run`).
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no chromium on this machine; on Debian: apt install chromium")
+pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="no browser on this machine, and PyPI has none; on Debian: apt install chromium")
 
 
 @pytest.fixture(scope="module")

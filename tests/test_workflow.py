@@ -286,7 +286,7 @@ def processes_in(folder):
 
 
 # The kernel of Linux ends a job whose workflow dies (PR_SET_PDEATHSIG, `running.log`); macOS has no such call, and no /proc to look into.
-@pytest.mark.skipif(sys.platform != "linux", reason="jobs end with a killed workflow on Linux only")
+@pytest.mark.skipif(sys.platform != "linux", reason="only the kernel of Linux ends a job with its parent, and has /proc to look into")
 @pytest.mark.parametrize(
     ("kill", "moment", "runs"), [(os.kill, "runs/*/*/*.parquet", 7), (os.killpg, "problems/*.parquet", 7), (os.killpg, "tables/*.csv", 16)]
 )

@@ -9,7 +9,7 @@ import os
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -85,16 +85,21 @@ def of_job(log: Path) -> dict[str, float] | None:
 
 
 def keep(cores: int, forked: int | None) -> None:
-    """Note the effort of Snakemake, in whose process this is called, at its end. forked: number of the process that is forked, if any."""
+    """Note the effort of Snakemake, in whose process this is called, at its end. forked: number of the process that is forked, if any.
+
+    A note that cannot be made is left out, for the workflow has ended well.
+    """
     import psutil
 
     def cpu(process: psutil.Process) -> float:
         times = process.cpu_times()
         return times.user + times.system
 
-    own = psutil.Process()
-    forks = cpu(psutil.Process(forked)) if forked else 0.0
-    SESSION.write_text(json.dumps(Session(own.create_time(), time.time(), cores, cpu(own), forks)._asdict()))
+    own, forks = psutil.Process(), 0.0
+    with suppress(psutil.Error):  # that process may have been killed
+        forks = cpu(psutil.Process(forked)) if forked else 0.0
+    with suppress(OSError):
+        SESSION.write_text(json.dumps(Session(own.create_time(), time.time(), cores, cpu(own), forks)._asdict()))
 
 
 def last(folder: Path) -> Session:
