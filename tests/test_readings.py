@@ -68,6 +68,21 @@ def test_a_reading_changes_the_settings_of_its_methods_and_nothing_else(studies)
     assert readings.job_under(chunk, {}, job["choices"]) == chunk
 
 
+@pytest.mark.parametrize("key", ["song2016", "elhoseny2017", "ma2020", "tharwat2018", "meledje"])
+def test_every_choice_can_be_made_in_every_job(studies, key):
+    job = choices.readings_job(studies[key], "full")
+    for choice in job["choices"]:
+        for value in choice["values"][1:]:
+            chosen = {choice["id"]: value}
+            changes = [
+                readings.job_under(chunk, chosen, job["choices"]) != chunk
+                for table in job["tables"].values()
+                for chunk in table["jobs"].values()
+            ]
+            # A metric and a world change how runs are read, a setting changes runs.
+            assert any(changes) == ("setting" in choice), chosen
+
+
 def test_a_choice_wins_over_the_settings_of_a_problem(studies):
     job = choices.readings_job(studies["ma2020"], "full")
     chunk = job["tables"]["table2"]["jobs"]["aco"]

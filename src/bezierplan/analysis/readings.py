@@ -44,7 +44,7 @@ def job_under(job: dict, reading: Reading, choices: list[dict]) -> dict:
     for choice in choices:
         if "column" in choice:
             worlds[choice["column"]] = reading.get(choice["id"])
-        elif choice["id"] in reading and job["method"] in choice["methods"]:
+        elif choice["id"] in reading and job["method"] in choice.get("methods", []):
             settings |= {choice["setting"]: reading[choice["id"]]} | choice["along"].get(job["method"], {})
     changed = {choice["setting"] for choice in choices if choice["id"] in reading and job["method"] in choice.get("methods", [])}
     problems = {}

@@ -1,6 +1,7 @@
 """The grid of readings of a paper: every choice that it leaves open and that governs its published numbers.
 
-A choice is a mapping of plain values: id; detail; values, the one in force first (None, as methods may differ in it); and what it governs:
+A choice is a mapping of plain values: id; detail; values, the one in force first (None, as methods may differ in it); and what it governs,
+which may be both a setting and the metric of the same name:
 
     setting, methods, along   a setting of some methods, and further settings that go with it, method -> settings
     column                    the column of the tables whose value is the paper's world
@@ -35,17 +36,15 @@ def choices(study: Study) -> list[dict[str, Any]]:
     printed = {method for name, table in printed_tables(study).items() for method in _methods(study, name, table)}
     found = []
     for assumption in study.assumptions:
-        metrics = {assumption.default, *assumption.alternatives} if isinstance(assumption.default, str) else set()
-        if metrics and metrics <= METRICS.keys():
-            found.append(
-                {"id": assumption.id, "detail": assumption.detail, "values": [None, *assumption.alternatives], "metric": assumption.default}
-            )
-        if assumption.setting and assumption.alternatives:
-            methods = [method for method in alternatives.concerned(study, assumption) if method in printed]
-            if methods:
-                described = {"id": assumption.id, "detail": assumption.detail, "values": [None, *assumption.alternatives]}
-                along = {method: assumption.along[method] for method in methods if method in assumption.along}
-                found.append(described | {"setting": assumption.setting, "methods": methods, "along": along})
+        governs: dict[str, Any] = {}
+        if isinstance(assumption.default, str) and {assumption.default, *assumption.alternatives} <= METRICS.keys():
+            governs["metric"] = assumption.default
+        methods = [method for method in alternatives.concerned(study, assumption) if method in printed] if assumption.setting else []
+        if methods:
+            along = {method: assumption.along[method] for method in methods if method in assumption.along}
+            governs |= {"setting": assumption.setting, "methods": methods, "along": along}
+        if governs and assumption.alternatives:
+            found.append({"id": assumption.id, "detail": assumption.detail, "values": [None, *assumption.alternatives]} | governs)
     worlds: dict[str, list] = {}
     for table in printed_tables(study).values():
         for column, value in table.primary.items():
