@@ -154,6 +154,15 @@ def test_a_metric_takes_the_place_of_the_printed_word():
     spec, published = readings.under_metrics(SPEC, printed(5.0, 6.0), {"O1": "length"}, [{"id": "O1", "metric": "objective"}])
     assert [value["metric"] for value in spec["values"]] == ["length"]
     assert set(published["metric"]) == {"length"}
+    # A table that shows the metric already shows it once.
+    both = SPEC | {"values": [*SPEC["values"], {"metric": "length", "statistic": "mean"}]}
+    assert len(readings.under_metrics(both, printed(5.0, 6.0), {"O1": "length"}, [{"id": "O1", "metric": "objective"}])[0]["values"]) == 1
+
+
+def test_the_length_that_a_fitness_uses_is_not_the_length_that_is_printed(studies):
+    found = {choice["id"]: choice for choice in choices.choices(studies["elhoseny2017"])}
+    assert found["O1b"]["metric"] == "cells4"
+    assert found["O2"].keys() & {"metric", "setting"} == {"setting"}
 
 
 # The search.

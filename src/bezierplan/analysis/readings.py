@@ -75,8 +75,10 @@ def in_world(spec: dict, job: dict, reading: Reading) -> tuple[dict, dict]:
 def under_metrics(spec: dict, published: pd.DataFrame, reading: Reading, choices: list[dict]) -> tuple[dict, pd.DataFrame]:
     """A table's description and its published numbers with the metrics that a reading assigns to printed words."""
     metric = {choice["metric"]: reading[choice["id"]] for choice in choices if "metric" in choice and choice["id"] in reading}
-    values = [value | {"metric": metric.get(value["metric"], value["metric"])} for value in spec["values"]]
-    return spec | {"values": values}, published.assign(metric=published["metric"].replace(metric))
+    values = {(metric.get(value["metric"], value["metric"]), str(value["statistic"])): value for value in spec["values"]}
+    return spec | {"values": [value | {"metric": name} for (name, _), value in values.items()]}, published.assign(
+        metric=published["metric"].replace(metric)
+    )
 
 
 def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str) -> tuple[pd.DataFrame, float]:

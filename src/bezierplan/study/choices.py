@@ -1,7 +1,6 @@
 """The grid of readings of a paper: every choice that it leaves open and that governs its published numbers.
 
-A choice is a mapping of plain values: id; detail; values, the one in force first (None, as methods may differ in it); and what it governs,
-which may be both a setting and the metric of the same name:
+A choice is a mapping of plain values: id; detail; values, the one in force first (None, as methods may differ in it); and what it governs:
 
     setting, methods, along   a setting of some methods, and further settings that go with it, method -> settings
     column                    the column of the tables whose value is the paper's world
@@ -22,22 +21,25 @@ from bezierplan.study.model import one_or_list
 def printed_tables(study: Study) -> dict[str, Pivot]:
     """The tables of runs that have published numbers, except those of nothing but seconds, which no reading explains."""
     printed = {name: table for name, table in study.compared().items() if table.published}
-    return {name: table for name, table in printed.items() if _units(study, name) != {"s"}}
+    return {name: table for name, table in printed.items() if {row["unit"] for row in _published(study, name)} != {"s"}}
 
 
-def _units(study: Study, table: str) -> set[str]:
-    """Units of a table's published numbers."""
+def _published(study: Study, table: str) -> list[dict[str, str]]:
+    """A table's published numbers."""
     with Path(study.published_file(table)).open(encoding="utf-8", newline="") as file:
-        return {row["unit"] for row in csv.DictReader(file)}
+        return list(csv.DictReader(file))
 
 
 def choices(study: Study) -> list[dict[str, Any]]:
     """All choices: settings that assumptions govern, and worlds between which the tables leave the choice."""
     printed = {method for name, table in printed_tables(study).items() for method in _methods(study, name, table)}
+    compared = {
+        table.reads.get(row["metric"], row["metric"]) for name, table in printed_tables(study).items() for row in _published(study, name)
+    }
     found = []
     for assumption in study.assumptions:
         governs: dict[str, Any] = {}
-        if isinstance(assumption.default, str) and {assumption.default, *assumption.alternatives} <= METRICS.keys():
+        if isinstance(assumption.default, str) and assumption.default in compared and METRICS.keys() >= set(assumption.alternatives):
             governs["metric"] = assumption.default
         methods = [method for method in alternatives.concerned(study, assumption) if method in printed] if assumption.setting else []
         if methods:
