@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from bezierplan.planners import Plan
 from bezierplan.running.simulation import cells, clairvoyant, evasion, hindsight, motion_check
+from bezierplan.running.simulation.circles import comes_near
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.robot import drive
@@ -170,6 +171,35 @@ def test_a_robot_that_looks_ahead_ignores_a_circle_that_will_have_passed():
     world = circles((15, 5, 1, 0, 0.9))  # on the way at step 5, and far above it when the robot comes at step 15
     near, ahead = (drive(world, across(world), REPLANS._replace(knows=knows), round_about) for knows in ("positions", "velocities"))
     assert (near.replans > 0, ahead.replans) == (True, 0)
+
+
+def clearances(points, at, begin, end, centres, drift, pace):
+    """Least distance of each circle's centre to a drive between two lengths of way, chord by chord."""
+    lengths = np.concatenate([[begin], at[(at > begin) & (at < end)], [end]])
+    places = np.column_stack([np.interp(lengths, at, points[:, axis]) for axis in range(2)])
+    relative = places - centres[:, None] - drift[:, None] * ((lengths - begin) / pace)[:, None]
+    legs = np.diff(relative, axis=1)
+    size = np.maximum((legs**2).sum(axis=-1), 1e-300)
+    share = np.clip(-(relative[:, :-1] * legs).sum(axis=-1) / size, 0.0, 1.0)
+    return np.linalg.norm(relative[:, :-1] + share[..., None] * legs, axis=-1).min(axis=1)
+
+
+@given(st.integers(0, 10**6))
+def test_what_a_robot_skips_of_its_way_is_out_of_reach(seed):
+    rng = np.random.default_rng(seed)
+    points = np.cumsum(rng.normal(size=(rng.integers(2, 60), 2)), axis=0)
+    along, pace, centres = way(points), rng.uniform(0.2, 3.0), rng.normal(scale=8.0, size=(4, 2))
+    drift = rng.normal(scale=rng.choice([0.0, 0.3, 3.0]), size=(4, 2))
+    begin, end = np.sort(rng.uniform(0.0, along.length, 2))
+    least = clearances(*along, begin, end, centres, drift, pace)
+    margin = rng.uniform(0.0, 1.0)
+    for off, near in ((1e-9, True), (-1e-9, False)):
+        # A circle that just reaches the way, or just does not, among points.
+        for k in range(4):
+            radii = np.full(4, -margin)
+            radii[k] = least[k] + off - margin
+            if radii[k] + margin > 0.0:
+                assert comes_near(*along, begin, end, centres, drift, radii, margin, pace) == near
 
 
 def test_a_robot_in_a_cell_that_becomes_occupied_drives_back():

@@ -1,5 +1,6 @@
 """A robot among moving circles: step by step along a way, until there is something to decide."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -79,28 +80,32 @@ def comes_near(points, at, begin, end, centres, drift, radii, margin, pace):
     """Whether the part of a way between two lengths comes nearer to a circle than its radius plus a margin, if circles drift by that much a
     step while the robot drives at its pace.
     """
-    i = min(np.searchsorted(at, begin, side="right"), len(at) - 1)
-    x, y = _place(points, at, begin)
-    s = begin
-    while True:
-        following = min(at[i], end)
-        next_x, next_y = (points[i, 0], points[i, 1]) if at[i] <= end else _place(points, at, end)
-        step_x, step_y = next_x - x, next_y - y
-        for k in range(len(centres)):
-            reach = radii[k] + margin
+    for k in range(len(centres)):
+        reach = radii[k] + margin
+        drifts = 1.0 + math.hypot(drift[k, 0], drift[k, 1]) / pace
+        i = min(np.searchsorted(at, begin, side="right"), len(at) - 1)
+        s, (x, y) = begin, _place(points, at, begin)
+        while True:
+            following = min(at[i], end)
+            next_x, next_y = (points[i, 0], points[i, 1]) if at[i] <= end else _place(points, at, end)
+            step_x, step_y = next_x - x, next_y - y
             early, late = (s - begin) / pace, (following - begin) / pace
             dx, dy = x - centres[k, 0] - drift[k, 0] * early, y - centres[k, 1] - drift[k, 1] * early
             ex, ey = step_x - drift[k, 0] * (late - early), step_y - drift[k, 1] * (late - early)
+            last_x, last_y = dx + ex, dy + ey
             along, size = -(dx * ex + dy * ey), ex * ex + ey * ey
             if along > 0.0 and size > 0.0:
                 share = min(along / size, 1.0)
                 dx, dy = dx + share * ex, dy + share * ey
             if dx * dx + dy * dy < reach * reach:
                 return True
-        if following >= end or i + 1 >= len(at):
-            return False
-        x, y, s = next_x, next_y, following
-        i += 1
+            # The distance shrinks by at most `drifts` per unit of way, so the circle is out of reach until then.
+            clear = following + (math.hypot(last_x, last_y) - reach) / drifts
+            if following >= end or clear >= end or i + 1 >= len(at):
+                break
+            i = max(i + 1, np.searchsorted(at, clear, side="right"))
+            x, y, s = points[i - 1, 0], points[i - 1, 1], at[i - 1]
+    return False
 
 
 @njit(cache=True)
