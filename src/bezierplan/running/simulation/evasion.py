@@ -8,46 +8,57 @@ from numba import njit
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.workspaces.worlds import MovingCircles, positions
 
-# A robot that evades compares standing still with a step in each of this many directions, and looks so many steps ahead.
+# A robot that evades compares standing still with a drive in each of so many directions, during one of so many steps, after which it stays.
+# It looks so many steps ahead.
 _DIRECTIONS = 32
-_AHEAD = 10.0
+_DRIVES = (1, 2, 4, 8)
+_AHEAD = 20.0
 
 
 def refuge(world: MovingCircles, place: np.ndarray, step: int, policy: Policy) -> np.ndarray:
     """The place (2,) where the robot is best at the end of a step: where it stands, unless a circle is about to come there.
 
-    It knows what its policy lets it see. A step in which it meets no circle is better than one in which it does, then the later one comes
-    nearer to it than `check_margin`, and then the farther it is from all of them.
+    It knows what its policy lets it see. A step in which it meets no circle is better than one in which it does, then one that begins a
+    drive on which the first circle comes nearer to it than `check_margin` later, and then the one that ends farther from all of them.
     """
     walls = np.array(world.walls, dtype=float)
     looked = step + (policy.sees == "after")
     seen = positions(world.centres, world.velocities, walls, looked)
     drift = positions(world.centres, world.velocities, walls, looked + 1) - seen if policy.knows == "velocities" else np.zeros_like(seen)
     angles = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
-    steps = world.pace * np.concatenate([np.zeros((1, 2)), np.column_stack([np.cos(angles), np.sin(angles)])])
-    x_low, x_high, y_low, y_high = world.bounds
-    places = np.clip(place + steps, [x_low, y_low], [x_high, y_high])
+    moves = world.pace * np.concatenate([np.zeros((1, 2)), np.column_stack([np.cos(angles), np.sin(angles)])])
     during = seen - drift if policy.sees == "after" else seen
-    return places[_best(place, places, during, drift, world.radii, float(policy.check_margin))]
+    return _best(place, moves, during, drift, world.radii, float(policy.check_margin), np.array(world.bounds, dtype=float))
 
 
 @njit(cache=True)
-def _best(place, places, centres, drift, radii, margin):
-    """The number of the best of some places (n, 2) at the end of a step. centres: at its beginning, drift: per step."""
-    best, best_depth, best_time, best_apart = 0, -np.inf, 0.0, 0.0
-    for i in range(len(places)):
-        depth, free, apart = 0.0, _AHEAD, np.inf
-        for k in range(len(radii)):
-            # Relative to the circle: during the step, and then while the robot stays.
-            dx, dy = place[0] - centres[k, 0], place[1] - centres[k, 1]
-            end_x, end_y = places[i, 0] - centres[k, 0] - drift[k, 0], places[i, 1] - centres[k, 1] - drift[k, 1]
-            depth = min(depth, _nearest(dx, dy, end_x - dx, end_y - dy) - radii[k])
-            free = min(free, _comes_at(end_x, end_y, -drift[k, 0], -drift[k, 1], radii[k] + margin))
-            apart = min(apart, math.hypot(end_x, end_y) - radii[k])
-        if (depth, free, apart) > (best_depth, best_time, best_apart):
-            best, best_depth, best_time, best_apart = i, depth, free, apart
-        if i == 0 and depth == 0.0 and free == _AHEAD:
-            return 0
+def _best(place, moves, centres, drift, radii, margin, bounds):
+    """The place (2,) at the end of a step that `refuge` describes. moves (n, 2): per step, the first is to stay. centres: at the beginning
+    of the step. drift: per step.
+    """
+    best, best_depth, best_time, best_apart = place, -np.inf, 0.0, 0.0
+    for i in range(len(moves)):
+        for steps in _DRIVES:
+            end_x = min(max(place[0] + steps * moves[i, 0], bounds[0]), bounds[1])
+            end_y = min(max(place[1] + steps * moves[i, 1], bounds[2]), bounds[3])
+            move_x, move_y = (end_x - place[0]) / steps, (end_y - place[1]) / steps
+            depth, free, apart = 0.0, _AHEAD, np.inf
+            for k in range(len(radii)):
+                # Relative to the circle: during the first step, during the drive, and then while the robot stays.
+                dx, dy = place[0] - centres[k, 0], place[1] - centres[k, 1]
+                vx, vy = move_x - drift[k, 0], move_y - drift[k, 1]
+                depth = min(depth, _nearest(dx, dy, vx, vy) - radii[k])
+                reach = radii[k] + margin
+                met = _comes_at(dx, dy, vx, vy, reach)
+                if met >= steps:
+                    met = steps + _comes_at(dx + steps * vx, dy + steps * vy, -drift[k, 0], -drift[k, 1], reach)
+                free = min(free, met)
+                apart = min(apart, math.hypot(dx + vx, dy + vy) - radii[k])
+            if (depth, free, apart) > (best_depth, best_time, best_apart):
+                best = place + np.array([move_x, move_y])
+                best_depth, best_time, best_apart = depth, free, apart
+            if i == 0 and depth == 0.0 and free == _AHEAD:
+                return place
     return best
 
 
