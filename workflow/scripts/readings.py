@@ -15,7 +15,7 @@ with log.job(snakemake) as output:
     made = {name: problems.read(file) for name, file in zip(job["experiments"], files.problems, strict=True)}
     bounds = {name: pd.read_parquet(file) for name, file in zip(job["experiments"], files.bounds, strict=True)}
     evaluate = readings.Evaluator(job, made, bounds, dict(zip(job["tables"], files.published)), Path(snakemake.params.kept))
-    tried = readings.search(job["choices"], evaluate, job["study"])
+    tried = readings.search(job["choices"], evaluate, job["study"], job["most"])
     found = explained.readings_table(job["study"], tried, job["choices"])
     tables = {output.readings: found, output.explained: explained.explained_table(job["study"], tried)}
     for file, table in (tables | {output.held_out: explained.held_out_table(job["study"], tried)}).items():

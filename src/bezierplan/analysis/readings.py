@@ -28,8 +28,7 @@ from bezierplan.workspaces.seeds import generator
 
 logger = logging.getLogger(__name__)
 
-# Readings tried where the grid is too large to be searched completely, and starts of the search.
-MOST_READINGS = 60
+# Starts of the search where the grid is too large to be searched completely.
 STARTS = 3
 # Draws of whole experiments.
 EXPERIMENTS = 500
@@ -230,7 +229,7 @@ def _planner(planner: str) -> str:
 # The search.
 
 
-def search(choices: list[dict], evaluate: Callable[[Reading], Evaluated | None], name: str, most: int = MOST_READINGS) -> list[Evaluated]:
+def search(choices: list[dict], evaluate: Callable[[Reading], Evaluated | None], name: str, most: int) -> list[Evaluated]:
     """The readings tried, in the order of trial, that in force first.
 
     All of them if there are at most `most`; otherwise by coordinate ascent from the reading in force and from random ones, until `most`

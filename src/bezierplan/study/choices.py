@@ -75,4 +75,4 @@ def readings_job(study: Study, scale: str) -> dict[str, Any]:
         spec = table.plain() | {"where": table.where | {"method": methods}}
         tables[name] = {"experiment": table.experiment, "spec": spec, "jobs": chunk_jobs}
     experiments = list(dict.fromkeys(table["experiment"] for table in tables.values()))
-    return {"study": study.key, "tables": tables, "choices": choices(study), "experiments": experiments}
+    return {"study": study.key, "tables": tables, "choices": choices(study), "most": study.readings_tried, "experiments": experiments}

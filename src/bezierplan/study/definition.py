@@ -38,6 +38,7 @@ class Study:
     problems: dict[str, Problem]
     experiments: dict[str, Experiment]
     worth: Worth | None
+    readings_tried: int
     labels: dict[str, str]
     tables: dict[str, Table]
     figures: dict[str, Figure]

@@ -207,3 +207,4 @@ class ExperimentsFile(Model):
     problems: dict[ProblemName, Problem] = Field(description="name → workspace, start and target", min_length=1)
     experiments: dict[Name, Experiment] = Field(description="name → problems × varied settings × methods × repeats", min_length=1)
     worth: Worth = Field(None, description="what the summary measures the study's methods against: a row of `worth.csv` for each method")
+    readings_tried: Count = Field(60, description="how many readings `snakemake readings` tries at most")

@@ -100,6 +100,7 @@ def read_study(folder: Path, changed: Mapping[str, Any] | None = None) -> Study:
         problems=experiments.problems,
         experiments=experiments.experiments,
         worth=experiments.worth,
+        readings_tried=experiments.readings_tried,
         labels=artefacts.labels,
         tables=artefacts.tables,
         figures=artefacts.figures,
