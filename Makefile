@@ -57,10 +57,10 @@ archive: .cache/archive/ready ## results/full with code and environment as an RO
 	$(<D)/bin/python workflow/archive/archive.py $(ARGS)
 
 # Pages show the alternatives that are there, so they are made again in the end. `snakemake readings` beforehand adds what it finds.
-outcome: .venv/ready ## everything at scales full and extended with the alternatives, then docs/outcome and the README's table
+outcome: .venv/ready ## everything at scales full and extended, alternatives and readings, then docs/outcome and the README's table
 	@$(UNLOCK)
 	$(SNAKEMAKE) all extended $(ARGS)
-	$(SNAKEMAKE) alternatives $(ARGS)
+	$(SNAKEMAKE) alternatives readings $(ARGS)
 	$(SNAKEMAKE) all extended $(ARGS)
 	$(RUN) -m bezierplan outcome
 

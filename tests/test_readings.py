@@ -159,6 +159,11 @@ def test_a_metric_takes_the_place_of_the_printed_word():
     assert len(readings.under_metrics(both, printed(5.0, 6.0), {"O1": "length"}, [{"id": "O1", "metric": "objective"}])[0]["values"]) == 1
 
 
+def test_the_search_leaves_out_what_takes_too_long(studies):
+    found = {choice["id"]: choice for choice in choices.choices(studies["meledje"])}
+    assert found["M9b"]["values"] == [None, "unrestricted"]
+
+
 def test_the_length_that_a_fitness_uses_is_not_the_length_that_is_printed(studies):
     found = {choice["id"]: choice for choice in choices.choices(studies["elhoseny2017"])}
     assert found["O1b"]["metric"] == "cells4"

@@ -45,8 +45,9 @@ def choices(study: Study) -> list[dict[str, Any]]:
         if methods:
             along = {method: assumption.along[method] for method in methods if method in assumption.along}
             governs |= {"setting": assumption.setting, "methods": methods, "along": along}
-        if governs and assumption.alternatives:
-            found.append({"id": assumption.id, "detail": assumption.detail, "values": [None, *assumption.alternatives]} | governs)
+        values = [value for value in assumption.alternatives if value not in assumption.not_searched]
+        if governs and values:
+            found.append({"id": assumption.id, "detail": assumption.detail, "values": [None, *values]} | governs)
     worlds: dict[str, list] = {}
     for table in printed_tables(study).values():
         for column, value in table.primary.items():

@@ -21,6 +21,7 @@ from bezierplan.study.model import (
     matching,
     one_of,
     one_or_list,
+    shown,
     value,
     wrong,
 )
@@ -93,8 +94,12 @@ class Assumption(Model):
         [], description="ids of the claims on which `snakemake alternatives` tries each alternative, one at a time (`sensitivity.csv`)"
     )
 
+    not_searched: listed(Setting) = Field([], description="alternatives that `snakemake readings` leaves out because they take too long")
+
     @model_validator(mode="after")
     def _check_setting(self) -> "Assumption":
+        if unknown := [each for each in self.not_searched if each not in self.alternatives]:
+            raise wrong(f"not_searched: {shown(unknown[0])}: not among the alternatives")
         if self.setting is None and self.model_fields_set & {"along", "claims"}:
             raise wrong("setting: missing key; with and claims need the planner's setting that is governed")
         return self
