@@ -243,10 +243,14 @@ def test_summary_says_what_no_reading_gives_and_what_the_best_one_does():
     in_force = Evaluated({}, numbers([True, False, False, False], tables), {"table1": -1.0, "table2": -5.0})
     better = Evaluated({"O1": 2}, numbers([True, True, True, False], tables), {"table1": 0.0, "table2": -1.0})
     text = told(in_force, better)
-    assert text.startswith("**The first** No reading gives 1 of the numbers (1 of table2). Of 4 numbers, 1 are in range")
+    assert text.startswith("**The first.** No reading gives 1 of the numbers (1 of table2). Of 4 numbers, 1 are in range")
     assert "The best of 2 readings, O1=2, brings 3 into range" in text
     assert text.endswith("readings bring 3, that in force 1: the tables held out agree with a change.")
     assert "None of 1 readings does better." in told(in_force)
+    assert "explains their level" not in text
+    # Ranges so wide that each holds every printed number of its kind say nothing about how these differ.
+    wide = Evaluated({"O1": 2}, better.numbers.assign(low=-10.0, high=10.0, in_range=True), better.likelihoods)
+    assert "brings 4 into range (4 when exchanged: it explains their level, not how they differ)" in told(in_force, wide)
 
 
 def test_summary_does_not_follow_a_reading_that_other_tables_refuse():
@@ -254,8 +258,8 @@ def test_summary_does_not_follow_a_reading_that_other_tables_refuse():
     in_force = Evaluated({}, numbers([False, False, True], tables), {"table1": -9.0, "table2": -1.0})
     fitted = Evaluated({"O1": 2}, numbers([True, True, False], tables), {"table1": 0.0, "table2": -9.0})
     text = told(in_force, fitted)
-    assert text.startswith("**The first** Each number is in range under some reading.")
-    assert text.endswith("the tables held out do not agree with a change.")
+    assert text.startswith("**The first.** Each number is in range under some reading.")
+    assert text.endswith("held out, table2 (0 instead of 1) speaks against a change.")
     assert explained.section(pd.DataFrame(), pd.DataFrame(), pd.DataFrame(), {}) == []
 
 

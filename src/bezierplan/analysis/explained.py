@@ -111,7 +111,7 @@ def section(readings: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFr
         "`<study>_explained.csv` for each printed number, `<study>_held_out.csv` for each table.",
     ]
     for study, own in readings.groupby("study", sort=False):
-        parts.append(f"**{titles[study]}** {sentences(own, *(each[each['study'] == study] for each in (explained, held_out)))}")
+        parts.append(f"**{titles[study]}.** {sentences(own, *(each[each['study'] == study] for each in (explained, held_out)))}")
     return parts
 
 
@@ -128,9 +128,10 @@ def sentences(readings: pd.DataFrame, explained: pd.DataFrame, held_out: pd.Data
     if best["reading"] == IN_FORCE:
         parts.append(f"None of {len(readings)} readings does better.")
     else:
+        level = ": it explains their level, not how they differ" if best["in_range"] <= best["by_chance"] + 0.5 else ""
         parts.append(
             f"The best of {len(readings)} readings, {best['reading']}, brings {best['in_range']} into range ({best['by_chance']:.0f} when "
-            "exchanged)."
+            f"exchanged{level})."
         )
     if len(held_out) > 1:
         parts.append(
@@ -148,8 +149,9 @@ def _by_table(never: pd.DataFrame) -> str:
 
 def _advice(held_out: pd.DataFrame) -> str:
     """Whether the tables that a reading was not chosen on speak for a change of what is in force."""
-    better = held_out["chosen"] > held_out["in_force"]
-    worse = held_out["chosen"] < held_out["in_force"]
-    if better.any() and not worse.any():
-        return "the tables held out agree with a change"
-    return "the tables held out do not agree with a change" if worse.any() else "the tables held out do not tell them apart"
+    worse = held_out[held_out["chosen"] < held_out["in_force"]]
+    against = ", ".join(f"{row.table} ({row.chosen} instead of {row.in_force})" for row in worse.itertuples())
+    if len(worse):
+        return f"held out, {against} {'speaks' if len(worse) == 1 else 'speak'} against a change"
+    better = (held_out["chosen"] > held_out["in_force"]).any()
+    return f"the tables held out {'agree with a change' if better else 'do not tell them apart'}"
