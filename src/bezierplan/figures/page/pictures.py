@@ -53,6 +53,7 @@ def data_uri(file: Path) -> str:
     return "data:image/svg+xml," + _UNSAFE.sub(lambda letter: quote(letter.group(), safe=""), re.sub(r">\s+<", "><", text.strip()))
 
 
+@lru_cache(maxsize=10_000)  # the outlines of letters and marks come back in every figure
 def _stepwise(outline: str) -> str:
     """An outline whose steps (M, L, Q, C and z, each with its name) are relative, in hundredths that add up without drift."""
     parts, x, y, first = [], 0, 0, (0, 0)
