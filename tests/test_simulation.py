@@ -260,6 +260,13 @@ def test_a_robot_steps_aside_for_a_circle_that_comes_and_stays_for_one_that_pass
     assert np.array_equal(evasion.refuge(passing, place, 0, REPLANS._replace(knows="velocities")), place)
 
 
+def test_a_robot_leaves_the_way_of_a_circle_from_which_it_could_flee_for_a_while():
+    chasing = circles((6, 10, 2, 0.9, 0))
+    place = np.array([9.0, 10.0])
+    aside = evasion.refuge(chasing, place, 0, REPLANS._replace(knows="velocities"))
+    assert abs(aside[1] - place[1]) > 0.3
+
+
 def test_a_robot_that_evades_is_not_hit_where_one_that_waits_is():
     """No plan leads on, so both stay, and a circle comes."""
     world = circles((0.5, 3, 2, 0, 0.5), end=30)
