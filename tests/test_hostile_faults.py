@@ -955,3 +955,9 @@ def test_snakemake_ends_in_one_line(fault, folder):
     lines = [line for line in (done.stderr + done.stdout).splitlines() if line.strip()]
     assert len(lines) == 1, lines
     assert name.rpartition("/")[2] in lines[0]
+
+
+def test_a_program_that_stops_reading_gets_no_complaint():
+    command = f"'{sys.executable}' -m bezierplan list | true"
+    done = subprocess.run(["bash", "-c", command], cwd=ROOT, capture_output=True, text=True, check=False, timeout=120)
+    assert (done.returncode, done.stdout, done.stderr) == (0, "", "")

@@ -2,12 +2,13 @@
 
 import argparse
 import importlib
+import os
 import sys
 
 COMMANDS = {
     "list": "studies, their artefacts, methods, workspaces and numbers of repeats",
     "replay": "one run again, bit-equal, with its picture",
-    "digest": "one hash a run table, over sorted rows without times: what `same content` means",
+    "digest": "one hash per run table, over sorted rows without times: what `same content` means",
     "check-planner": "the contract tests of a planner, on small and degenerate problems",
     "plan": "one path on a map, checked by exact geometry",
     "forecast": "how long a target takes on some cores, how much disk, and its longest jobs",
@@ -29,6 +30,9 @@ def main(words: list[str]) -> None:
     own = argparse.ArgumentParser(prog=f"python -m bezierplan {name}", description=COMMANDS[name])
     try:
         command.main(own, words[1:])
+        sys.stdout.flush()
+    except BrokenPipeError:  # who reads, such as `head`, has enough; Python flushes once more at its end
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except (ValueError, FileNotFoundError) as fault:
         sys.exit(str(fault))
 
