@@ -19,6 +19,7 @@ from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
 
 ROOT = Path(__file__).parents[1]
+KEYS = ["song2016", "elhoseny2017", "ma2020", "tharwat2018", "meledje"]
 GRID = from_lines(["..", ".."], 1.0, "m")
 PROBLEMS = {"only": Problem("only", GRID, (0.5, 0.5), (1.5, 1.5))}
 CHOICES = [{"id": f"O{n}", "detail": "", "values": [None, 1, 2]} for n in range(6)]
@@ -49,7 +50,7 @@ def test_grid_has_settings_worlds_and_metrics(studies):
     assert "O18" not in found
 
 
-@pytest.mark.parametrize("key", ["song2016", "elhoseny2017", "ma2020", "tharwat2018", "meledje"])
+@pytest.mark.parametrize("key", KEYS)
 def test_every_study_has_a_grid_of_plain_values(studies, key):
     job = choices.readings_job(studies[key], "full")
     assert json.loads(json.dumps(job)) == job
@@ -68,7 +69,7 @@ def test_a_reading_changes_the_settings_of_its_methods_and_nothing_else(studies)
     assert readings.job_under(chunk, {}, job["choices"]) == chunk
 
 
-@pytest.mark.parametrize("key", ["song2016", "elhoseny2017", "ma2020", "tharwat2018", "meledje"])
+@pytest.mark.parametrize("key", KEYS)
 def test_every_choice_can_be_made_in_every_job(studies, key):
     job = choices.readings_job(studies[key], "full")
     for choice in job["choices"]:

@@ -31,7 +31,7 @@ def main(words: list[str]) -> None:
     try:
         command.main(own, words[1:])
         sys.stdout.flush()
-    except BrokenPipeError:  # who reads, such as `head`, has enough; Python flushes once more at its end
+    except BrokenPipeError:  # the reader, such as `head`, has enough; Python flushes once more when it exits
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except (ValueError, FileNotFoundError) as fault:
         sys.exit(str(fault))

@@ -72,12 +72,14 @@ def in_world(spec: dict, job: dict, reading: Reading) -> tuple[dict, dict]:
 
 
 def under_metrics(spec: dict, published: pd.DataFrame, reading: Reading, choices: list[dict]) -> tuple[dict, pd.DataFrame]:
-    """A table's description and its published numbers with the metrics that a reading assigns to printed words."""
+    """A table's description and its published numbers with the metrics that a reading assigns to printed words.
+
+    A metric that the table has in another entry already stays once.
+    """
     metric = {choice["metric"]: reading[choice["id"]] for choice in choices if "metric" in choice and choice["id"] in reading}
-    values = {(metric.get(value["metric"], value["metric"]), str(value["statistic"])): value for value in spec["values"]}
-    return spec | {"values": [value | {"metric": name} for (name, _), value in values.items()]}, published.assign(
-        metric=published["metric"].replace(metric)
-    )
+    renamed = [entry | {"metric": metric.get(entry["metric"], entry["metric"])} for entry in spec["values"]]
+    entries = {(entry["metric"], str(entry["statistic"])): entry for entry in renamed}
+    return spec | {"values": [*entries.values()]}, published.assign(metric=published["metric"].replace(metric))
 
 
 def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str) -> tuple[pd.DataFrame, float]:

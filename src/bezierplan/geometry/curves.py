@@ -82,7 +82,8 @@ def piece_matrix(curve: str, points: int) -> np.ndarray:
 def _b_spline_pieces(degree: int, points: int) -> np.ndarray:
     pieces = points - degree
     if degree == 1:  # chords; ways that were driven have hundreds
-        return np.stack([np.eye(points)[:-1], np.eye(points)[1:]], axis=1)
+        ends = np.eye(points)
+        return np.stack([ends[:-1], ends[1:]], axis=1)
     knots = np.concatenate([np.zeros(degree), np.arange(pieces + 1.0), np.full(degree, float(pieces))])
     matrix = np.zeros((pieces, degree + 1, points))
     for piece in range(pieces):

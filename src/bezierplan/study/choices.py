@@ -25,17 +25,16 @@ def printed_tables(study: Study) -> dict[str, Pivot]:
 
 
 def _published(study: Study, table: str) -> list[dict[str, str]]:
-    """A table's published numbers."""
+    """A table's published numbers, as text by column: pandas would slow every start."""
     with Path(study.published_file(table)).open(encoding="utf-8", newline="") as file:
         return list(csv.DictReader(file))
 
 
 def choices(study: Study) -> list[dict[str, Any]]:
     """All choices: settings that assumptions govern, and worlds between which the tables leave the choice."""
-    printed = {method for name, table in printed_tables(study).items() for method in _methods(study, name, table)}
-    compared = {
-        table.reads.get(row["metric"], row["metric"]) for name, table in printed_tables(study).items() for row in _published(study, name)
-    }
+    tables = printed_tables(study)
+    printed = {method for name, table in tables.items() for method in _methods(study, name, table)}
+    compared = {table.reads.get(row["metric"], row["metric"]) for name, table in tables.items() for row in _published(study, name)}
     found = []
     for assumption in study.assumptions:
         governs: dict[str, Any] = {}
@@ -49,7 +48,7 @@ def choices(study: Study) -> list[dict[str, Any]]:
         if governs and values:
             found.append({"id": assumption.id, "detail": assumption.detail, "values": [None, *values]} | governs)
     worlds: dict[str, list] = {}
-    for table in printed_tables(study).values():
+    for table in tables.values():
         for column, value in table.primary.items():
             values = worlds.setdefault(column, [value])
             values += [other for other in one_or_list(table.where.get(column, [])) if other not in values]

@@ -77,12 +77,14 @@ def _follow(points, at, step, circles, pace, end, rules):
 
 @njit(cache=True)
 def comes_near(points, at, begin, end, centres, drift, radii, margin, pace):
-    """Whether the part of a way between two lengths comes nearer to a circle than its radius plus a margin, if circles drift by that much a
-    step while the robot drives at its pace.
+    """Whether a robot that drives the part of a way between two lengths comes nearer to a circle than its radius plus a margin.
+
+    points (n, 2), at (n,): as in `Way`. centres (k, 2): when the robot is at `begin`. drift (k, 2): of the circles, in units per step.
+    radii (k,). pace: of the robot, in units per step. All lengths are in units.
     """
     for k in range(len(centres)):
         reach = radii[k] + margin
-        drifts = 1.0 + math.hypot(drift[k, 0], drift[k, 1]) / pace
+        closing = 1.0 + math.hypot(drift[k, 0], drift[k, 1]) / pace
         i = min(np.searchsorted(at, begin, side="right"), len(at) - 1)
         s, (x, y) = begin, _place(points, at, begin)
         while True:
@@ -99,8 +101,8 @@ def comes_near(points, at, begin, end, centres, drift, radii, margin, pace):
                 dx, dy = dx + share * ex, dy + share * ey
             if dx * dx + dy * dy < reach * reach:
                 return True
-            # The distance shrinks by at most `drifts` per unit of way, so the circle is out of reach until then.
-            clear = following + (math.hypot(last_x, last_y) - reach) / drifts
+            # The distance shrinks by at most `closing` per unit of way, so the circle is out of reach until then.
+            clear = following + (math.hypot(last_x, last_y) - reach) / closing
             if following >= end or clear >= end or i + 1 >= len(at):
                 break
             i = max(i + 1, np.searchsorted(at, clear, side="right"))

@@ -18,8 +18,9 @@ _AHEAD = 20.0
 def refuge(world: MovingCircles, place: np.ndarray, step: int, policy: Policy) -> np.ndarray:
     """The place (2,) where the robot is best at the end of a step: where it stands, unless a circle is about to come there.
 
-    It knows what its policy lets it see. A step in which it meets no circle is better than one in which it does, then one that begins a
-    drive on which the first circle comes nearer to it than `check_margin` later, and then the one that ends farther from all of them.
+    It knows what its policy lets it see. A step in which it meets no circle is better than one in which it does; of two such steps, the
+    better one begins the drive on which it takes longer until a circle comes nearer than `check_margin`; then the one that ends farther
+    from all circles. place (2,): in units. step: the number of the one that begins.
     """
     walls = np.array(world.walls, dtype=float)
     looked = step + (policy.sees == "after")
@@ -33,8 +34,10 @@ def refuge(world: MovingCircles, place: np.ndarray, step: int, policy: Policy) -
 
 @njit(cache=True)
 def _best(place, moves, centres, drift, radii, margin, bounds):
-    """The place (2,) at the end of a step that `refuge` describes. moves (n, 2): per step, the first is to stay. centres: at the beginning
-    of the step. drift: per step.
+    """The place (2,) at the end of the best step, as `refuge` ranks them.
+
+    moves (n, 2): in units per step, of which the first is to stay. centres (k, 2): of the circles at the beginning of the step, with their
+    drift (k, 2) in units per step and radii (k,). bounds (4,): of the field, as in `MovingCircles`. Lengths are in units.
     """
     best, best_depth, best_time, best_apart = place, -np.inf, 0.0, 0.0
     for i in range(len(moves)):
