@@ -3,12 +3,12 @@
 import doctest
 import re
 import shutil
-import subprocess
-import sys
 from pathlib import Path
+from subprocess import CompletedProcess
 
 import pyarrow.parquet as parquet
 import pytest
+import starts
 
 from bezierplan.study import reading
 from bezierplan.study.checked import Fault
@@ -27,10 +27,9 @@ def test_examples_give_what_they_print():
     assert attempted == EXAMPLES.count(">>> ") > 10
 
 
-def snakemake(folder: Path, *words: str) -> subprocess.CompletedProcess:
+def snakemake(folder: Path, *words: str) -> CompletedProcess:
     """Run the workflow in a folder."""
-    command = [sys.executable, "-m", "snakemake", "--cores", "1", *words]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=600)
+    return starts.snakemake(folder, "--cores", "1", *words)
 
 
 @pytest.fixture(scope="module")

@@ -4,12 +4,11 @@ alternative, and a wrong published number.
 
 import math
 import re
-import subprocess
-import sys
 from pathlib import Path
 
 import pandas as pd
 import pytest
+import starts
 
 ROOT = Path(__file__).parents[1]
 
@@ -93,9 +92,9 @@ PUBLISHED = f"problem,method,metric,statistic,n,unit,value\nacross,low,length,me
 
 
 def snakemake(folder, *words):
-    command = [sys.executable, "-m", "snakemake", "-s", str(ROOT / "Snakefile"), "--workflow-profile", "none", "--cores", "2", *words]
-    command += ["--config", f"studies=[{folder / 'bends'}]", "--rerun-triggers", "mtime", "input", "params"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
+    common = ["-s", ROOT / "Snakefile", "--workflow-profile", "none", "--cores", "2"]
+    given = ["--config", f"studies=[{folder / 'bends'}]", "--rerun-triggers", "mtime", "input", "params"]
+    done = starts.snakemake(folder, *common, *words, *given)
     assert done.returncode == 0, done.stderr
     return done.stdout + done.stderr
 

@@ -12,6 +12,7 @@ from collections import Counter
 from pathlib import Path
 
 import pytest
+import starts
 import trees
 import yaml
 
@@ -39,8 +40,7 @@ TRIGGERS = yaml.safe_load((ROOT / "profiles/default/profile.yaml").read_text())[
 
 def snakemake(tree, *words, check=True):
     """Run snakemake in a tree, with the triggers alone of the default profile; returns what it printed."""
-    command = [sys.executable, "-m", "snakemake", "--workflow-profile", "none", "--cores", "2", *words, "--rerun-triggers", *TRIGGERS]
-    done = subprocess.run(command, cwd=tree, capture_output=True, text=True, check=False)
+    done = starts.snakemake(tree, "--workflow-profile", "none", "--cores", "2", *words, "--rerun-triggers", *TRIGGERS)
     if check:
         assert done.returncode == 0, done.stderr
     return done.stdout + done.stderr

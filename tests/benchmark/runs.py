@@ -23,9 +23,13 @@ def _milliseconds(run: Callable[[int], object]) -> float:
 
 
 def _methods(study: definition.Study) -> Iterator[tuple[str, str]]:
-    """Every method with the first experiment that it takes part in; baselines are the same everywhere and left out."""
+    """Every method with the first experiment that it takes part in; baselines are the same everywhere and left out, and so are drives
+    through worlds that move (`simulation.py`).
+    """
     seen = set(study.baselines)
     for experiment, description in study.experiments.items():
+        if study.moves(experiment):
+            continue
         for method in description.methods:
             if method not in seen:
                 seen.add(method)

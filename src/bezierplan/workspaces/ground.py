@@ -17,7 +17,7 @@ from numba import njit
 from bezierplan.workspaces.grid import Grid
 
 # For a map with more cells than this no table of all edges is made: it would grow with the square of their number.
-TABLE_CELLS = 1024
+TABLE_CELLS = 2048
 
 
 class Ground(NamedTuple):
@@ -65,9 +65,11 @@ def _tables(ground):
     cells = ground.occupied.size
     met, energy = np.empty((cells, cells), dtype=np.uint16), np.empty((cells, cells))
     for one in range(cells):
-        for other in range(cells):
-            met[one, other] = obstacles_met(ground, one, other)
-            energy[one, other] = edge_energy(ground, one, other)
+        for other in range(one + 1):  # back and forth an edge meets the same cells, but climbs differently
+            met[one, other] = met[other, one] = obstacles_met(ground, one, other)
+            energy[one, other] = energy[other, one] = edge_energy(ground, one, other)
+            if ground.heights.size:
+                energy[other, one] = edge_energy(ground, other, one)
     return met, energy
 
 

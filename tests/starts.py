@@ -1,0 +1,33 @@
+"""Starts of Snakemake for tests that need many: forks of a process that has imported it, for imports take half of the time of a dry run."""
+
+import multiprocessing
+import os
+import tempfile
+from pathlib import Path
+from subprocess import CompletedProcess
+
+# On Linux and macOS; elsewhere each start imports anew, with the same result.
+_METHOD = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
+_STARTS = multiprocessing.get_context(_METHOD)
+if _METHOD == "forkserver":
+    _STARTS.set_forkserver_preload(["snakemake.cli", "pydantic", "yaml"])
+
+
+def snakemake(folder: Path, *words: str) -> CompletedProcess:
+    """Run `python -m snakemake` with some words in a folder; its exit code and what it printed, as text."""
+    with tempfile.TemporaryDirectory() as kept:
+        printed = [Path(kept, name) for name in ("output", "errors")]
+        start = _STARTS.Process(target=_run, args=(folder, words, printed))
+        start.start()
+        start.join()
+        output, errors = (file.read_text() for file in printed)
+    return CompletedProcess(words, start.exitcode, output, errors)
+
+
+def _run(folder: Path, words: tuple[str, ...], printed: list[Path]) -> None:
+    from snakemake.cli import main
+
+    os.chdir(folder)
+    for number, file in enumerate(printed, start=1):
+        os.dup2(os.open(file, os.O_WRONLY | os.O_CREAT), number)
+    main(list(map(str, words)))
