@@ -16,6 +16,7 @@ from numba import njit
 from bezierplan.geometry.cell_length import is_free_leg
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts.genetic import roulette
+from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -185,9 +186,9 @@ def _next_point(rng, occupied, target, path, count, colony):
                 onlooked = roulette(rng, 1.0 / (1.0 + cost), sources)
             for bee in range(sources):
                 i = onlooked[bee] if turn == 1 else bee
-                other = rng.integers(0, sources - 1)
+                other = integer(rng, 0, sources - 1)
                 other += other >= i
-                k = rng.integers(0, 2)
+                k = integer(rng, 0, 2)
                 point[0], point[1] = x[i]
                 point[k] += (2 * rng.random() - 1) * (x[i, k] - x[other, k])
                 point[k] = min(max(point[k], low[k]), high[k])
@@ -288,21 +289,21 @@ def _mutated(rng, occupied, points, legs, count, child, child_legs, evolution):
     """
     kind = rng.random()
     if count == 2 or kind >= evolution.move_share + evolution.removal_share:
-        changed = rng.integers(1, count)  # the child's new point; the parent's points after it move up by one
+        changed = integer(rng, 1, count)  # the child's new point; the parent's points after it move up by one
         kept = changed
         for k in range(2):
             child[changed, k] = 0.5 * (points[changed - 1, k] + points[changed, k])
         _shift(rng, occupied, child[changed], evolution.spread * evolution.insertion_spread)
         behind = changed + 1
     elif kind < evolution.move_share:
-        changed = rng.integers(1, count - 1)
+        changed = integer(rng, 1, count - 1)
         kept = changed + 1
         for k in range(2):
             child[changed, k] = points[changed, k]
         _shift(rng, occupied, child[changed], evolution.spread)
         behind = changed + 1
     else:
-        changed = rng.integers(1, count - 1)
+        changed = integer(rng, 1, count - 1)
         kept = changed + 1
         behind = changed
     for p in range(changed):
@@ -339,7 +340,7 @@ def _wins(rng, cost, opponents):
     wins = np.zeros(len(cost), dtype=np.int64)
     for i in range(len(cost)):
         for _ in range(opponents):
-            other = rng.integers(0, len(cost) - 1)
+            other = integer(rng, 0, len(cost) - 1)
             other += other >= i
             wins[i] += cost[i] <= cost[other]
     return wins

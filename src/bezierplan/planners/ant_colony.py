@@ -12,6 +12,7 @@ from numba import njit
 
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts.cell_paths import length, put, step_between
+from bezierplan.planners.parts.random_integers import integer
 from bezierplan.workspaces.lattice import Corners, Lattice, lattice, points
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -196,7 +197,7 @@ def _choose(rng, attraction, exploitation):
         return np.argmax(attraction)
     total = attraction.sum()
     if total == 0:
-        return rng.integers(0, len(attraction))
+        return integer(rng, 0, len(attraction))
     draw = rng.random() * total
     for k in range(len(attraction) - 1):
         draw -= attraction[k]

@@ -17,6 +17,7 @@ from numba import njit
 from bezierplan.geometry import curves
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts.genetic import check_pairs, complement_bit, redraw_gene, roulette, swap_tails
+from bezierplan.planners.parts.random_integers import integer
 from bezierplan.workspaces.grid import ON_LINE, Grid
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -262,7 +263,7 @@ def _search(rng, codes, cells, curve, rules, generations):
             _copy(parents[drawn[i]], codes[i])
         for i in range(0, population, 2):
             if rng.random() < rules.crossover_probability and genes > 1:
-                swap_tails(codes[i], codes[i + 1], bits * rng.integers(1, genes), bits)
+                swap_tails(codes[i], codes[i + 1], bits * integer(rng, 1, genes), bits)
         for i in range(population):
             _mutate(rng, codes[i], bits, cells, rules)
         if rules.elitism:
@@ -279,7 +280,7 @@ def _redraw(rng, codes, cells, curve):
             if _measure(codes[i], cells, curve, scratch, False)[1] == 0:
                 break
             for gene in range(codes.shape[1]):
-                codes[i, gene] = cells.free[rng.integers(0, len(cells.free))]
+                codes[i, gene] = cells.free[integer(rng, 0, len(cells.free))]
 
 
 @njit(cache=True)
@@ -291,7 +292,7 @@ def _mutate(rng, genes, bits, cells, rules):
                 _flip(rng, genes, gene, bits, cells.legal)
     elif rng.random() < rules.mutation_probability:
         if rules.mutation == _BIT_FLIP:
-            _flip(rng, genes, rng.integers(0, len(genes)), bits, cells.legal)
+            _flip(rng, genes, integer(rng, 0, len(genes)), bits, cells.legal)
         else:
             redraw_gene(rng, genes, cells.free)
 
@@ -301,7 +302,7 @@ def _flip(rng, genes, gene, bits, legal):
     """Flip a random bit of a gene in place; a bit that leaves the free cells is redrawn."""
     before = genes[gene]
     for _ in range(_FLIP_TRIES):
-        complement_bit(genes, gene * bits + rng.integers(0, bits), bits)
+        complement_bit(genes, gene * bits + integer(rng, 0, bits), bits)
         if legal[genes[gene]]:
             return
         genes[gene] = before

@@ -16,6 +16,7 @@ from numba import njit
 from bezierplan.geometry import curves
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts.genetic import check_pairs, complement_bit, roulette, swap_tails
+from bezierplan.planners.parts.random_integers import integer
 from bezierplan.workspaces.grid import ON_LINE, embed
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -206,7 +207,7 @@ def _search(rng, cells, occupied, places, curve, rules):
             _copy(parents[drawn[i]], cells[i])
         for i in range(0, population, 2):
             if rng.random() < rules.crossover_probability:
-                cut = bits * rng.integers(1, genes) if rules.cut_between_genes else rng.integers(1, bits * genes)
+                cut = bits * integer(rng, 1, genes) if rules.cut_between_genes else integer(rng, 1, bits * genes)
                 swap_tails(cells[i, 1:-1], cells[i + 1, 1:-1], cut, bits)
         for i in range(population):
             _mutate(rng, cells[i, 1:-1], bits, rules.mutation_probability, rules.mutation)
@@ -236,11 +237,11 @@ def _mutate(rng, genes, bits, probability, mutation):
     """Complement random bits of a chromosome in place (song2016, Section III-E describes `one_bit`)."""
     if mutation == _ONE_BIT:
         if rng.random() < probability:
-            complement_bit(genes, rng.integers(0, bits * len(genes)), bits)
+            complement_bit(genes, integer(rng, 0, bits * len(genes)), bits)
     elif mutation == _EACH_GENE:
         for gene in range(len(genes)):
             if rng.random() < probability:
-                complement_bit(genes, gene * bits + rng.integers(0, bits), bits)
+                complement_bit(genes, gene * bits + integer(rng, 0, bits), bits)
     else:
         for position in range(bits * len(genes)):
             if rng.random() < probability:

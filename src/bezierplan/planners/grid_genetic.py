@@ -15,6 +15,7 @@ from numba import njit
 
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts.genetic import roulette
+from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -196,9 +197,9 @@ def _first_walks(rng, walker, start, target, rules, walk, last_visit):
         walk[0] = start
         count = 1
         if attempt > 0:
-            way = rng.integers(0, len(walker.walled))
+            way = integer(rng, 0, len(walker.walled))
             while walker.walled[way]:
-                way = rng.integers(0, len(walker.walled))
+                way = integer(rng, 0, len(walker.walled))
             count = _extend(rng, walker, walk, count, way)
         if count > 0:
             count = _extend(rng, walker, walk, count, target)
@@ -233,7 +234,7 @@ def _extend(rng, walker, walk, count, goal):
                     nearest = distance
                     nearer = k
             if nearer < 0:
-                detour = rng.integers(walker.least_detour, walker.most_detour + 1)
+                detour = integer(rng, walker.least_detour, walker.most_detour + 1)
             else:
                 step = nearer
         if detour > 0:
@@ -259,7 +260,7 @@ def _random_step(rng, walled, columns, cell):
         free += not walled[cell + _ROW_STEPS[k] * columns + _COLUMN_STEPS[k]]
     if free == 0:
         return -1
-    left = rng.integers(0, free)
+    left = integer(rng, 0, free)
     step = -1
     while left >= 0:
         step += 1
@@ -299,7 +300,7 @@ def _join(rng, head, tail, place, common, walk):
             shared += 1
     count = 0
     if shared > 0:
-        cut = common[rng.integers(0, shared)]
+        cut = common[integer(rng, 0, shared)]
         count = _copy(head, 0, place[tail[cut]], walk, 0)
         count = _copy(tail, cut, len(tail), walk, count)
     for k in range(1, len(head) - 1):
@@ -310,8 +311,8 @@ def _join(rng, head, tail, place, common, walk):
 @njit(cache=True)
 def _walk_anew(rng, walker, path, count, last_visit):
     """Replace the section between two random cells of a path by a new walk, in place; a failed walk changes nothing."""
-    one = rng.integers(0, count)
-    other = rng.integers(0, count - 1)
+    one = integer(rng, 0, count)
+    other = integer(rng, 0, count - 1)
     other += other >= one
     first, last = min(one, other), max(one, other)
     # The new walk is written after the path, followed by the path's tail; then both are moved forward.

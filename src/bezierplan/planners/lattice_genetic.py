@@ -12,6 +12,7 @@ from numba import njit
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import check_pairs, redraw_gene, roulette, swap_tails
+from bezierplan.planners.parts.random_integers import integer
 from bezierplan.workspaces.lattice import Corners, Lattice, lattice, points
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -144,7 +145,7 @@ def _search(
             cell_paths.put(parents[drawn[i]], cells[i], 0)
         for i in range(0, population, 2):
             if genes > 1 and rng.random() < crossover_probability:
-                swap_tails(cells[i, 1:-1], cells[i + 1, 1:-1], bits * rng.integers(1, genes), bits)
+                swap_tails(cells[i, 1:-1], cells[i + 1, 1:-1], bits * integer(rng, 1, genes), bits)
         for i in range(population):
             if genes and rng.random() < mutation_probability:
                 redraw_gene(rng, cells[i, 1:-1], free)
@@ -185,7 +186,7 @@ def _fill(rng, lattice, choices, counts, paths, sizes):
     for i in range(len(paths)):
         for _ in range(_MOST_DRAWS):
             for row in range(len(counts)):
-                cells[row + 1] = choices[row, rng.integers(0, counts[row])]
+                cells[row + 1] = choices[row, integer(rng, 0, counts[row])]
             sizes[i] = cell_paths.join(lattice, cells, paths[i], marks)
             if sizes[i]:
                 break

@@ -21,6 +21,7 @@ from bezierplan.planners.parts import gene_lists
 from bezierplan.planners.parts.gene_curves import MOST_POINTS, FitnessLength, validate
 from bezierplan.planners.parts.gene_lattice import Field, field_of, genes_at, polygon
 from bezierplan.planners.parts.genetic import check_pairs
+from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.prm import roadmap
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -315,7 +316,7 @@ def _add_offspring(rng, pool, filled, wheel, eta, child, memory, field, rules):
     for _ in range(rules.pairs):
         one, other = _parents(rng, wheel)
         crossed = rng.random() < rules.crossover_probability
-        cut = rng.integers(1, len(field.points)) if crossed else 0
+        cut = integer(rng, 1, len(field.points)) if crossed else 0
         for head, tail in ((one, other), (other, one)):
             for mutated in range(0 if rules.unmutated else 1, 2):
                 count = gene_lists.cross(pool, head, tail, cut, child) if crossed else gene_lists.cross(pool, head, head, 0, child)
@@ -383,7 +384,7 @@ def _mutate(rng, child, count, field, rules):
         if rng.random() < rules.mutation_rate:
             count = _change_point(rng, child, count, field)
     elif rules.mutation == _ONE_FLIP or rng.random() < rules.mutation_rate:
-        gene = rng.integers(0, genes)
+        gene = integer(rng, 0, genes)
         if field.settable[gene]:
             count = gene_lists.flip(child, count, gene)
     return count
@@ -394,19 +395,19 @@ def _change_point(rng, child, count, field):
     """Remove a control point (unless it is the only one), add one, or shift one, each with equal probability; returns how many there
     are.
     """
-    change = rng.integers(0, 3)
+    change = integer(rng, 0, 3)
     if change == 1:
-        gene = field.choices[rng.integers(0, len(field.choices))]
+        gene = field.choices[integer(rng, 0, len(field.choices))]
         return gene_lists.flip(child, count, gene) if gene_lists.position(child, count, gene) == count else count
     if count == 0:
         return count
-    gene = child[rng.integers(0, count)]
+    gene = child[integer(rng, 0, count)]
     if change == 0:
         return gene_lists.flip(child, count, gene) if count > 1 else count
     side, lines, places = field.places
     reach = int(_SHIFT_REACH * side)
-    line = min(max(gene // side + rng.integers(-reach, reach + 1), 0), lines - 1)
-    place = min(max(gene % side + rng.integers(-reach, reach + 1), 0), places - 1)
+    line = min(max(gene // side + integer(rng, -reach, reach + 1), 0), lines - 1)
+    place = min(max(gene % side + integer(rng, -reach, reach + 1), 0), places - 1)
     shifted = line * side + place
     if field.settable[shifted] and gene_lists.position(child, count, shifted) == count:
         count = gene_lists.flip(child, count, gene)
@@ -417,10 +418,10 @@ def _change_point(rng, child, count, field):
 @njit(cache=True)
 def _random_chromosome(rng, child, field, rules):
     """Write a chromosome of 1 to `first_points` random genes; returns how many."""
-    wanted = min(rng.integers(1, rules.first_points + 1), len(field.choices))
+    wanted = min(integer(rng, 1, rules.first_points + 1), len(field.choices))
     count = 0
     while count < wanted:
-        gene = field.choices[rng.integers(0, len(field.choices))]
+        gene = field.choices[integer(rng, 0, len(field.choices))]
         if gene_lists.position(child, count, gene) == count:
             count = gene_lists.flip(child, count, gene)
     return count

@@ -12,8 +12,9 @@ import numpy as np
 from numba import njit
 
 from bezierplan.planners import Plan, Range
-from bezierplan.planners.parts.genetic import below, check_pairs, roulette
+from bezierplan.planners.parts.genetic import check_pairs, roulette
 from bezierplan.planners.parts.node_mutation import Mutation, mutate
+from bezierplan.planners.parts.random_integers import below
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.ground import centres, edge_energy, ground_of, least_energy, obstacles_met, path_met
 from bezierplan.workspaces.problem import Path, Problem

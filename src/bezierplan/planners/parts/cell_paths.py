@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit
 
 from bezierplan.planners.parts.genetic import roulette
+from bezierplan.planners.parts.random_integers import integer
 
 ONE_CELL, RECONNECT, WALK = range(3)
 
@@ -108,7 +109,7 @@ def _mutant(rng, lattice, path, rules, child, part, marks):
     """Make a mutant of a path. Returns its size, or 0 if nothing changed."""
     if rules.mutation == ONE_CELL:
         return change_cell(rng, lattice, path, child)
-    k, m = rng.integers(0, len(path)), rng.integers(0, len(path))
+    k, m = integer(rng, 0, len(path)), integer(rng, 0, len(path))
     first, last = min(k, m), max(k, m)
     if last - first < 2:
         return 0
@@ -210,7 +211,7 @@ def common_cell(rng, one, other, marks):
         common += marks[one[k]] > 0
     k = m = 0
     if common:
-        wanted = rng.integers(0, common)
+        wanted = integer(rng, 0, common)
         while wanted >= 0:
             k += 1
             wanted -= marks[one[k]] > 0
@@ -245,12 +246,12 @@ def change_cell(rng, lattice, path, child):
     """
     if len(path) < 4:
         return 0
-    k = rng.integers(1, len(path) - 1)
+    k = integer(rng, 1, len(path) - 1)
     chosen, candidates = -1, 0
     for cell in lattice.neighbours[path[k - 1]]:
         if cell >= 0 and cell != path[k] and step_between(lattice, cell, path[k + 1]) >= 0:
             candidates += 1
-            if rng.integers(0, candidates) == 0:
+            if integer(rng, 0, candidates) == 0:
                 chosen = cell
     if candidates:
         put(path, child, 0)
@@ -267,8 +268,8 @@ def reconnect(rng, lattice, first, last, part, marks):
     reach.
     """
     rows, columns = (lattice.row[first], lattice.row[last]), (lattice.column[first], lattice.column[last])
-    row = rng.integers(min(rows), max(rows) + 1)
-    cell = row * (lattice.column[-1] + 1) + rng.integers(min(columns), max(columns) + 1)
+    row = integer(rng, min(rows), max(rows) + 1)
+    cell = row * (lattice.column[-1] + 1) + integer(rng, min(columns), max(columns) + 1)
     if lattice.occupied[cell]:
         return 0
     return join(lattice, np.array([first, cell, last]), part, marks)
@@ -307,14 +308,14 @@ def forage(rng, lattice, cell, target, tries, visited):
         return -1
     near = distance_square(lattice, cell, target)
     for _ in range(tries):
-        wanted = rng.integers(0, present)
+        wanted = integer(rng, 0, present)
         for other in neighbours:
             wanted -= other >= 0
             if wanted < 0:
                 break
         if not visited[other] and distance_square(lattice, other, target) < near:
             return other
-    wanted = rng.integers(0, unvisited)
+    wanted = integer(rng, 0, unvisited)
     for other in neighbours:
         wanted -= other >= 0 and not visited[other]
         if wanted < 0:

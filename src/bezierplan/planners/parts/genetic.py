@@ -6,6 +6,8 @@ A chromosome (genes,) is one bit string in the order of its genes. Functions tha
 import numpy as np
 from numba import njit
 
+from bezierplan.planners.parts.random_integers import integer
+
 
 def check_pairs(population: int) -> None:
     """Raise ValueError, naming the setting and what is expected, for a population that cannot be crossed in pairs."""
@@ -45,10 +47,4 @@ def complement_bit(chromosome: np.ndarray, position: int, bits: int) -> None:
 @njit(cache=True)
 def redraw_gene(rng: np.random.Generator, chromosome: np.ndarray, alleles: np.ndarray) -> None:
     """Replace, in place, one random gene of a chromosome by a random allele, which may equal the old gene."""
-    chromosome[rng.integers(0, len(chromosome))] = alleles[rng.integers(0, len(alleles))]
-
-
-@njit(cache=True)
-def below(rng: np.random.Generator, count: int) -> int:
-    """A uniform integer below `count`, many times faster than `rng.integers`."""
-    return int(rng.random() * count)
+    chromosome[integer(rng, 0, len(chromosome))] = alleles[integer(rng, 0, len(alleles))]

@@ -8,7 +8,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numba import njit
 
-from bezierplan.planners.parts.genetic import below
+from bezierplan.planners.parts.random_integers import below
 from bezierplan.workspaces.ground import Ground, edge_energy, free_neighbours, obstacles_met, path_met
 
 Mutation = Literal["random", "random_repair", "ref12", "ref21", "proposed"]

@@ -1,0 +1,18 @@
+"""Random integers in kernels, for `rng.integers` in compiled code makes an array for each number."""
+
+import numpy as np
+from numba import njit
+from numba.np.random.random_methods import buffered_bounded_lemire_uint32
+
+
+@njit(cache=True)
+def integer(rng: np.random.Generator, low: int, high: int) -> int:
+    """The number that `rng.integers(low, high)` gives, many times faster; high - low must lie between 1 and 2**32 - 1."""
+    # numpy draws nothing if there is no choice.
+    return low + np.int64(buffered_bounded_lemire_uint32(rng.bit_generator, high - low - 1)) if high - low > 1 else low
+
+
+@njit(cache=True)
+def below(rng: np.random.Generator, count: int) -> int:
+    """A uniform integer below `count` from a single random number of `rng.random`."""
+    return int(rng.random() * count)
