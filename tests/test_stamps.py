@@ -3,11 +3,14 @@
 import contextlib
 import os
 import shutil
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
+from bezierplan.study import checks as study_checks
 from bezierplan.study import reading, stamps
 from bezierplan.study.checked import Fault
 
@@ -23,8 +26,8 @@ def study(tmp_path, monkeypatch):
 @pytest.fixture
 def checks(monkeypatch):
     """Keys of the studies that were checked."""
-    checked, check = [], reading.check
-    monkeypatch.setattr(reading, "check", lambda study: (checked.append(study.key), check(study)))
+    checked, check = [], study_checks.check
+    monkeypatch.setattr(study_checks, "check", lambda study: (checked.append(study.key), check(study)))
     return checked
 
 
@@ -32,6 +35,23 @@ def test_equal_content_is_checked_once(study, checks):
     reading.load([study])
     reading.load([study])
     assert checks == ["song2016"]
+
+
+# What jobs need and a start does not: to import it would take as long as all else that a start does.
+HEAVY = {"matplotlib", "numba", "pandas", "pyarrow", "scipy", "seaborn", "shapely"}
+START = """
+import sys
+from bezierplan.study import page, reading, targets
+studies = reading.load(reading.read_config({}))
+assert targets.files_of_scale(studies, "full")
+print(*sys.modules)
+"""
+
+
+def test_a_start_imports_nothing_that_only_jobs_need():
+    reading.load(reading.read_config({}))
+    done = subprocess.run([sys.executable, "-c", START], cwd=SONG2016.parents[2], capture_output=True, text=True, check=True)
+    assert not HEAVY & {*done.stdout.split()}
 
 
 @pytest.mark.parametrize("name", ["claims.yaml", "workspaces/figure2.txt", "published/table1.csv"])

@@ -15,7 +15,6 @@ import math
 from functools import cache
 
 import numpy as np
-from numba import njit
 
 from bezierplan.workspaces.problem import Path
 
@@ -26,9 +25,6 @@ CURVES = (*B_SPLINES, "spline", "ferguson", "cubic_chain")
 # Below this share of the curve's highest speed a point counts as standing still, as happens with repeated control points; curvature is
 # undefined there.
 STANDSTILL = 1e-3
-
-_NODES_8, _WEIGHTS_8 = np.polynomial.legendre.leggauss(8)
-_NODES_16, _WEIGHTS_16 = np.polynomial.legendre.leggauss(16)
 
 
 def least_points(curve: str) -> int:
@@ -169,61 +165,6 @@ def point_at(path: Path, at: float) -> np.ndarray:
     return bernstein(pieces.shape[1] - 1, np.array([at - piece]))[0] @ pieces[piece]
 
 
-@njit(cache=True)
-def _speed(differences: np.ndarray, t: float) -> float:
-    """|B'(t)| of a piece from its control points' differences (degree, 2), by Horner's rule in Bernstein form."""
-    n = len(differences) - 1
-    s = 1.0 - t
-    x, y = differences[0] * s if n else differences[0]
-    factor = 1.0
-    binomial = 1.0
-    for i in range(1, n):
-        factor *= t
-        binomial *= (n - i + 1) / i
-        x = (x + factor * binomial * differences[i, 0]) * s
-        y = (y + factor * binomial * differences[i, 1]) * s
-    if n:
-        factor *= t
-        x += factor * differences[n, 0]
-        y += factor * differences[n, 1]
-    return (n + 1) * math.hypot(x, y)
-
-
-@njit(cache=True)
-def _integral(differences: np.ndarray, low: float, high: float, nodes: np.ndarray, weights: np.ndarray) -> float:
-    total = 0.0
-    for node, weight in zip(nodes, weights):
-        total += weight * _speed(differences, 0.5 * ((high - low) * node + high + low))
-    return 0.5 * (high - low) * total
-
-
-@njit(cache=True)
-def _piece_length(piece: np.ndarray) -> float:
-    """Arc length of one Bezier piece (degree + 1, 2) to a relative 1e-10, by adaptive Gauss-Legendre quadrature of its speed.
-
-    Orders 8 and 16 are compared on each interval, which is halved if they differ; a cusp costs only about twenty halvings.
-    """
-    if len(piece) == 2:
-        return math.hypot(piece[1, 0] - piece[0, 0], piece[1, 1] - piece[0, 1])
-    differences = piece[1:] - piece[:-1]
-    scale = 0.0
-    for i in range(len(differences)):
-        scale += math.hypot(differences[i, 0], differences[i, 1])
-    total = 0.0
-    stack = [(0.0, 1.0)]
-    while stack:
-        low, high = stack.pop()
-        coarse = _integral(differences, low, high, _NODES_8, _WEIGHTS_8)
-        fine = _integral(differences, low, high, _NODES_16, _WEIGHTS_16)
-        if abs(coarse - fine) <= 1e-11 * scale * max(high - low, 1e-4) or high - low < 1e-12:
-            total += fine
-        else:
-            middle = 0.5 * (low + high)
-            stack.append((middle, high))
-            stack.append((low, middle))
-    return total
-
-
 def length(path: Path) -> float:
     """Exact arc length of a path in its unit (relative error below 1e-10).
 
@@ -236,7 +177,9 @@ def length(path: Path) -> float:
     >>> math.isclose(arc, math.sqrt(5) + math.asinh(2) / 2)
     True
     """
-    return math.fsum(_piece_length(piece) for piece in bezier_pieces(path))
+    from bezierplan.geometry.arc_length import piece_length
+
+    return math.fsum(piece_length(piece) for piece in bezier_pieces(path))
 
 
 def curvature(path: Path, samples: int) -> tuple[np.ndarray, np.ndarray]:

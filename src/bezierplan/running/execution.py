@@ -28,26 +28,13 @@ from bezierplan.geometry import checker, curves
 from bezierplan.geometry.region import Region, region
 from bezierplan.planners import PLACE, Plan, planner_module, planner_settings
 from bezierplan.running import answer, watchdog
+from bezierplan.running.columns import RUN_COLUMNS
 from bezierplan.workspaces import seeds
 from bezierplan.workspaces.problem import Problem
 
 logger = logging.getLogger(__name__)
 
 T = TypeVar("T")
-
-RUN_COLUMNS = (
-    *("id", "study", "experiment", "condition", "problem", "workspace", "method", "repeat", "planner"),
-    *("objective", "length", "claimed_feasible", "feasible", "collision_at", "collision_depth", "clearance", "clearance_error"),
-    *("evaluations", "generations", "stop", "history", "path_curve", "path_points"),
-)
-"""Columns of every runs table; the settings and a planner's extra columns stand between `planner` and `objective`, and at the end.
-
-objective: the planner's own final value. length: exact arc length of the path, in units (not a number without a path).
-claimed_feasible: the planner's own test. feasible, collision_at, collision_depth, clearance, clearance_error: the certified check
-(`exact.checker.Check`). generations: done after the first one. history: best objective after each generation.
-path_curve, path_points: the path, its control points flat as x0, y0, x1, y1, ...; empty without a path.
-"""
-
 
 JOINED = ("straight_line", "bound", "least_length", "bound_path", "octile_bound", "cpu_s", "wall_s")
 """Columns that are joined to a runs table when it is read: of `problems.bounds_of`, and the times."""

@@ -2,7 +2,7 @@
 
 A job is as in `execution`, with one more key: policy, the values of a `simulation.policy.Policy` by name.
 
-Columns of the runs table: those of `execution.RUN_COLUMNS`, of which path_curve and path_points hold the way driven; feasible, whether the
+Columns of the runs table: those of `columns.RUN_COLUMNS`, of which path_curve and path_points hold the way driven; feasible, whether the
 robot arrived without a collision (`simulation.motion_check`) by a motion from start to target; collision_at, when it first collided, in
 steps; claimed_feasible, whether it arrived; objective, the time of arrival times the pace, in units; history, the way driven until each
 plan plus the length of that plan. And:
@@ -38,12 +38,6 @@ from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.robot import Ride, drive
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import World
-
-OUTCOMES = (
-    *("arrival", "steps", "travelled", "first_plan", "last_plan", "replans", "waits"),
-    *("collision_steps", "hit_waiting", "known_at", "avoidable", "clearance_least"),
-)
-"""Columns of a runs table that only drives have."""
 
 
 def run(job: dict, condition: Condition, repeat: int, problem: Problem, world: World) -> Ride:

@@ -45,12 +45,6 @@ def build(description: dict, problem: dict, name: str, folder: Path) -> World:
     return _moving_circles(description, problem, name)
 
 
-def sources(description: dict, folder: Path) -> list[Path]:
-    """The files from which a world is read."""
-    named = [description.get("file"), *(change["file"] for change in description.get("changes", []))]
-    return [folder / file for file in named if file]
-
-
 # Circles
 
 

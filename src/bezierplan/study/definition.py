@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.planners import planner_module, planner_settings
-from bezierplan.running import worlds
 from bezierplan.study.artefacts import Figure, Pivot, Table
 from bezierplan.study.claims import Assumption, Claim
 from bezierplan.study.experiments import Experiment, Method, Policy, Problem, Worth
@@ -112,9 +111,8 @@ class Study:
 
     def maps(self, workspaces: Iterable[str]) -> list[str]:
         """Map files of workspaces relative to the working folder, each once."""
-        described = {name: self.workspaces[name].plain() for name in workspaces}
-        named = {name: (worlds if self.workspaces[name].moves else files).sources(each, self.folder) for name, each in described.items()}
-        return sorted({relative(file) for each in named.values() for file in each})
+        named = (files.sources(self.workspaces[name].plain(), self.folder) for name in workspaces)
+        return sorted({relative(file) for each in named for file in each})
 
     def compared(self) -> dict[str, Pivot]:
         """The tables of runs, which are compared with published numbers; for the others see `listing_job`."""

@@ -6,8 +6,7 @@ from typing import Any
 from bezierplan.analysis.claims.kinds import Check
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.planners import PLACE
-from bezierplan.running.execution import RUN_COLUMNS, conditions, settings_in
-from bezierplan.running.rides import OUTCOMES
+from bezierplan.running.columns import OUTCOMES, RUN_COLUMNS
 from bezierplan.study.checked import Fault, closest
 from bezierplan.study.claims import Claim
 from bezierplan.study.definition import Study
@@ -33,6 +32,8 @@ class Design:
         self.columns = cache(self._columns)
 
     def _rows(self, experiment: str) -> list[Row]:
+        from bezierplan.running.execution import conditions, settings_in
+
         content, rows = self.study.experiments[experiment], []
         for method in self.study.methods_of(experiment):
             described = job(self.study, experiment, method, "full", 0)

@@ -13,7 +13,6 @@ from bezierplan.running.digest import PACKAGE
 from bezierplan.study import checked, stamps
 from bezierplan.study.artefacts import ArtefactsFile, ConfigFile
 from bezierplan.study.checked import Fault, closest
-from bezierplan.study.checks import check
 from bezierplan.study.claims import AssumptionsFile, ClaimsFile
 from bezierplan.study.definition import Study, relative
 from bezierplan.study.experiments import ExperimentsFile
@@ -62,6 +61,9 @@ def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
             if study.key in studies:
                 raise Fault(f"{relative(folder)}: a study of the name {study.key} is there already; rename the folder")
             if not before:
+                # What checks need takes long to import, and most starts find nothing that has changed.
+                from bezierplan.study.checks import check
+
                 check(study)
                 stamps.remember(stamp, study)
         except Fault as fault:

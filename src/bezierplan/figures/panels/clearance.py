@@ -9,7 +9,6 @@ from pydantic import Field
 
 from bezierplan.figures import style
 from bezierplan.figures.panels import RunsPanel
-from bezierplan.running import rides
 from bezierplan.study.model import Whole
 
 if TYPE_CHECKING:
@@ -33,6 +32,8 @@ def data(results: Results, *, repeat: int) -> pd.DataFrame:
     negative inside a circle), arrived. Raises ValueError for runs of several problems.
     """
     import pandas as pd
+
+    from bezierplan.running import rides
 
     if results.runs["problem"].nunique() != 1:
         raise ValueError(

@@ -20,7 +20,6 @@ from bezierplan.geometry import curves
 from bezierplan.study.checked import closest
 from bezierplan.study.model import Column, Experiment, Flag, Line, Metric, Model, Number, wrong
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.ground import ground_of
 from bezierplan.workspaces.problem import Path, Problem, Workspace
 
 if TYPE_CHECKING:
@@ -258,6 +257,8 @@ def _changed_cells(grid: Grid, before: Grid) -> dict[str, np.ndarray]:
 def _cell_optimum(problem: Problem, run: pd.Series) -> np.ndarray:
     """Points (n, 2) of the shortest path from cell centre to cell centre, under the rules of a run of meledje's planner."""
     from scipy.sparse import csgraph
+
+    from bezierplan.workspaces.ground import ground_of
 
     grid = problem.workspace
     ground = ground_of(grid, float(run.get("friction", 1.0)), run.get("corners") == "closed")

@@ -10,19 +10,17 @@ from pydantic import Field
 from bezierplan.figures import style
 from bezierplan.figures.panels import PICK, Pick, RunsPanel
 from bezierplan.figures.panels import workspace as workspaces
-from bezierplan.running import rides
-from bezierplan.running.simulation.motion_check import Verdict, between
-from bezierplan.running.simulation.robot import Ride
-from bezierplan.running.simulation.ways import polyline
 from bezierplan.study.model import is_number, value
-from bezierplan.workspaces.problem import Problem
-from bezierplan.workspaces.worlds import MovingCircles, World
 
 if TYPE_CHECKING:
     import pandas as pd
     from matplotlib.axes import Axes
 
     from bezierplan.analysis.results import Results
+    from bezierplan.running.simulation.motion_check import Verdict
+    from bezierplan.running.simulation.robot import Ride
+    from bezierplan.workspaces.problem import Problem
+    from bezierplan.workspaces.worlds import World
 
 # The arrow of a circle shows where it will be after this many steps; a longer way is cut off at this share of the field's width.
 _ARROW_STEPS = 20
@@ -52,6 +50,7 @@ def data(results: Results, *, pick: dict, at: float) -> pd.DataFrame:
     or methods, and if no run is found.
     """
     from bezierplan.analysis.results import pick as picked
+    from bezierplan.running import rides
 
     for column in ("problem", "method"):
         if results.runs[column].nunique() != 1:
@@ -68,6 +67,10 @@ def data(results: Results, *, pick: dict, at: float) -> pd.DataFrame:
 def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: float) -> pd.DataFrame:
     """Rows of a moment, a share of the time of a drive."""
     import pandas as pd
+
+    from bezierplan.running.simulation.motion_check import between
+    from bezierplan.running.simulation.ways import polyline
+    from bezierplan.workspaces.worlds import MovingCircles
 
     time = at * ride.motion.times[-1]
     if isinstance(world, MovingCircles):

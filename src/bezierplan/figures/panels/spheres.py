@@ -15,7 +15,6 @@ from bezierplan.figures.panels import Panel
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.geometry import curves
 from bezierplan.geometry import spheres as exact
-from bezierplan.planners import chaotic_pso
 from bezierplan.study.model import Count, Name, Setting
 from bezierplan.study.model import Workspace as Described
 from bezierplan.workspaces.kinds import of_length
@@ -89,6 +88,8 @@ def data(
     settings: all of the planner. name: that from which the runs take their seeds. Raises ValueError for a feasible path below the bound.
     """
     import pandas as pd
+
+    from bezierplan.planners import chaotic_pso
 
     task = problem(workspace, start, target)
     bound = exact.least_length(task)

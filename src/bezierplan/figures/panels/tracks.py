@@ -13,7 +13,6 @@ from bezierplan.figures.panels import RunsPanel, landscape
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.figures.panels.paths import steps
 from bezierplan.planners import planner_module
-from bezierplan.running import execution
 from bezierplan.study.model import Function, Metric, Whole, value
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -90,6 +89,7 @@ def _commonest(groups: pd.Series) -> list[float]:
 def _tracked(run: pd.Series, job: dict, problem: Problem) -> list[Path]:
     """The best path after each iteration of a run, reproduced from its job."""
     from bezierplan.analysis.results import path_of
+    from bezierplan.running import execution
 
     condition = next(each for each in execution.conditions(list(job["problems"]), job["vary"]) if each.name == run["condition"])
     rng = execution.generator(job, condition, int(run["repeat"]))

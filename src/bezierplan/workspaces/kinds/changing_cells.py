@@ -1,5 +1,6 @@
 """A map whose cells change."""
 
+from pathlib import Path
 from typing import ClassVar
 
 from pydantic import Field, model_validator
@@ -32,3 +33,8 @@ class Options(World):
     file: File = Field(description="a map file in the study's folder")
     cell: Positive = Field(description="the side of a cell, a number above 0")
     changes: list[Change] = Field(description="a list of {file, after} or {file, at}, in order of time", min_length=1)
+
+
+def sources(description: dict, folder: Path) -> list[Path]:
+    """The map at the beginning, and those of the changes."""
+    return [folder / file for file in (description["file"], *(change["file"] for change in description["changes"]))]
