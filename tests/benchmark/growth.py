@@ -20,6 +20,7 @@ import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pyarrow.parquet as parquet
+from geometry import random_grid
 from limits import random_cells
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
@@ -199,7 +200,7 @@ def _obstacles() -> Iterator[Series]:
         blocked = {side**2: region(_room(side, draw)) for side in sides}
         yield Series("obstacles", f"run of chaotic_pso, {name}", [*blocked], partial(_run_across, draw))
         yield Series("obstacles", f"check, {name}", [*blocked], lambda n, blocked=blocked: _check(math.isqrt(n), blocked[n]))
-    reasons = {"circles": "tangents join pairs of circles", "polygons": "corners that see each other are pairs"}
+    reasons = {"circles": "tangents join pairs of circles", "polygons": "lines of sight join pairs of corners"}
     for name, draw in rooms:
         sizes = [side**2 for side in sides[:6]]
         yield Series("obstacles", f"exact bound, {name}", sizes, lambda n, draw=draw: _bound(_across(n, draw)), reasons[name])
@@ -239,12 +240,12 @@ def _squares(bounds: tuple, centres: np.ndarray, radii: np.ndarray) -> Polygons:
 
 
 # ---------------------------------------------------------------------------------------------------------------------
-# Cells: a fifth of them occupied
+# Cells of a square grid
 
 
 def _cells() -> Iterator[Series]:
-    yield Series("cells", "exact bound, search", _squared(128, 512), lambda n: _bound(_diagonal(n)))
-    reason = "corners that see each other are pairs; grids with more than 5,000 corners are searched without a graph"
+    yield Series("cells", "exact bound, search", _squared(128, 640), _bounds)
+    reason = "a graph of pairs of corners; above 5,000 corners there is none"
     yield Series("cells", "exact bound, graph", _squared(12, 60), lambda n: _bound(_diagonal(n)), reason)
     yield Series("cells", "check", _squared(32, 512), _check_in_row)
     reason = "edges join pairs of cells; above 1,024 cells there is no table"
@@ -264,23 +265,33 @@ def _cells() -> Iterator[Series]:
         yield Series("cells", name, _squared(16, last), lambda n, own=own, method=method: _run_on_cells(own, method, n))
 
 
+def _bounds(cells: int) -> Work:
+    """The exact bounds on several grids, for one may need a search of more of its corners than another."""
+    made = [_from_corner(random_cells(math.isqrt(cells), 1, seed)) for seed in range(4)]
+    return lambda: [shortest_paths.shortest_path(problem) for problem in made]
+
+
 def _squared(first: int, last: int) -> list[int]:
     return [side**2 for side in geometric(first, last)]
 
 
 def _run_on_cells(study: Study, method: str, cells: int) -> Work:
-    """A run in which a path may be as many times longer as a side of the grid is."""
+    """A run on a grid with always the same number of blocks, in which a path may be as many times longer as a side of the grid is."""
     settings = study.resolved(method)
     grow = math.isqrt(cells) / 16
     settings |= {name: int(grow * settings[name]) for name in ("longest_join", "longest_path") if name in settings}
-    return _run(study.planner(method), _diagonal(cells), settings)
+    return _run(study.planner(method), _from_corner(random_grid(math.isqrt(cells), np.random.default_rng(0))), settings)
 
 
 @cache
 def _diagonal(cells: int) -> Problem:
-    """From corner to corner of a grid."""
-    side = math.isqrt(cells)
-    return Problem("", random_cells(side, 1), (0.5, 0.5), (side - 0.5, side - 0.5))
+    """From corner to corner of a grid with a fifth of its cells occupied, one by one: as many corners as there can be."""
+    return _from_corner(random_cells(math.isqrt(cells), 1))
+
+
+def _from_corner(grid: Grid) -> Problem:
+    side = len(grid.occupied)
+    return Problem("", grid, (0.5, 0.5), (side - 0.5, side - 0.5))
 
 
 def _check_in_row(cells: int) -> Work:
