@@ -7,6 +7,7 @@ grows with; at most linear is a slope of at most 1. It is fitted to the upper si
 import contextlib
 import itertools
 import math
+import os
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
@@ -59,7 +60,11 @@ Work = Callable[[], object]
 
 
 class Series(NamedTuple):
-    """What to measure. kind: what there is more of. prepare: makes the work of a size. reason: why its cost may grow faster."""
+    """What to measure.
+
+    kind: what there is more of, a key of `AXES`. prepare: makes the work of a size, which is not measured. reason: why the cost may grow
+    faster than the size.
+    """
 
     kind: str
     name: str
@@ -244,7 +249,7 @@ def _squares(bounds: tuple, centres: np.ndarray, radii: np.ndarray) -> Polygons:
 
 
 def _cells() -> Iterator[Series]:
-    yield Series("cells", "exact bound, search", _squared(128, 640), _bounds)
+    yield Series("cells", "exact bound, search", _squared(128, 640), _bounds, "corners wait in a heap, n log n")
     reason = "a graph of pairs of corners; above 5,000 corners there is none"
     yield Series("cells", "exact bound, graph", _squared(12, 60), lambda n: _bound(_diagonal(n)), reason)
     yield Series("cells", "check", _squared(32, 512), _check_in_row)
@@ -262,7 +267,7 @@ def _cells() -> Iterator[Series]:
     ):
         own = _study(study)
         name = f"run of {own.planner(method)}"
-        yield Series("cells", name, _squared(16, last), lambda n, own=own, method=method: _run_on_cells(own, method, n))
+        yield Series("planners", name, _squared(16, last), lambda n, own=own, method=method: _run_on_cells(own, method, n))
 
 
 def _bounds(cells: int) -> Work:
@@ -356,7 +361,7 @@ def benchmark_growth() -> None:
     for series, seconds in measured():
         line = slope(series.sizes, seconds)
         sizes, costs = f"{series.sizes[0]:,} to {series.sizes[-1]:,}", f"{1e3 * seconds[0]:,.2f} to {1e3 * seconds[-1]:,.2f}"
-        told = f"   steeper: {series.reason}" if line.steeper else ""
+        told = f"   steeper: {series.reason or 'unexplained'}" if line.steeper else ""
         named = f"{series.kind}: {series.name}"
         print(f"  {named:38}{sizes:>20}{costs:>22}{line.value:8.2f}{line.error:7.2f}{LIMIT:9.1f}{told}", flush=True)
         found += [(series.kind, series.name, size, cost, *line) for size, cost in zip(series.sizes, seconds)]
@@ -364,7 +369,7 @@ def benchmark_growth() -> None:
     frame = pd.DataFrame(found, columns=["kind", "name", "size", "seconds", *Slope._fields])
     sheet.write_data(frame, str(FOLDER / "growth.csv"))
     sheet.save(draw(sheet.read_data(str(FOLDER / "growth.csv"))), str(FOLDER / "growth.svg"), str(FOLDER / "growth.png"))
-    print(f"  drawn in {FOLDER.relative_to(Path.cwd()) / 'growth.png'}")
+    print(f"  drawn in {os.path.relpath(FOLDER / 'growth.png')}")
     print(f"\n{f'memory to gather {RUNS:,} runs':40}{'MB':>12}{'at most':>12}")
     for script, needed in gathering.peaks(RUNS // 10, RUNS // 100).items():
         print(f"  {script:38}{needed / 1e6:12,.0f}{MOST_MEMORY / 1e6:12,.0f}{'' if needed <= MOST_MEMORY else '   too much'}")
@@ -374,7 +379,8 @@ AXES = {
     "repeats": "repeats",
     "samples": "samples or pieces of a curve",
     "obstacles": "obstacles",
-    "cells": "cells of the grid",
+    "cells": "cells of a grid",
+    "planners": "cells of a grid",
     "studies": "studies",
 }
 
@@ -382,10 +388,8 @@ AXES = {
 def draw(frame: pd.DataFrame) -> Figure:
     """A panel for each kind of size: CPU seconds over size, fitted lines, and a grey line of slope 1. frame: columns as in growth.csv."""
     with mpl.rc_context(style.SETTINGS):
-        figure = Figure(figsize=(style.WIDE, 1.75 * style.WIDE), layout="constrained")
-        places = figure.subplots(3, 2).ravel()
-        places[-1].set_visible(False)
-        for letter, (kind, label), axes in zip("abcde", AXES.items(), places):
+        figure = Figure(figsize=(style.WIDE, 1.45 * style.WIDE), layout="constrained")
+        for letter, (kind, label), axes in zip("abcdef", AXES.items(), figure.subplots(3, 2).flat):
             _draw_panel(axes, frame[frame["kind"] == kind])
             axes.set(xscale="log", yscale="log", xlabel=label, ylabel="CPU time (s)")
             axes.set_title(f"({letter}) {kind}", loc="left")
@@ -402,5 +406,5 @@ def _draw_panel(axes: Axes, frame: pd.DataFrame) -> None:
         axes.plot(upper["size"], first["at_one"] * upper["size"] ** first["value"], **(look | {"marker": ""}))
         axes.plot([], [], label=label, **look)
     ends = np.array([frame["size"].min(), frame["size"].max()])
-    axes.plot(ends, frame["seconds"].min() * ends / ends[0], color="0.6", linewidth=2.5, zorder=0, label="slope 1")
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.2))
+    axes.plot(ends, frame["seconds"].min() * ends / ends[0], color="0.8", linewidth=2.5, zorder=0, label="slope 1")
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.25), title="slope \u00b1 standard error", title_fontsize=style.SMALLEST_TEXT)
