@@ -14,6 +14,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "src"))
 
 from elhoseny2017 import benchmark_fields
 from geometry import benchmark_geometry
+from growth import benchmark_growth
 from limits import benchmark_limits
 from meledje import benchmark_node_genetic
 from runs import benchmark_runs
@@ -50,6 +51,7 @@ PARTS = {
     "simulation": benchmark_simulation,
     "geometry": benchmark_geometry,
     "limits": benchmark_limits,
+    "growth": benchmark_growth,
     "start": benchmark_start,
 }
 

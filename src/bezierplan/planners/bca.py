@@ -206,10 +206,11 @@ def _cells(grid: Grid, reach: int) -> _Cells:
     free = np.flatnonzero(legal)
     if not len(free):
         raise ValueError("all cells are occupied; expected a free cell for the control points")
-    row, column = np.indices((rows, columns)).reshape(2, -1)
-    occupied = np.argwhere(grid.occupied)
-    at, which = np.nonzero((abs(row[:, None] - occupied[:, 0]) <= reach) & (abs(column[:, None] - occupied[:, 1]) <= reach))
-    near = np.ascontiguousarray(occupied[which][:, ::-1])
+    reach = min(reach, max(rows, columns))
+    around = np.lib.stride_tricks.sliding_window_view(np.pad(grid.occupied, reach), (2 * reach + 1, 2 * reach + 1))
+    row, column, up, right = np.nonzero(around)
+    near = np.column_stack([column + right - reach, row + up - reach])
+    at = columns * row + column
     return _Cells(grid.occupied, code_centres(rows, columns), legal, free, near, np.searchsorted(at, np.arange(rows * columns + 1)))
 
 

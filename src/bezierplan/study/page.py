@@ -16,7 +16,8 @@ def file(scale: str) -> str:
 
 def inputs(given: Studies, scale: str) -> dict[str, list[str]]:
     """Input files of the page: everything that is made at the scale, and the runs behind it."""
-    made, runs = _made(given, scale), [_runs(given, scale, key) for key in given]
+    shown = _artefacts(given, scale)
+    made, runs = _made(given, scale, shown), [_runs(given, scale, key, names) for key, names in shown.items()]
     named = [f"results/{scale}/{name}.csv" for name in ("numbers", "claims", "worth")] if _summary(scale) in made else []
     merged = {
         name: list(dict.fromkeys(each for files in runs for each in files[name])) for name in ("runs", "problems", "bounds", "traces")
@@ -27,8 +28,9 @@ def inputs(given: Studies, scale: str) -> dict[str, list[str]]:
 def params(given: Studies, scale: str) -> dict[str, Any]:
     """Params of the page. Alternatives and readings are shown if they have been tried: the page does not ask for them."""
     tried = {key: _tried(f"results/{scale}/{key}") for key in given}
+    shown = _artefacts(given, scale)
     return {
-        "job": {"scale": scale, "studies": {key: _study(given, scale, key, tried[key]) for key in given}},
+        "job": {"scale": scale, "studies": {key: _study(given, scale, key, names, tried[key]) for key, names in shown.items()}},
         "tried": content_digest(*(file for files in tried.values() for file in files.values())),
         "look": content_digest(*page.files()),
         "code": source_digest(str(targets.SCRIPTS / "page.py")),
@@ -42,35 +44,39 @@ def _tried(folder: str) -> dict[str, str]:
     return there if {"readings", "explained"} <= there.keys() else {name: file for name, file in there.items() if name == "sensitivity"}
 
 
-def _artefacts(given: Studies, scale: str) -> list[tuple[str, str]]:
-    """Study and name of every table and figure of a scale, also of a table that is as at `full` if the summary counts it."""
+def _artefacts(given: Studies, scale: str) -> dict[str, list[str]]:
+    """By study, the names of the tables and figures of a scale, also of a table that is as at `full` if the summary counts it."""
     if scale == "smoke":
-        return jobs.smoke(given)[0]
+        made = jobs.smoke(given)[0]
+        return {key: [name for study, name in made if study == key] for key in given}
     counted = set(targets.summary_inputs(given, scale)["comparisons"]) if _summary(scale) in targets.files_of_scale(given, scale) else set()
-    return [
-        (key, name)
+    return {
+        key: [
+            name
+            for name in [*study.tables, *study.figures]
+            if name in targets.artefacts_of(study, scale) or counted.intersection(targets.files_of(given, scale, key, name))
+        ]
         for key, study in given.items()
-        for name in [*study.tables, *study.figures]
-        if name in targets.artefacts_of(study, scale) or counted.intersection(targets.files_of(given, scale, key, name))
-    ]
+    }
 
 
 def _summary(scale: str) -> str:
     return f"results/{scale}/summary.md"
 
 
-def _made(given: Studies, scale: str) -> list[str]:
-    own = [each for study, name in _artefacts(given, scale) for each in targets.files_of(given, scale, study, name)]
+def _made(given: Studies, scale: str, shown: dict[str, list[str]]) -> list[str]:
+    own = [each for study, names in shown.items() for name in names for each in targets.files_of(given, scale, study, name)]
     return own if scale == "smoke" else list(dict.fromkeys([*targets.files_of_scale(given, scale), *own]))
 
 
-def _runs(given: Studies, scale: str, key: str) -> dict[str, list[str]]:
-    """The runs, problems and bounds behind what is made of a study at a scale, and the traces of those runs that are drives."""
+def _runs(given: Studies, scale: str, key: str, names: list[str]) -> dict[str, list[str]]:
+    """The runs, problems and bounds behind some tables and figures of a study and its claims, and the traces of those runs that are
+    drives.
+    """
     found: dict[str, list[str]] = {"runs": [], "problems": [], "bounds": []}
-    for own, name in _artefacts(given, scale):
-        if own == key:
-            kind = "table" if name in given[key].tables else "figure"
-            _add(found, targets.artefact_inputs(given, scale, key, **{kind: name}))
+    for name in names:
+        kind = "table" if name in given[key].tables else "figure"
+        _add(found, targets.artefact_inputs(given, scale, key, **{kind: name}))
     if scale != "smoke" and given[key].claims:
         _add(found, targets.claims_inputs(given, scale, key))
     return found | {"traces": [str(Path(run).with_suffix(".traces.parquet")) for run in found["runs"] if given[key].moves(_of(run))]}
@@ -83,13 +89,12 @@ def _of(run: str) -> str:
 
 def _add(found: dict[str, list[str]], more: dict[str, list[str]]) -> None:
     for name, files in found.items():
-        files += [each for each in more[name] if each not in files]
+        files[:] = dict.fromkeys([*files, *more[name]])
 
 
-def _study(given: Studies, scale: str, key: str, tried: dict[str, str]) -> dict[str, Any]:
-    """What the page needs to know of a study beside its results."""
+def _study(given: Studies, scale: str, key: str, made: list[str], tried: dict[str, str]) -> dict[str, Any]:
+    """What the page needs to know of a study beside its results. made: the names of its tables and figures."""
     study, folder = given[key], f"results/{scale}/{key}"
-    made = [name for own, name in _artefacts(given, scale) if own == key]
     judged = scale != "smoke" and study.claims
     files = {"claims": f"{folder}/claims.csv", "checks": f"{folder}/claim_checks.csv", "audit": f"{folder}/audit.csv"} if judged else {}
     described = {name: {"title": spec.title, "caption": jobs.caption(study, name, scale)} for name, spec in _specs(study, made).items()}
@@ -100,7 +105,7 @@ def _study(given: Studies, scale: str, key: str, tried: dict[str, str]) -> dict[
         "figures": {name: described[name] for name in made if name in study.figures},
         "assumptions": [each.plain() for each in study.assumptions],
         "files": files | (tried if judged else {}),
-        "experiments": _experiments(given, scale, key),
+        "experiments": _experiments(given, scale, key, made),
     }
 
 
@@ -108,9 +113,9 @@ def _specs(study: Any, names: list[str]) -> dict[str, Any]:
     return {name: study.tables.get(name) or study.figures[name] for name in names}
 
 
-def _experiments(given: Studies, scale: str, key: str) -> dict[str, dict[str, Any]]:
+def _experiments(given: Studies, scale: str, key: str, made: list[str]) -> dict[str, dict[str, Any]]:
     """The experiments whose runs the page shows: methods other than baselines, repeats, and files."""
-    study, found = given[key], _runs(given, scale, key)
+    study, found = given[key], _runs(given, scale, key, made)
     experiments = {}
     for problems, bounds in zip(found["problems"], found["bounds"], strict=True):
         name = Path(problems).stem

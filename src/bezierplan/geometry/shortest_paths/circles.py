@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 
 from bezierplan.geometry.checker import TOLERANCE, check
 from bezierplan.geometry.region import CircleRegion
@@ -115,17 +116,24 @@ def _tangents(problem: Problem, centres: np.ndarray, radii: np.ndarray) -> _Tang
     return graph
 
 
+@njit(cache=True)
 def _straight_is_free(a: np.ndarray, b: np.ndarray, centres: np.ndarray, radii: np.ndarray, bounds: np.ndarray) -> np.ndarray:
-    """Which segments from a to b, both (n, 2), are free: bool (n,)."""
-    step = b - a
-    square = np.maximum((step**2).sum(axis=1), NO_LENGTH)[:, None]
-    share = np.clip(((centres[None] - a[:, None]) * step[:, None]).sum(axis=2) / square, 0, 1)
-    nearest = a[:, None] + share[:, :, None] * step[:, None] - centres[None]
-    clear = (np.hypot(nearest[:, :, 0], nearest[:, :, 1]) >= radii - TOLERANCE).all(axis=1)
-    left, right, bottom, top = bounds
-    low, high = np.minimum(a, b), np.maximum(a, b)
-    inside = (low >= np.array([left, bottom]) - TOLERANCE).all(axis=1) & (high <= np.array([right, top]) + TOLERANCE).all(axis=1)
-    return clear & inside
+    """Which segments from a to b, both (n, 2), are free: bool (n,). Most are blocked by one of the first circles that are looked at."""
+    free = np.empty(len(a), dtype=np.bool_)
+    left, right, bottom, top = bounds[0] - TOLERANCE, bounds[1] + TOLERANCE, bounds[2] - TOLERANCE, bounds[3] + TOLERANCE
+    for i in range(len(a)):
+        (x, y), (end_x, end_y) = a[i], b[i]
+        step_x, step_y = end_x - x, end_y - y
+        square = max(step_x * step_x + step_y * step_y, NO_LENGTH)
+        free[i] = min(x, end_x) >= left and max(x, end_x) <= right and min(y, end_y) >= bottom and max(y, end_y) <= top
+        for k in range(len(radii)):
+            if not free[i]:
+                break
+            share = ((centres[k, 0] - x) * step_x + (centres[k, 1] - y) * step_y) / square
+            share = min(max(share, 0.0), 1.0)
+            distance = math.hypot(x + share * step_x - centres[k, 0], y + share * step_y - centres[k, 1])
+            free[i] = distance >= radii[k] - TOLERANCE
+    return free
 
 
 def _free_arcs(tangents: _Tangents, centres: np.ndarray, radii: np.ndarray, bounds: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -25,13 +25,14 @@ def shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
     nodes = np.concatenate([anywhere, blocked.edges[corner, 2:]])
     before = np.concatenate([anywhere, begin[corner]])
     after = np.concatenate([anywhere, blocked.edges[blocked.following[corner], 2:]])
+    bins = bins_of(blocked.edges)
     if len(nodes) > MOST_POLYGON_NODES:
-        return along(nodes, _search_polygons(nodes, before, after, blocked, bins_of(blocked.edges)))
-    return shortest_in_graph(nodes, _visible_among_polygons(nodes, before, after, blocked))
+        return along(nodes, _search_polygons(nodes, before, after, blocked, bins))
+    return shortest_in_graph(nodes, _visible_among_polygons(nodes, before, after, blocked, bins))
 
 
 @njit(cache=True)
-def _visible_among_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion) -> np.ndarray:
+def _visible_among_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion, bins: Bins) -> np.ndarray:
     """Which pairs i < j of nodes can follow each other on a shortest path: bool (n, n).
 
     before, after: (n, 2) the neighbours of a corner along the boundary; the node itself where a path may turn in any direction.
@@ -45,7 +46,8 @@ def _visible_among_polygons(nodes: np.ndarray, before: np.ndarray, after: np.nda
             for axis in range(2):
                 segment[0, 0, axis] = nodes[i, axis]
                 segment[0, 1, axis] = nodes[j, axis]
-            visible[i, j] = not _crosses(nodes[i], nodes[j], region.edges) and first_collision(segment, region)[0] == math.inf
+            crosses = _crosses_any(nodes[i], nodes[j], region.edges, bins)
+            visible[i, j] = not crosses and first_collision(segment, region)[0] == math.inf
     return visible
 
 
@@ -107,17 +109,8 @@ def _is_taut(nodes: np.ndarray, i: int, j: int, before: np.ndarray, after: np.nd
 
 
 @njit(cache=True)
-def _crosses(a: np.ndarray, b: np.ndarray, edges: np.ndarray) -> bool:
-    """Whether a segment and an edge cross strictly. Mere touching is left to the certified check."""
-    for e in range(len(edges)):
-        if _crosses_edge(a, b, edges[e, :2], edges[e, 2:]):
-            return True
-    return False
-
-
-@njit(cache=True)
 def _crosses_any(a: np.ndarray, b: np.ndarray, edges: np.ndarray, bins: Bins) -> bool:
-    """As `_crosses`, with the edges near the segment only, those near its beginning first."""
+    """Whether a segment crosses an edge strictly; mere touching is left to the certified check. Edges near its beginning come first."""
     left, right, bottom, top = min(a[0], b[0]), max(a[0], b[0]), min(a[1], b[1]), max(a[1], b[1])
     begin, end = columns_between(left, right, bins)
     for step in range(end - begin + 1):
