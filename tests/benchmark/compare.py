@@ -169,7 +169,7 @@ def with_mealpy(algorithm: Callable[[], Optimizer]) -> Callable[[int], float]:
 
 
 def mealpy_pso() -> OriginalPSO:
-    """Its velocities have no limit, a particle stays where it is unless that improves it, and a coordinate beyond the field is drawn anew."""
+    """Its velocities have no limit, a particle moves only to improve, and a coordinate beyond the field is drawn anew."""
     return OriginalPSO(ITERATIONS, PARTICLES, c1=SETTINGS["c1"], c2=SETTINGS["c2"], w=0.73)
 
 
