@@ -230,7 +230,7 @@ def draw_problem(axes: Axes, attempts: pd.DataFrame) -> None:
     axes.legend(named, of_study, loc="upper right", frameon=True, framealpha=0.9, edgecolor="none", borderpad=0.2)
 
 
-HIGHEST = 100
+HIGHEST = 500  # room for the names above what is drawn
 PERCENTS = [0, 1, 2, 5, 10, 20, 50, 100]
 OWN_BUDGET = {
     "color": style.BLACK,
