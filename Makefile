@@ -47,8 +47,9 @@ benchmark: .venv/ready ## speed of the inner loops, beside the bare minimum
 mutants: .venv/ready ## plant each fault of tests/mutants, and see that its test catches it (ARGS: --jobs N, words of some faults)
 	$(RUN) tests/mutants/run.py $(ARGS)
 
-compare: .cache/comparison/ready ## the chaotic swarm of tharwat2018 beside pyswarms, pymoo and DEAP
+compare: .cache/comparison/ready ## our swarm beside other libraries, and all studies' planners beside OMPL, into results/comparison
 	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare.py'
+	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare_planners.py'
 
 cluster: .venv/ready ## add Snakemake's plugins for Slurm and other schedulers, for profiles/slurm and profiles/cluster
 	@$(PIP) -r environment-cluster.txt
@@ -77,7 +78,7 @@ lock: .venv/ready ## renew environment.txt from pyproject.toml (newest versions:
 	$(LOCK) $(ARGS) --group comparison -c environment.txt -o tests/benchmark/requirements.txt
 
 clean: ## remove results and caches
-	rm -rf results/smoke results/full results/extended .snakemake .cache
+	rm -rf results/smoke results/full results/extended results/comparison .snakemake .cache
 
 distclean: clean ## remove the environment (.venv) as well
 	rm -rf .venv
@@ -108,5 +109,6 @@ found = $(firstword $(foreach p,$(PYTHON),$(shell $(p) -c '$(fits)' >/dev/null 2
 .cache/comparison/ready .cache/archive/ready: | .venv/ready
 	@rm -rf $(@D)
 	@$(RUN) -m venv $(@D)
-	@$(@D)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes --only-binary :all: -r $<
+	@$(@D)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes --only-binary :all: -r $< || \
+	  { echo "$(@D): not every library of $< has a wheel that could be had for this platform; pip names it above" >&2; exit 1; }
 	@touch $@

@@ -160,7 +160,15 @@ def test_an_environment_whose_python_has_gone_is_set_up_anew(finished):
 
 
 def test_clean_keeps_the_environment_and_what_is_tracked(finished):
-    for file in ("results/README.md", "results/smoke/a", "results/full/a", "results/extended/a", ".snakemake/a", ".cache/a"):
+    for file in (
+        "results/README.md",
+        "results/smoke/a",
+        "results/full/a",
+        "results/extended/a",
+        "results/comparison/a",
+        ".snakemake/a",
+        ".cache/a",
+    ):
         (finished / file).parent.mkdir(parents=True, exist_ok=True)
         (finished / file).touch()
     assert make(finished, "clean").returncode == 0

@@ -1,11 +1,13 @@
 """The chaotic swarm beside other libraries: `make compare`, in an environment of its own (requirements.txt).
 
+The first part; the second sets OMPL beside the planners of all studies (compare_planners.py).
+
 All search the same path, between the three circles of tharwat2018 with the public radii, with the same number of evaluations of the same
 objective: ours, compiled, of a whole swarm at once where a library takes that. So the difference in speed is their loop against ours.
 Velocity limit, inertia and learning factors are those of the study's profile `tuned` where a library has them, else its inertia is 0.73;
 how a bound is kept is its own affair.
 
-Evaluations a second of one core's CPU time, how often ours is as fast, and how good the paths are over 200 seeds: the share in the good
+Evaluations a second of one core's CPU time, how often ours is as fast, and how good the paths are over 100 seeds: the share in the good
 corridor (shorter than 8 units and free of collisions; the next one begins above 9), median and quartiles of the objective.
 """
 
@@ -22,6 +24,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "src"))
 
 import numpy as np
 from deap import base, creator, tools
+from mealpy import FloatVar, Optimizer
+from mealpy.evolutionary_based.GA import BaseGA
+from mealpy.swarm_based.PSO import OriginalPSO
 from numba import njit
 from pymoo.algorithms.soo.nonconvex.ga import GA
 from pymoo.algorithms.soo.nonconvex.pso import PSO
@@ -35,7 +40,7 @@ from bezierplan.study import reading
 from bezierplan.workspaces import files
 from bezierplan.workspaces.problem import Problem
 
-SEEDS = 200
+SEEDS = 100
 GOOD = 8.0
 
 STUDY = reading.load(reading.read_config({"studies": ["tharwat2018"]}))["tharwat2018"]
@@ -158,6 +163,16 @@ def deap_genetic(seed: int) -> float:
     return best[0].fitness.values[0]
 
 
+def with_mealpy(algorithm: Callable[[], Optimizer]) -> Callable[[int], float]:
+    field = {"obj_func": lambda z: float(fitness(z[None])[0]), "bounds": FloatVar(lb=LOW, ub=HIGH), "minmax": "min", "log_to": None}
+    return lambda seed: algorithm().solve(field, seed=seed, termination={"max_fe": EVALUATIONS}).target.fitness
+
+
+def mealpy_pso() -> OriginalPSO:
+    """Its velocities have no limit, a particle moves only to improve, and a coordinate beyond the field is drawn anew."""
+    return OriginalPSO(ITERATIONS, PARTICLES, c1=SETTINGS["c1"], c2=SETTINGS["c2"], w=0.73)
+
+
 LIBRARIES: dict[str, Callable[[int], float]] = {
     "bezierplan pso": ours("pso"),
     "bezierplan cpso1": ours("cpso1_singer"),
@@ -167,6 +182,8 @@ LIBRARIES: dict[str, Callable[[int], float]] = {
     "pymoo genetic": with_pymoo(lambda: GA(pop_size=PARTICLES)),
     "deap pso": with_deap,
     "deap genetic": deap_genetic,
+    "mealpy pso": with_mealpy(mealpy_pso),
+    "mealpy genetic": with_mealpy(lambda: BaseGA(ITERATIONS, PARTICLES)),
 }
 
 
