@@ -78,7 +78,7 @@ lock: .venv/ready ## renew environment.txt from pyproject.toml (newest versions:
 	$(LOCK) $(ARGS) --group comparison -c environment.txt -o tests/benchmark/requirements.txt
 
 clean: ## remove results and caches
-	rm -rf results/smoke results/full results/extended results/comparison .snakemake .cache
+	rm -rf results/smoke results/full results/extended results/comparison results/benchmark .snakemake .cache
 
 distclean: clean ## remove the environment (.venv) as well
 	rm -rf .venv

@@ -253,7 +253,7 @@ def _cells() -> Iterator[Series]:
     reason = "a graph of pairs of corners; above 5,000 corners there is none"
     yield Series("cells", "exact bound, graph", _squared(12, 60), lambda n: _bound(_diagonal(n)), reason)
     yield Series("cells", "check", _squared(32, 512), _check_in_row)
-    reason = "edges join pairs of cells; above 1,024 cells there is no table"
+    reason = "edges join pairs of cells; above 2,048 cells there is no table"
     yield Series("cells", "table of edges, meledje", _squared(8, 32), _tabulate_edges, reason)
     for study, method, last in (
         ("elhoseny2017", "octile_bound", 512),
