@@ -59,9 +59,10 @@ def rows_of_cell(cell: pd.DataFrame, metric: str, tables: list[tuple[str, pd.Dat
         places = cell[keys].drop_duplicates()
         if len(places) != 1:
             continue
-        rows = table[table["metric"] == metric]
-        for key, value in places.iloc[0].items():
-            rows = rows[rows[key] == (variant_of.get(value, value) if key == "method" else value)]
+        place = dict(places.iloc[0]) | {"metric": metric}
+        if "method" in place:
+            place["method"] = variant_of.get(place["method"], place["method"])
+        rows = table[np.logical_and.reduce([table[key] == value for key, value in place.items()])]
         if not rows.empty:
             values, runs = (rows[column].astype(float) for column in ("value", "n"))
             return Printed(number, dict(zip(rows["statistic"], zip(rows.index, values, runs))))
