@@ -2,6 +2,7 @@
 
 import re
 import tomllib
+import warnings
 from pathlib import Path
 
 import pandas as pd
@@ -129,6 +130,16 @@ def test_a_failure_says_why_and_where(tmp_path, monkeypatch):
     monkeypatch.setattr(run, "ROOT", tmp_path)
     with pytest.raises(run.Failure, match=r"^failed: sh -c echo no wheel; exit 3 \(newest.log\)\n  no wheel$"):
         run.run(tmp_path, "sh", "-c", "echo no wheel; exit 3")
+
+
+@pytest.mark.parametrize("kind", [DeprecationWarning, PendingDeprecationWarning, FutureWarning])
+def test_a_deprecated_call_fails_if_it_is_ours(kind):
+    for module in ("bezierplan.figures.sheet", "test_sheet"):
+        with pytest.raises(kind):
+            warnings.warn_explicit("use another", kind, "sheet.py", 1, module)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.warn_explicit("use another", kind, "sheet.py", 1, "snakemake.api")
+    assert len(caught) == 1
 
 
 def test_scheduled_checks_use_the_oldest_and_the_newest_python():

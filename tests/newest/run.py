@@ -136,7 +136,7 @@ def renew(folder: Path, given: list[str]) -> Moved:
 
 
 def smoke(folder: Path, libraries: Moved) -> Digests:
-    """Make the smoke subset in a copy; where libraries moved, with the CPU times of the locked versions, for these never repeat. Raises Failure."""
+    """Make the smoke subset in a copy; if libraries moved, with the CPU times of the locked ones, as these never repeat. Raises Failure."""
     kernels = next((tree / KERNELS for tree in (LOCKED, ROOT) if (tree / KERNELS).exists()), None)
     if kernels and not COMPILERS & libraries.keys():
         shutil.copytree(kernels, folder / KERNELS)
