@@ -40,10 +40,6 @@ Digests = dict[tuple[str, str], str]
 """Hashes of results by kind and name."""
 
 
-class Failure(Exception):
-    """A command failed; the lines that say why."""
-
-
 def pins(lock: str) -> dict[str, str]:
     """The version of each library in the text of a lock; of one that differs from Python to Python all versions, joined by `or`."""
     found: dict[str, str] = {}
@@ -111,14 +107,15 @@ def copy(folder: Path) -> None:
     (folder / ".venv").symlink_to(ROOT / ".venv")
 
 
-def run(folder: Path, *command: str) -> None:
-    """Run a command in a copy of the tree; what it says goes to a log in the copy. Raises Failure."""
+def run(folder: Path, *command: str) -> str:
+    """Run a command in a copy of the tree; what it says goes to a log in the copy. Returns why it failed, empty if it did not."""
     log = folder / "newest.log"
     with log.open("a", encoding="utf-8") as file:
         streams = {"stdin": subprocess.DEVNULL, "stdout": file, "stderr": subprocess.STDOUT}
         done = subprocess.run(command, cwd=folder, env=ENVIRONMENT, check=False, **streams)
-    if done.returncode:
-        raise Failure("\n  ".join([f"failed: {' '.join(command)} ({log.relative_to(ROOT)})", *reasons(log.read_text(errors="replace"))]))
+    if done.returncode == 0:
+        return ""
+    return "\n  ".join([f"failed: {' '.join(command)} ({log.relative_to(ROOT)})", *reasons(log.read_text(errors="replace"))])
 
 
 def reasons(log: str) -> list[str]:
@@ -128,42 +125,25 @@ def reasons(log: str) -> list[str]:
 
 
 def renew(folder: Path, given: list[str]) -> Moved:
-    """Copy the tree, renew the copy's locks, and say what moved. Raises Failure."""
+    """Copy the tree, renew the copy's locks, and say what moved; ends with one line if they cannot be renewed."""
     copy(folder)
-    run(folder, "make", "lock", f"ARGS={' '.join(given)}")
+    if failed := run(folder, "make", "lock", f"ARGS={' '.join(given)}"):
+        sys.exit(failed)
     old, new = (pins("".join((tree / lock).read_text(encoding="utf-8") for lock in LOCKS)) for tree in (ROOT, folder))
     return moved(old, new)
 
 
-def smoke(folder: Path, libraries: Moved) -> Digests:
-    """Make the smoke subset in a copy; if libraries moved, with the CPU times of the locked ones, as these never repeat. Raises Failure."""
+def smoke(folder: Path, libraries: Moved) -> str:
+    """Make the smoke subset in a copy; returns why it failed. CPU times never repeat, so copies share those of the locked versions."""
     kernels = next((tree / KERNELS for tree in (LOCKED, ROOT) if (tree / KERNELS).exists()), None)
     if kernels and not COMPILERS & libraries.keys():
         shutil.copytree(kernels, folder / KERNELS)
-    run(folder, "make", ".venv/ready", f"PYTHON={Path(sys.executable).resolve()}")
-    if libraries:
-        run(folder, ".venv/bin/python", "-m", "snakemake", "smoke", "--until", "runs", "drives")
-        for file in (LOCKED / SMOKE).rglob("*.times.parquet"):
-            shutil.copyfile(file, folder / file.relative_to(LOCKED))
-    run(folder, "make", "smoke")
-    return digests(folder / SMOKE)
-
-
-def compared(expected: Digests, folder: Path, libraries: Moved) -> str:
-    """What libraries that moved change, in words; empty if nothing."""
-    try:
-        return difference(expected, smoke(folder, libraries))
-    except Failure as failure:
-        return str(failure)
-
-
-def tested(folder: Path) -> str:
-    """Which tests fail in a copy, in words; empty if none does."""
-    try:
-        run(folder, ".venv/bin/python", "-m", "pytest", "-n", "auto", "--dist", "loadfile")
-    except Failure as failure:
-        return str(failure)
-    return ""
+    failed = run(folder, "make", ".venv/ready", f"PYTHON={Path(sys.executable).resolve()}")
+    if libraries and not failed:
+        failed = run(folder, ".venv/bin/python", "-m", "snakemake", "smoke", "--until", "runs", "drives")
+        for file in (folder / SMOKE).rglob("*.times.parquet"):
+            shutil.copyfile(LOCKED / file.relative_to(folder), file)
+    return failed or run(folder, "make", "smoke")
 
 
 def say(*lines: str) -> None:
@@ -172,7 +152,7 @@ def say(*lines: str) -> None:
 
 
 def main(given: list[str]) -> int:
-    """Compare, test, and look for culprits; returns the exit status. Raises Failure."""
+    """Compare, test, and look for culprits; returns the exit status."""
     shutil.rmtree(PLACE, ignore_errors=True)
     libraries = renew(NEWEST, given)
     say(f"{len(libraries)} libraries have moved", *(f"  {in_words({name: libraries[name]})}" for name in libraries))
@@ -180,20 +160,25 @@ def main(given: list[str]) -> int:
         return 0
     say("the smoke subset with the locked versions")
     copy(LOCKED)
-    expected = smoke(LOCKED, {})
-    say("the smoke subset with the new versions")
-    found = compared(expected, NEWEST, libraries)
-    say(found or f"the same bits in all {len(expected)} run tables, tables, data of figures, claims and summaries")
-    say("the tests with the new versions")
-    failed = tested(NEWEST)
-    say(failed or "all tests pass")
+    if failed := smoke(LOCKED, {}):
+        sys.exit(failed)
+    expected = digests(LOCKED / SMOKE)
+
+    def changed(folder: Path, some: Moved) -> str:
+        return smoke(folder, some) or difference(expected, digests(folder / SMOKE))
 
     @cache
     def alone(names: tuple[str, ...]) -> tuple[Moved, str]:
-        say(f"only with new {', '.join(names)}")
+        say(f"the smoke subset with new {', '.join(names)}")
         some = renew(SOME, flags({name: libraries[name] for name in names}))
-        return some, compared(expected, SOME, some) if some else ""
+        return some, changed(SOME, some) if some else ""
 
+    say("the smoke subset with the new versions")
+    found = changed(NEWEST, libraries)
+    say(found or f"the same bits in all {len(expected)} run tables, tables, data of figures, claims and summaries")
+    say("the tests with the new versions")
+    failed = run(NEWEST, ".venv/bin/python", "-m", "pytest", "-n", "auto", "--dist", "loadfile")
+    say(failed or "all tests pass")
     for group in culprits(tuple(libraries), lambda names: alone(names)[1]) if found else []:
         some, words = alone(group) if len(group) < len(libraries) else (libraries, found)
         say(f"{in_words(some)}: {words}")
@@ -203,7 +188,5 @@ def main(given: list[str]) -> int:
 if __name__ == "__main__":
     try:
         sys.exit(main(sys.argv[1:] or ["--upgrade"]))
-    except Failure as failure:
-        sys.exit(str(failure))
     except KeyboardInterrupt:
         sys.exit(130)
