@@ -48,24 +48,18 @@ def results(tmp_path):
     return tmp_path
 
 
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [
-        ("s/runs/e/m/0.parquet", "1 of 1 run tables differ: s/e/m"),
-        ("s/runs/e/m/0.times.parquet", ""),
-        ("s/tables/t.csv", "1 of 2 tables differ: s/tables/t.csv"),
-        ("s/figures/f.csv", "1 of 1 figures differ: s/figures/f.csv"),
-        ("s/claims.csv", "1 of 1 claims and summaries differ: s/claims.csv"),
-    ],
-)
-def test_the_last_bit_of_a_result_counts_but_no_time(results, name, words):
+def test_the_last_bit_of_a_result_counts_but_no_time(results):
     before = run.digests(results)
-    assert run.difference(before, run.digests(results)) == ""
-    if name.endswith(".csv"):
-        (results / name).write_text("value\n1.5000000000000002\n")
-    else:
-        pd.DataFrame({"id": ["a"], "length": [1.5000000000000002]}).to_parquet(results / name)
-    assert run.difference(before, run.digests(results)) == words
+    assert len(before) == 5
+    for file in results.rglob("*.parquet"):
+        pd.DataFrame({"id": ["a"], "length": [1.5000000000000002]}).to_parquet(file)
+    for file in ("s/tables/t.csv", "s/figures/f.csv", "s/claims.csv"):
+        (results / file).write_text("value\n1.5000000000000002\n")
+    assert run.difference(before, before) == ""
+    assert run.difference(before, run.digests(results)) == (
+        "1 of 1 run tables differ: s/e/m; 1 of 1 claims and summaries differ: s/claims.csv; "
+        "1 of 1 figures differ: s/figures/f.csv; 1 of 2 tables differ: s/tables/t.csv"
+    )
 
 
 def test_a_result_that_is_not_there_differs_and_many_are_counted():
@@ -130,6 +124,48 @@ def test_a_failure_says_why_and_where(tmp_path, monkeypatch):
     monkeypatch.setattr(run, "ROOT", tmp_path)
     assert run.run(tmp_path, "sh", "-c", "echo no wheel; exit 3") == "failed: sh -c echo no wheel; exit 3 (newest.log)\n  no wheel"
     assert run.run(tmp_path, "true") == ""
+
+
+NEW = {"numpy": ("2.4", "2.5"), "scipy": ("1.17", "1.18"), "yte": ("1", "2")}
+
+
+@pytest.fixture
+def newest(tmp_path, monkeypatch):
+    """The check with commands that only say what they would do: new versions of some libraries change a table, and the tests answer."""
+    moved = {}
+
+    def start(guilty, answer):
+        def renew(folder, given):
+            names = NEW if given == ["--upgrade"] else [word.partition("=")[2].partition("==")[0] for word in given]
+            moved[folder] = {name: NEW[name] for name in names if name in NEW}
+            return moved[folder]
+
+        def digests(results):
+            return {("tables", "t"): str(set(guilty) <= moved.get(results.parents[1], {}).keys()), ("tables", "u"): ""}
+
+        stand_ins = {"renew": renew, "digests": digests, "copy": lambda folder: None, "smoke": lambda folder, libraries: ""}
+        for name, stand_in in {**stand_ins, "run": lambda folder, *command: answer, "PLACE": tmp_path / "newest"}.items():
+            monkeypatch.setattr(run, name, stand_in)
+        return run.main(["--upgrade"])
+
+    return start
+
+
+@pytest.mark.parametrize(
+    ("guilty", "answer", "status", "lines"),
+    [
+        (["six"], "", 0, ["the same bits in all 2 run tables, tables, data of figures, claims and summaries", "all tests pass"]),
+        (["six"], "failed: pytest", 1, ["failed: pytest"]),
+        (["numpy"], "", 1, ["1 of 2 tables differ: t", "all tests pass", "numpy 2.4 -> 2.5: 1 of 2 tables differ: t"]),
+        (["scipy", "yte"], "", 1, ["all tests pass", "scipy 1.17 -> 1.18, yte 1 -> 2: 1 of 2 tables differ: t"]),
+        (["numpy", "yte"], "", 1, ["all tests pass", f"{run.in_words(NEW)}: 1 of 2 tables differ: t"]),
+    ],
+)
+def test_the_check_says_what_differs_which_library_did_it_and_what_fails(newest, capsys, guilty, answer, status, lines):
+    assert newest(guilty, answer) == status
+    told = capsys.readouterr().out.splitlines()
+    assert told[0] == "3 libraries have moved"
+    assert [line for line in told if line in lines] == lines
 
 
 @pytest.mark.parametrize("kind", [DeprecationWarning, PendingDeprecationWarning, FutureWarning])
