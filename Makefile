@@ -11,7 +11,7 @@ LOCK      = $(RUN) -m uv pip compile --quiet --universal --python-version 3.11 -
 # A killed run leaves its lock behind. A clone has one user, so these targets may break it; plain `snakemake` keeps it.
 UNLOCK = if [ -n "$$(ls .snakemake/locks 2>/dev/null)" ]; then $(SNAKEMAKE) --unlock >/dev/null 2>&1 || true; fi
 
-.PHONY: help reproduce smoke extended test lint benchmark mutants compare archive cluster outcome verify-outcome lock clean distclean anew
+.PHONY: help reproduce smoke extended test lint benchmark mutants compare archive cluster outcome verify-outcome lock newest clean distclean anew
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1|\2/p' Makefile | awk -F '|' '{ printf "%-15s %s\n", $$1, $$2 }'
@@ -76,6 +76,9 @@ lock: .venv/ready ## renew environment.txt from pyproject.toml (newest versions:
 	$(LOCK) $(ARGS) --group archive -o workflow/archive/requirements.txt
 	$(LOCK) $(ARGS) --group cluster -c environment.txt -o environment-cluster.txt
 	$(LOCK) $(ARGS) --group comparison -c environment.txt -o tests/benchmark/requirements.txt
+
+newest: .venv/ready ## does a library's newest version change a bit, or fail a test? which one? (ARGS: other flags of `make lock`)
+	$(RUN) tests/newest/run.py $(ARGS)
 
 clean: ## remove results and caches
 	rm -rf results/smoke results/full results/extended results/comparison results/benchmark .snakemake .cache

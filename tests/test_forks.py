@@ -56,6 +56,7 @@ def test_what_jobs_need_is_imported_while_no_job_waits(forks, tmp_path):
     parents, imported = zip(*map(str.split, told.read_text().splitlines()), strict=True)
     assert imported[-1] == "True"
     assert len(set(parents)) == 1
+    assert len(os.listdir(f"/proc/{forks.process}/task")) == 1, "a process that is forked must have one thread"
 
 
 @pytest.mark.parametrize(

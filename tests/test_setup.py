@@ -23,6 +23,7 @@ TARGETS = {
     "verify-outcome",
     "cluster",
     "lock",
+    "newest",
     "clean",
     "distclean",
     "mutants",

@@ -42,6 +42,8 @@ MODULES = (
     "bezierplan.figures.page.job",
 )
 DONE = b"\n"
+# pyarrow's allocator would start a thread on import; a fork of a process with several threads may lock up, and Python 3.12 warns of it.
+ONE_THREAD = {"JE_ARROW_MALLOC_CONF": "background_thread:false"}
 
 
 class Forks:
@@ -94,7 +96,7 @@ class Forks:
                 return
         self._control, theirs = socket.socketpair()
         with theirs:
-            self.process = subprocess.Popen([self._interpreter, "-m", __name__], stdin=theirs).pid
+            self.process = subprocess.Popen([self._interpreter, "-m", __name__], stdin=theirs, env=os.environ | ONE_THREAD).pid
         socket.send_fds(self._control, [DONE], [job.fileno()])
 
 
