@@ -25,3 +25,19 @@ from hypothesis import configuration, settings  # noqa: E402
 settings.register_profile("bezierplan", deadline=None, derandomize=True, database=None)
 settings.load_profile("bezierplan")
 configuration.set_hypothesis_home_dir(ROOT / ".cache" / "hypothesis")
+
+# Files that take a minute or more, the longest first: at the end, no process has a long file to itself while the others have nothing left.
+LONGEST = (
+    "test_workflow.py",
+    "test_cluster.py",
+    "test_own_study.py",
+    "test_readme.py",
+    "test_mutants.py",
+    "test_truth.py",
+    "test_bounds.py",
+)
+
+
+def pytest_collection_modifyitems(items: list) -> None:
+    """The longest files first, the others in their order."""
+    items.sort(key=lambda item: LONGEST.index(item.path.name) if item.path.name in LONGEST else len(LONGEST))
