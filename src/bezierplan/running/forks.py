@@ -131,6 +131,8 @@ def run(parent: socket.socket) -> None:
     """Run, in a child, the script that a socket brings, and end the process. An exception ends it as it would end an interpreter."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    # Held until the process ends: Python 3.13 drops an exception's frames, and sockets in them, before it says what sys.exit was given.
+    os.dup(parent.fileno())
     with parent.makefile("rb") as stream:
         name, source, snakemake = pickle.load(stream)
     exec(compile(source, name, "exec"), {"__name__": "__main__", "__file__": name, "snakemake": snakemake})
