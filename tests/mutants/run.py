@@ -29,7 +29,7 @@ WORDS = "pytest.txt"
 # Processes begin with what takes long to import.
 FORKS = multiprocessing.get_context("forkserver")
 FORKS.set_forkserver_preload(["numba", "pandas", "pyarrow.parquet", "scipy.stats", "scipy.interpolate", "matplotlib.figure", "shapely"])
-# The status that multiprocessing gives a process whose true one did not reach it, as happens once in some hundred times on a busy machine.
+# The status that multiprocessing gives a process whose true one another thread has read: a start polls the children of all threads.
 LOST = 255
 # What no test of a fault needs; compiled kernels are copied, because most of them do not change.
 LEFT_OUT = shutil.ignore_patterns(".git", ".venv", ".snakemake", "results", "__pycache__")
