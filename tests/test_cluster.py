@@ -72,6 +72,7 @@ def local(tree):
 def test_slurm_gives_the_same_bits(tree, local, tmp_path_factory):
     """One figure with what it needs, for each job costs two starts of Snakemake; the README's lines as dry runs."""
     # Slurm comes as Debian's packages, not from PyPI, and only root can start its daemons; a machine that has a Slurm keeps its own.
+    # Continuous integration installs it (`.ci/run`).
     if slurm.obstacle():
         pytest.skip(f"no Slurm: {slurm.obstacle()}")
     assert COMMANDS[0] == "make cluster"

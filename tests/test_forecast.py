@@ -146,6 +146,6 @@ def test_forecast_of_a_figure_in_a_clone(tmp_path, monkeypatch, capsys):
     seconds = {log: record.seconds for log, record in estimated.items()}
     assert max(seconds.values()) < forecast.duration(found, seconds, 4) < forecast.duration(found, seconds, 1)
     # Python 3.12 adds floating-point numbers with less error than `duration`.
-    assert forecast.duration(found, seconds, 1) == pytest.approx(sum(seconds.values()))
+    assert forecast.duration(found, seconds, 1) == pytest.approx(sum(seconds.values()), rel=1e-12)
     with pytest.raises(Fault, match=r"MissingRuleException|No rule to produce"):
         forecast.planned(["results/full/nothing.csv"], anew=False)

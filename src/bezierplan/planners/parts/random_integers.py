@@ -7,7 +7,9 @@ from numba.np.random.random_methods import buffered_bounded_lemire_uint32
 
 @njit(cache=True)
 def integer(rng: np.random.Generator, low: int, high: int) -> int:
-    """The number that `rng.integers(low, high)` gives, many times faster; high - low must lie between 1 and 2**32 - 1."""
+    """The number that `rng.integers(low, high)` gives (Lemire 2019, as in numpy), many times faster; high - low must lie between 1 and
+    2**32 - 1.
+    """
     # numpy draws nothing if there is no choice.
     return low + np.int64(buffered_bounded_lemire_uint32(rng.bit_generator, high - low - 1)) if high - low > 1 else low
 
