@@ -230,15 +230,15 @@ def test_first_sights_never_change_a_verdict():
 
 def test_a_target_on_the_border_is_looked_at_within_the_grid():
     """Where no cell lies beyond, the first sight reads none: uncompiled it raises IndexError if it does."""
-    occupied = np.zeros((20, 20), dtype=bool)
+    room = np.full((20, 20), 1)
     for start, target in (((0.5, 0.5), (20.0, 20.0)), ((0.5, 10.5), (20.0, 10.5)), ((10.5, 0.5), (10.5, 20.0)), ((20.0, 20.0), (0.5, 0.5))):
         points = np.array([start, target])
         x, y = cell_length.sample(points, cell_length.parts(points), 1)
         # A sample on a grid line is left to the walk over the cells.
-        assert not gene_curves._is_free_at_first_sight.py_func(x, y, occupied)
-        assert not gene_curves._is_free_at_first_sight(x, y, occupied)
+        assert gene_curves._at_first_sight.py_func(x, y, room) == gene_curves._UNKNOWN
+        assert gene_curves._at_first_sight(x, y, room) == gene_curves._UNKNOWN
     x, y = np.linspace(0.513, 19.417, 50), np.linspace(0.619, 19.731, 50)
-    assert gene_curves._is_free_at_first_sight.py_func(x, y, occupied)
+    assert gene_curves._at_first_sight.py_func(x, y, room) == gene_curves._FREE
 
 
 @pytest.mark.parametrize("target", [(20.0, 20.0), (20.0, 9.3), (9.3, 20.0)])

@@ -26,6 +26,9 @@ _ON_LINE = 1e-9
 # Two grid lines that a segment crosses at parameters this close are crossed at their corner.
 _IN_CORNER = 1e-6
 
+# Legs of a polyline whose lengths are computed together.
+_BLOCK = 64
+
 # A path of cells passes this close to their centres.
 _CENTRE = 1e-9
 
@@ -52,7 +55,8 @@ def parts(points: np.ndarray) -> int:
 def sample(points: np.ndarray, last: int, stride: int) -> tuple[np.ndarray, np.ndarray]:
     """x and y of a Bezier piece (degree + 1, 2) at the parameters 0, stride / last, 2 stride / last, ..., including 1 if the stride is 1.
 
-    Horner's rule in Bernstein form, all weights positive, for all samples at once.
+    Horner's rule in Bernstein form, all weights positive, for all samples at once; two control points at a time, so that each sample is read
+    and written fewer times.
     """
     degree = len(points) - 1
     count = last // stride + 1
@@ -61,13 +65,24 @@ def sample(points: np.ndarray, last: int, stride: int) -> tuple[np.ndarray, np.n
     for s in range(count):
         t[s] = s * stride / last
     binomial = 1.0
-    for i in range(1, degree + 1):
+    if degree % 2:
+        binomial = float(degree)
+        weight_x, weight_y = binomial * points[1, 0], binomial * points[1, 1]
+        for s in range(count):
+            power[s] = t[s]
+            x[s] = x[s] * (1.0 - t[s]) + t[s] * weight_x
+            y[s] = y[s] * (1.0 - t[s]) + t[s] * weight_y
+    for i in range(1 + degree % 2, degree, 2):
         binomial *= (degree - i + 1) / i
         weight_x, weight_y = binomial * points[i, 0], binomial * points[i, 1]
+        binomial *= (degree - i) / (i + 1)
+        next_x, next_y = binomial * points[i + 1, 0], binomial * points[i + 1, 1]
         for s in range(count):
-            power[s] *= t[s]
-            x[s] = x[s] * (1.0 - t[s]) + power[s] * weight_x
-            y[s] = y[s] * (1.0 - t[s]) + power[s] * weight_y
+            rest = 1.0 - t[s]
+            here = power[s] * t[s]
+            power[s] = here * t[s]
+            x[s] = (x[s] * rest + here * weight_x) * rest + power[s] * next_x
+            y[s] = (y[s] * rest + here * weight_y) * rest + power[s] * next_y
     if stride == 1:
         x[last], y[last] = points[degree, 0], points[degree, 1]
     return x, y
@@ -193,14 +208,16 @@ def cells8(columns: np.ndarray, rows: np.ndarray) -> float:
 @njit(cache=True)
 def polyline_length(x: np.ndarray, y: np.ndarray) -> float:
     """Length of a polyline."""
-    steps = np.empty(len(x) - 1)
     # Square roots and their sum are computed in two loops, so that the first can use vector instructions, and the order of the sum stays as
-    # written.
-    for s in range(len(steps)):
-        steps[s] = math.sqrt((x[s + 1] - x[s]) ** 2 + (y[s + 1] - y[s]) ** 2)
+    # written; by blocks, so that a processor takes the roots of one block while it still adds those of the one before.
+    steps = np.empty(_BLOCK)
     length = 0.0
-    for step in steps:
-        length += step
+    for first in range(0, len(x) - 1, _BLOCK):
+        size = min(_BLOCK, len(x) - 1 - first)
+        for s in range(size):
+            steps[s] = math.sqrt((x[first + s + 1] - x[first + s]) ** 2 + (y[first + s + 1] - y[first + s]) ** 2)
+        for s in range(size):
+            length += steps[s]
     return length
 
 

@@ -177,6 +177,7 @@ def _search(rng, cells, occupied, places, curve, rules):
     for generation in range(rules.generations + 1):
         for i in range(population):
             mother, father = drawn[i - i % 2], drawn[min(i | 1, population - 1)]
+            length, count = 0.0, 0
             for k in range(len(stretches)):
                 first, last = stretches[k, 0], stretches[k, 1]
                 if _same(cells[i], parents[mother], first, last):
@@ -187,8 +188,12 @@ def _search(rng, cells, occupied, places, curve, rules):
                     lengths[i, k], bad[i, k] = _measure_by_arc_length(cells[i], occupied, places, len(x))
                 else:
                     lengths[i, k], bad[i, k] = _measure(cells[i], occupied, places, basis, stretches[k], x, y)
-            count = bad[i].sum()
-            objective[i] = lengths[i].sum() + rules.penalty * (count if rules.penalty_for_each else min(count, 1))
+                length += lengths[i, k]
+                count += bad[i, k]
+                objective[i] = length + rules.penalty * (count if rules.penalty_for_each else min(count, 1))
+                # No other stretch makes it smaller, and only parents need to be measured in full.
+                if generation == rules.generations and objective[i] >= best_objective:
+                    break
             if rules.occupied_point_penalty > 0:
                 for cell in cells[i, 1:-1]:
                     objective[i] += rules.occupied_point_penalty * occupied.flat[cell]

@@ -336,7 +336,7 @@ def _add_offspring(rng, pool, filled, wheel, eta, child, memory, field, rules):
                         continue
                     # No parent survives, so the place is filled as in the first population.
                     cost = 1.0 / _UNFIT
-                if _is_too_alike(child[:count], cost, pool, filled, eta, field, rules):
+                if rules.diversity >= _RELAXING and _is_too_alike(child[:count], cost, pool, filled, eta, field, rules):
                     continue
                 gene_lists.put(child, count, cost, free, pool, filled)
                 filled += 1

@@ -18,6 +18,7 @@ _ON_LINE = 1e-9
 
 FitnessLength = Literal["length", "cells4", "cells8"]
 _LENGTH, _CELLS4, _CELLS8 = range(3)
+_FREE, _OCCUPIED, _UNKNOWN = range(3)
 
 
 @njit(cache=True)
@@ -31,12 +32,19 @@ def validate(ones: np.ndarray, field: Field, rules: NamedTuple) -> tuple[float, 
     points = polygon(ones, field)
     for i in range(1, len(points) - 1):  # `Distance Threshold`
         for j in range(1, i):
-            if math.hypot(points[i, 0] - points[j, 0], points[i, 1] - points[j, 1]) < rules.least_distance:
+            width, height = abs(points[i, 0] - points[j, 0]), abs(points[i, 1] - points[j, 1])
+            if max(width, height) < rules.least_distance and math.hypot(width, height) < rules.least_distance:
                 return np.inf, False
-    if not rules.composite and not rules.punished and _collides_at_first_sight(points, field.occupied):
-        return np.inf, False
+    if not rules.composite and not rules.punished:
+        last = parts(points)
+        x, y = sample(points, last, max(1, last // _FIRST_SAMPLES))
+        if _collides(x, y, field.room):
+            return np.inf, False
     x, y = _curve(points, rules.composite)
-    if rules.fitness_length == _LENGTH and _is_free_at_first_sight(x, y, field.occupied):
+    sight = _at_first_sight(x, y, field.room)
+    if sight == _OCCUPIED and not rules.punished:
+        return np.inf, False
+    if sight == _FREE and rules.fitness_length == _LENGTH:
         return polyline_length(x, y), True
     columns, rows = touched_cells(x, y)
     bad = occupied_cells(columns, rows, field.occupied)  # `Valid Path`
@@ -52,47 +60,50 @@ def validate(ones: np.ndarray, field: Field, rules: NamedTuple) -> tuple[float, 
 
 
 @njit(cache=True)
-def _collides_at_first_sight(points, occupied):
-    """Whether any of some samples of a curve, all of which `_curve` also has, lie in occupied cells; those on grid lines are left to the
-    walk.
-    """
-    last = parts(points)
-    stride = max(1, last // _FIRST_SAMPLES)
-    degree = len(points) - 1
-    for s in range(last // stride + 1):
-        # The terms of `sample` in the same order, one sample at a time: most curves collide at one of the first.
-        t = s * stride / last
-        x, y, power, binomial = points[0, 0], points[0, 1], 1.0, 1.0
-        for i in range(1, degree + 1):
-            binomial *= (degree - i + 1) / i
-            power *= t
-            x = x * (1.0 - t) + power * (binomial * points[i, 0])
-            y = y * (1.0 - t) + power * (binomial * points[i, 1])
-        if stride == 1 and s == last:
-            x, y = points[degree, 0], points[degree, 1]
-        column, row = math.floor(x), math.floor(y)
-        inside = x - column > _ON_LINE and column + 1 - x > _ON_LINE and y - row > _ON_LINE and row + 1 - y > _ON_LINE
-        if inside and occupied[row, column]:
+def _collides(x, y, room):
+    """Whether any of some samples of a curve lie in occupied cells; those on grid lines are left to the walk over the cells."""
+    rows, columns = room.shape
+    for s in range(len(x)):
+        column, row = min(int(x[s]), columns - 1), min(int(y[s]), rows - 1)
+        if room[row, column] == 0 and _is_within(x[s] - column, y[s] - row):
             return True
     return False
 
 
 @njit(cache=True)
-def _is_free_at_first_sight(x, y, occupied):
-    """Whether the cells of all samples are free, as well as those whose corner a step between two samples may cut: the walk over the cells
-    can then only find the same. Never true for curves with a sample on a grid line.
+def _is_within(right, above):
+    """Whether a sample is not on a grid line, by its distances from those to the left and below."""
+    return _ON_LINE < right < 1.0 - _ON_LINE and _ON_LINE < above < 1.0 - _ON_LINE
+
+
+@njit(cache=True)
+def _at_first_sight(x, y, room):
+    """What a walk over the cells of a curve would find, if a look at its samples tells: `_OCCUPIED` if a sample is in an occupied cell;
+    `_FREE` if the cells of all samples are free, as well as those whose corner a step between two samples may cut. `_UNKNOWN` where neither
+    holds, and for free curves with a sample on a grid line.
+
+    Samples are less than a cell apart, so after one with free cells all around it the next ones need no look.
     """
-    rows, columns = occupied.shape
-    touched = on_line = False
+    rows, columns = room.shape
     # There is no cell beyond the upper and right borders, on which start and target may lie.
     column, row = min(int(x[0]), columns - 1), min(int(y[0]), rows - 1)
-    for s in range(len(x)):
-        before_column, before_row = column, row
+    cut = False
+    s = 0
+    while s < len(x):
+        before = max(s - 1, 0)
+        before_column, before_row = min(int(x[before]), columns - 1), min(int(y[before]), rows - 1)
         column, row = min(int(x[s]), columns - 1), min(int(y[s]), rows - 1)
-        touched |= occupied[row, column] | occupied[before_row, column] | occupied[row, before_column]
-        right, above = x[s] - column, y[s] - row
+        if room[row, column] == 0 and _is_within(x[s] - column, y[s] - row):
+            return _OCCUPIED
+        cut |= room[row, column] == 0 or room[before_row, column] == 0 or room[row, before_column] == 0
+        s += max(room[row, column], 1)
+    if cut:
+        return _UNKNOWN
+    on_line = False
+    for s in range(len(x)):
+        right, above = x[s] - math.floor(x[s]), y[s] - math.floor(y[s])
         on_line |= (right <= _ON_LINE) | (right >= 1.0 - _ON_LINE) | (above <= _ON_LINE) | (above >= 1.0 - _ON_LINE)
-    return not (touched or on_line)
+    return _UNKNOWN if on_line else _FREE
 
 
 @njit(cache=True)

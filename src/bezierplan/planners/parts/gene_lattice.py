@@ -18,21 +18,23 @@ from bezierplan.workspaces.lattice import STEPS
 class Field(NamedTuple):
     """Where the curves lie; lengths in cells from the grid's corner.
 
-    occupied: bool (rows, columns). points: (genes, 2) centre of each gene's cell. rank: (genes,) its place in the order in which control
-    points are joined. settable: (genes,) whether it may be 1; choices: the genes that may. places: the number of lattice points along the
-    longer side, then how many lines of genes, and how many genes of a line, lie on the map: columns and rows, or the other way round if
-    by_rows. start, target: (2,).
+    occupied: bool (rows, columns). room: (rows, columns) steps in any of eight directions to the nearest occupied cell, 0 for an occupied
+    one; the longer side where all cells are free. points: (genes, 2) centre of each gene's cell. rank: (genes,) its place in the order in
+    which control points are joined. settable: (genes,) whether it may be 1; choices: the genes that may. places: the number of lattice
+    points along the longer side, then how many lines of genes, and how many genes of a line, lie on the map: columns and rows, or the other
+    way round if by_rows. start, target: x and y.
     """
 
     occupied: np.ndarray
+    room: np.ndarray
     points: np.ndarray
     rank: np.ndarray
     settable: np.ndarray
     choices: np.ndarray
     places: tuple[int, int, int]
     by_rows: bool
-    start: np.ndarray
-    target: np.ndarray
+    start: tuple[float, float]
+    target: tuple[float, float]
 
 
 def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, gene_order: str, point_order: str) -> Field:
@@ -40,6 +42,8 @@ def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, gene_order: str, p
 
     Raises ValueError if no cell of the lattice is free.
     """
+    from scipy import ndimage
+
     rows, columns = grid.occupied.shape
     longer = max(rows, columns)
     # Cell indices of 21 points along the longer side, the outer ones at its ends; or all cells.
@@ -62,10 +66,11 @@ def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, gene_order: str, p
         far = np.full(2 * (longer,), np.inf)
         far[:columns, :rows] = _distances(np.pad(grid.occupied, 1, constant_values=True), *np.floor(ends[0, ::-1]).astype(int), STEPS).T
         rank[np.argsort(far[column, row], kind="stable")] = np.arange(len(points))
+    room = ndimage.distance_transform_cdt(~grid.occupied, "chessboard") if grid.occupied.any() else np.full((rows, columns), longer, np.int32)
     by_rows = gene_order == "rows"
     on_map = int((steps < columns).sum()), int((steps < rows).sum())
     places = (len(steps), *(reversed(on_map) if by_rows else on_map))
-    return Field(grid.occupied, points, rank, settable, choices, places, by_rows, ends[0], ends[1])
+    return Field(grid.occupied, room, points, rank, settable, choices, places, by_rows, *map(tuple, ends.tolist()))
 
 
 @njit(cache=True)
@@ -96,7 +101,7 @@ def genes_at(points: np.ndarray, field: Field) -> np.ndarray:
     """
     apart = np.abs(points[:, None] - field.points).max(axis=2, initial=0.0)
     genes = apart.argmin(axis=1)
-    ahead = (field.points[genes] - field.start) @ (field.target - field.start) > 0
+    ahead = (field.points[genes] - field.start) @ np.subtract(field.target, field.start) > 0
     return np.unique(genes[(apart.min(axis=1) < 0.5) & field.settable[genes] & ahead])
 
 
