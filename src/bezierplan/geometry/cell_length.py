@@ -55,8 +55,8 @@ def parts(points: np.ndarray) -> int:
 def sample(points: np.ndarray, last: int, stride: int) -> tuple[np.ndarray, np.ndarray]:
     """x and y of a Bezier piece (degree + 1, 2) at the parameters 0, stride / last, 2 stride / last, ..., including 1 if the stride is 1.
 
-    Horner's rule in Bernstein form, all weights positive, for all samples at once; two control points at a time, so that each sample is read
-    and written fewer times.
+    Horner's rule in Bernstein form, all weights positive, for all samples at once; two control points at a time, so that each sample is
+    read and written fewer times.
     """
     degree = len(points) - 1
     count = last // stride + 1
