@@ -11,7 +11,7 @@ from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.effects import Comparison
 from bezierplan.analysis.claims.kinds import cell_column, kind_of, named_groups, option
 from bezierplan.analysis.claims.material import Material, Untestable
-from bezierplan.analysis.claims.published import printed, rows_of_cell
+from bezierplan.analysis.claims.published import printed, printed_table, rows_of_cell
 from bezierplan.analysis.results import pick, select
 from bezierplan.study.checked import Fault
 from bezierplan.study.model import one_or_list
@@ -77,6 +77,7 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
     tables, printed_metric = _published_tables(check, claim, material), check.get("printed_metric", check["metric"])
     keys = ["experiment", *every, *pool, *([column] if column else []), *(key for _, table in tables for key in table if key in runs)]
     keys = list(dict.fromkeys(key for key in keys if key != "value"))
+    printed_tables = [printed_table(experiment, table, printed_metric) for experiment, table in tables]
     runs = runs[list(dict.fromkeys([*keys, *_FACTORS, unit, "value"]))]
     _refuse_mixtures(check, claim, runs, [*every, *pool, *([column] if column else []), unit])
     # Published numbers are found by the places of the runs, each once.
@@ -84,11 +85,11 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
     found = []
     for place, rows in _split(runs, every):
         unit_tables = {name: _unit_table(part, unit, column) for name, part in _split(rows, pool)}
-        conditions = [part for _, part in _split(places[place], pool)]
+        conditions = [part.to_dict("records") for _, part in _split(places[place], pool)]
         compared = list(kind_of(check).cells(check, rows))
         printed_rows = {
             cell: [
-                rows_of_cell(part if column is None else part[part[column] == cell], printed_metric, tables, material.variant_of)
+                rows_of_cell([row for row in part if column is None or row[column] == cell], printed_tables, material.variant_of)
                 for part in conditions
             ]
             for cell in dict.fromkeys(cell for _, cells in compared for cell in cells)

@@ -46,24 +46,40 @@ def printed(check: dict, found: Sequence[Sequence[Printed | None]]) -> tuple[np.
     return nothing
 
 
-def rows_of_cell(cell: pd.DataFrame, metric: str, tables: list[tuple[str, pd.DataFrame]], variant_of: dict[str, str]) -> Printed | None:
-    """The printed numbers of a cell's metric; None if no table has it, or if the cell matches several rows.
-
-    cell: the columns that distinguish its runs. tables: experiment and published numbers; the first with the cell is used.
-    variant_of: method -> the method whose published numbers count.
+class PrintedTable(NamedTuple):
+    """The printed numbers of one metric in a table: its experiment; the columns that tell its cells apart; and their values in a cell ->
+    statistic -> (row in the table, value, number of runs).
     """
-    for number, (experiment, table) in enumerate(tables):
-        keys = table.columns[: table.columns.get_loc("metric")].to_list()
-        if set(cell["experiment"]) != {experiment} or not set(keys) <= set(cell.columns):
+
+    experiment: str
+    keys: list[str]
+    cells: dict[tuple, dict[str, tuple[int, float, float]]]
+
+
+def printed_table(experiment: str, table: pd.DataFrame, metric: str) -> PrintedTable:
+    """The numbers of a metric in a table of published numbers."""
+    keys = table.columns[: table.columns.get_loc("metric")].to_list()
+    rows = table[table["metric"] == metric].dropna(subset=keys)
+    cells: dict[tuple, dict] = {}
+    for number, row in zip(rows.index, rows.to_dict("records")):
+        cells.setdefault(tuple(row[key] for key in keys), {})[row["statistic"]] = number, float(row["value"]), float(row["n"])
+    return PrintedTable(experiment, keys, cells)
+
+
+def rows_of_cell(cell: list[dict], tables: list[PrintedTable], variant_of: dict[str, str]) -> Printed | None:
+    """The printed numbers of a cell; None if no table has it, or if the cell matches several rows.
+
+    cell: the values that distinguish its runs, by column. tables: the first with the cell is used. variant_of: method -> the method whose
+    published numbers count.
+    """
+    experiments = {row["experiment"] for row in cell}
+    for number, table in enumerate(tables):
+        if experiments != {table.experiment} or not set(table.keys) <= cell[0].keys():
             continue
-        places = cell[keys].drop_duplicates()
+        places = {tuple(row[key] for key in table.keys) for row in cell}
         if len(places) != 1:
             continue
-        place = dict(places.iloc[0]) | {"metric": metric}
-        if "method" in place:
-            place["method"] = variant_of.get(place["method"], place["method"])
-        rows = table[np.logical_and.reduce([table[key] == value for key, value in place.items()])]
-        if not rows.empty:
-            values, runs = (rows[column].astype(float) for column in ("value", "n"))
-            return Printed(number, dict(zip(rows["statistic"], zip(rows.index, values, runs))))
+        place = tuple(variant_of.get(value, value) if key == "method" else value for key, value in zip(table.keys, places.pop()))
+        if place in table.cells:
+            return Printed(number, table.cells[place])
     return None
