@@ -141,11 +141,11 @@ def _first_path(rng, occupied, start, target, colony):
     suffice.
     """
     path = np.empty((colony.most_points + 2, 2))
-    path[0] = start
+    path[0, 0], path[0, 1] = start  # an assignment of a whole row takes seconds to compile
     for count in range(1, colony.most_points + 2):
         last = path[count - 1]
         if is_free_leg(occupied, last[0], last[1], target[0], target[1]):
-            path[count] = target
+            path[count, 0], path[count, 1] = target
             return path[: count + 1].copy()
         if count <= colony.most_points and _next_point(rng, occupied, target, path, count, colony) >= _UNSEEN:
             break
@@ -350,4 +350,6 @@ def _wins(rng, cost, opponents):
 def _rank(slots, wins, cost):
     """Sort slots in place, stably: most wins first, ties by lowest cost. The cheapest of all loses to none, so it comes first."""
     cheapest_first = slots[ascending(cost[slots])]
-    slots[:] = cheapest_first[ascending(-wins[cheapest_first])]
+    order = ascending(-wins[cheapest_first])
+    for k in range(len(slots)):
+        slots[k] = cheapest_first[order[k]]

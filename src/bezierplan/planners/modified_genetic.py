@@ -259,7 +259,8 @@ def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarr
     for place in range(size):
         if place < len(first):
             count = counts[place]
-            child[:count] = first[place, :count]
+            for k in range(count):  # an assignment to a slice takes seconds to compile
+                child[k] = first[place, k]
             cost, free = validate(child[:count], field, rules)
             evaluations += 1
             gene_lists.put(child, count, min(cost, 1.0 / _UNFIT), free, pool, place)

@@ -15,6 +15,7 @@ from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts.genetic import check_pairs, roulette
 from bezierplan.planners.parts.node_mutation import Mutation, mutate
 from bezierplan.planners.parts.random_integers import below
+from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.ground import centres, edge_energy, ground_of, least_energy, obstacles_met, path_met
 from bezierplan.workspaces.problem import Path, Problem
@@ -240,7 +241,7 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
             objective[i], met[i] = _evaluate(paths[i, : lengths[i]], ground, rules.penalty)
         evaluations += population
         diversity += node_diversity(paths, lengths, ground.occupied.size)
-        order = np.argsort(objective, kind="mergesort")
+        order = ascending(objective)
         first = order[0]
         if objective[first] < best_objective - _IMPROVEMENT:
             if len(best) < lengths[first]:

@@ -41,7 +41,8 @@ def _sort(edges: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
         begin, end = columns_between(edges[e, 0], edges[e, 2], bins)
         for column in range(begin, end + 1):
             low, high = rows_between(edges[e, :2], edges[e, 2:], column, bins)
-            first[column * bins.rows + low + 1 : column * bins.rows + high + 2] += 1
+            for number in range(column * bins.rows + low, column * bins.rows + high + 1):  # += on a slice takes seconds to compile
+                first[number + 1] += 1
     first = np.cumsum(first)
     place = first[:-1].copy()
     found = np.empty(first[-1], dtype=np.int64)
@@ -49,9 +50,9 @@ def _sort(edges: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
         begin, end = columns_between(edges[e, 0], edges[e, 2], bins)
         for column in range(begin, end + 1):
             low, high = rows_between(edges[e, :2], edges[e, 2:], column, bins)
-            for place_of in range(column * bins.rows + low, column * bins.rows + high + 1):
-                found[place[place_of]] = e
-                place[place_of] += 1
+            for number in range(column * bins.rows + low, column * bins.rows + high + 1):
+                found[place[number]] = e
+                place[number] += 1
     return first, found
 
 
