@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from bezierplan.geometry import curves
 from bezierplan.planners import binary_genetic
 from bezierplan.workspaces.grid import Grid, from_lines
-from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.problem import Path, Problem
 
 SETTINGS = {
     "curve": "piecewise_quadratic",
@@ -63,6 +63,21 @@ def test_objective_is_length_plus_penalty_for_each_occupied_sample(seed, curve):
     assert found.objective == pytest.approx(length + 10 * bad, rel=1e-12)
     assert found.extra["bad_samples"] == bad
     assert found.claimed_feasible == (bad == 0)
+
+
+@pytest.mark.parametrize("penalty_for", ["each_sample", "path"])
+@pytest.mark.parametrize("curve", curves.B_SPLINES)
+def test_the_best_of_a_generation_is_the_best_of_all_measured_in_full(curve, penalty_for):
+    """The last generation is measured only as far as it takes to know that a chromosome is not the best."""
+    grid, population = random_grid(8), 300
+    found = plan(grid, seed=3, curve=curve, samples=SAMPLES[curve], generations=0, population=population, penalty_for=penalty_for)
+    starts, _ = np.random.default_rng(3).spawn(2)
+    costs = []
+    for cells in starts.integers(0, 256, size=(population, SETTINGS["genes"])):
+        points = np.array([grid.centre(cell) for cell in (0, *cells.tolist(), 255)])
+        length, bad = reference(Path(curve, points), grid, SAMPLES[curve])
+        costs.append(length + 10 * (bad if penalty_for == "each_sample" else min(bad, 1)))
+    assert found.objective == pytest.approx(min(costs), rel=1e-12)
 
 
 @pytest.mark.parametrize("curve", curves.B_SPLINES)
