@@ -1,6 +1,7 @@
 """Square maps with blocks of occupied cells at random positions, none of which touch."""
 
 from collections.abc import Iterator
+from functools import cache
 
 import numpy as np
 
@@ -47,12 +48,20 @@ def _blocks(rng: np.random.Generator, ends: np.ndarray, wanted: int, largest: in
     count = 0
     sizes = rng.integers(1, largest + 1, size=(MOST_BLOCKS, 2))
     corners = rng.integers(0, side - sizes + 1)
+    # A set of cells is an integer with a bit for each cell of the map and of a frame around it, so that a block is tested in one operation.
+    stride = side + 2
+    taken = sum(1 << (row + 1) * stride + column + 1 for row, column in np.argwhere(ends).tolist())
     for (height, width), (row, column) in zip(sizes.tolist(), corners.tolist()):
         if count == wanted:
             break
-        block = np.s_[row : row + height, column : column + width]
-        around = np.s_[max(row - 1, 0) : row + height + 1, max(column - 1, 0) : column + width + 1]
-        if count + height * width <= wanted and not ends[block].any() and not occupied[around].any():
-            occupied[block] = True
+        if count + height * width <= wanted and not taken & _rectangle(height, width, stride) << (row + 1) * stride + column + 1:
+            taken |= _rectangle(height + 2, width + 2, stride) << row * stride + column
+            occupied[row : row + height, column : column + width] = True
             count += height * width
     return occupied
+
+
+@cache
+def _rectangle(height: int, width: int, stride: int) -> int:
+    """The set of the cells of a rectangle whose lower left cell is the first; `stride` cells make a row."""
+    return sum((1 << width) - 1 << row * stride for row in range(height))
