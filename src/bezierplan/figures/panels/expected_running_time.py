@@ -48,7 +48,7 @@ def data(results: Results, *, cost: Literal["evaluations", "cpu_s"]) -> pd.DataF
         marked = runs.assign(done=running_time.solves(runs, within))
         running_time.by_problem(marked, marked["done"].to_numpy(dtype=float))
         for method, own in marked.groupby("method"):
-            groups = [(group[cost].to_numpy(dtype=float), group["done"].to_numpy()) for _, group in own.groupby("condition")]
+            groups = _by_condition(own, cost)
             values = np.array([running_time.expected(work.sum(), done.sum()) for work, done in groups])
             low, high = _interval(groups, values, generator(f"expected running time/{cost}/{within}/{method}"))
             counts = {
@@ -59,6 +59,15 @@ def data(results: Results, *, cost: Literal["evaluations", "cpu_s"]) -> pd.DataF
             }
             rows.append({"method": method, "within": within, "value": _middle(values), "low95": low, "high95": high, **counts})
     return pd.DataFrame(rows)
+
+
+def _by_condition(runs: pd.DataFrame, cost: str) -> list[tuple[np.ndarray, np.ndarray]]:
+    """The cost and the success of the runs under each condition, in the order of the conditions' names."""
+    import pandas as pd
+
+    codes, _ = pd.factorize(runs["condition"], sort=True)
+    order, ends = np.argsort(codes, kind="stable"), np.cumsum(np.bincount(codes))[:-1]
+    return list(zip(*(np.split(runs[name].to_numpy()[order].astype(kind), ends) for name, kind in ((cost, float), ("done", bool)))))
 
 
 def _middle(values: np.ndarray) -> np.ndarray:
