@@ -85,11 +85,10 @@ def _at_first_sight(x, y, room):
     Samples are less than a cell apart, so after one with free cells all around it the next ones need no look.
     """
     rows, columns = room.shape
-    # There is no cell beyond the upper and right borders, on which start and target may lie.
-    column, row = min(int(x[0]), columns - 1), min(int(y[0]), rows - 1)
     cut = False
     s = 0
     while s < len(x):
+        # There is no cell beyond the upper and right borders, on which start and target may lie.
         before = max(s - 1, 0)
         before_column, before_row = min(int(x[before]), columns - 1), min(int(y[before]), rows - 1)
         column, row = min(int(x[s]), columns - 1), min(int(y[s]), rows - 1)
