@@ -473,6 +473,23 @@ def test_boxes_show_the_published_means_of_their_runs(tmp_path):
     assert "published mean" in words(figure)
 
 
+def test_published_means_off_the_scale_are_told_by_their_range(tmp_path):
+    """One text for each row and edge: several would lie on each other."""
+    far = pd.DataFrame(
+        {
+            "method": ["smooth", "smooth", "smooth", "coarse", "random"],
+            "metric": "objective",
+            "statistic": "mean",
+            "n": 10,
+            "value": [400.0, 900.0, 650.0, 0.25, 500.0],
+        }
+    )
+    told = words(drawn(comparison(far), [{"kind": "boxes", "experiment": "routes", "metric": "objective"}], 1, tmp_path))
+    numbers = {"400 to 900", "0.25", "500", "400", "650", "900"}
+    assert sorted(text for text in told if text in numbers) == ["0.25", "400 to 900", "500"]
+    assert "published mean, off the scale" in told
+
+
 def test_bars_count_feasible_runs_and_know_the_bound(tmp_path):
     found = comparison()
     found.runs.loc[found.runs["method"] == "random", "feasible"] = False

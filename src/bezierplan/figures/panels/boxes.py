@@ -30,6 +30,9 @@ _PARTS = {"low": "whislo", "quartile1": "q1", "median": "med", "quartile3": "q3"
 # Published means farther away than this many times the range of our values are drawn at the edge, with their value.
 _FAR = 0.25
 
+# So that a number can be read where it lies on a whisker.
+_BEHIND_TEXT = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 0.6}
+
 
 class Options(RunsPanel):
     """Keys of a panel."""
@@ -124,13 +127,15 @@ def _draw_far(axes: Axes, groups: list[dict[str, list[float]]], limits: list[flo
     reach = _FAR * (high - low)
     far = set()
     for height, parts in enumerate(groups):
-        for value in parts.get("published", []):
-            if low - reach <= value <= high + reach:
+        for above in (False, True):
+            beyond = sorted(value for value in parts.get("published", []) if (value > high + reach if above else value < low - reach))
+            if not beyond:
                 continue
-            far.add(value)
-            above = value > high
+            far.update(beyond)
+            # Several, of several conditions, by their range: one text each would lie on the other.
+            told = " to ".join(dict.fromkeys(f"{value:.4g}" for value in (beyond[0], beyond[-1])))
             at = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "center", "ha": "right" if above else "left"}
-            axes.annotate(f"{value:.4g}", (1.0 if above else 0.0, height), xytext=(-7 if above else 7, 0), zorder=5, **at)
+            axes.annotate(told, (1.0 if above else 0.0, height), xytext=(-7 if above else 7, 0), zorder=5, bbox=_BEHIND_TEXT, **at)
             edge = style.PUBLISHED_MARK | {"marker": ">" if above else "<", "label": "published mean, off the scale"}
             axes.plot(1.0 if above else 0.0, height, transform=axes.get_yaxis_transform(), clip_on=False, zorder=5, **edge)
     if far:
