@@ -91,7 +91,7 @@ def warm_up(seconds):
         ([0.5, 0.001], 4),
         ([0.00096, 0.00078, 0.00036, 0.0003, 0.0003], 6),
         ([1.5], 1),
-        ([0.5, 0.08, 0.05, 0.01], 3),
+        ([0.5, 0.15, 0.1, 0.05], 3),
     ],
 )
 def test_runs_are_thrown_away_until_times_are_stable(seconds, runs):

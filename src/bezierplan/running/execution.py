@@ -46,7 +46,7 @@ TAKEN = frozenset((*RUN_COLUMNS, *PLACE, *JOINED))
 # many seconds, or until one takes so long that its loading time is negligible.
 _ALIKE = 3
 _STABLE = 0.1
-_WARM_UP = 0.1
+_WARM_UP = 0.2
 _LONG_RUN = 1.0
 
 # Number of runs between two lines of the log.

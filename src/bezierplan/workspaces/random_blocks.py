@@ -50,12 +50,13 @@ def _blocks(rng: np.random.Generator, ends: np.ndarray, wanted: int, largest: in
     corners = rng.integers(0, side - sizes + 1)
     # A set of cells is an integer with a bit for each cell of the map and of a frame around it, so that a block is tested in one operation.
     stride = side + 2
-    taken = sum(1 << (row + 1) * stride + column + 1 for row, column in np.argwhere(ends).tolist())
+    taken = sum(1 << ((row + 1) * stride + column + 1) for row, column in np.argwhere(ends).tolist())
     for (height, width), (row, column) in zip(sizes.tolist(), corners.tolist()):
         if count == wanted:
             break
-        if count + height * width <= wanted and not taken & _rectangle(height, width, stride) << (row + 1) * stride + column + 1:
-            taken |= _rectangle(height + 2, width + 2, stride) << row * stride + column
+        block = _rectangle(height, width, stride) << ((row + 1) * stride + column + 1)
+        if count + height * width <= wanted and not taken & block:
+            taken |= _rectangle(height + 2, width + 2, stride) << (row * stride + column)
             occupied[row : row + height, column : column + width] = True
             count += height * width
     return occupied
@@ -64,4 +65,4 @@ def _blocks(rng: np.random.Generator, ends: np.ndarray, wanted: int, largest: in
 @cache
 def _rectangle(height: int, width: int, stride: int) -> int:
     """The set of the cells of a rectangle whose lower left cell is the first; `stride` cells make a row."""
-    return sum((1 << width) - 1 << row * stride for row in range(height))
+    return sum(((1 << width) - 1) << (row * stride) for row in range(height))

@@ -62,12 +62,13 @@ def data(results: Results, *, cost: Literal["evaluations", "cpu_s"]) -> pd.DataF
 
 
 def _by_condition(runs: pd.DataFrame, cost: str) -> list[tuple[np.ndarray, np.ndarray]]:
-    """The cost and the success of the runs under each condition, in the order of the conditions' names."""
+    """The cost (n,) and the success (n,) of the n runs under each condition, in the order of the conditions' names."""
     import pandas as pd
 
     codes, _ = pd.factorize(runs["condition"], sort=True)
     order, ends = np.argsort(codes, kind="stable"), np.cumsum(np.bincount(codes))[:-1]
-    return list(zip(*(np.split(runs[name].to_numpy()[order].astype(kind), ends) for name, kind in ((cost, float), ("done", bool)))))
+    work, done = runs[cost].to_numpy(dtype=float)[order], runs["done"].to_numpy()[order]
+    return list(zip(np.split(work, ends), np.split(done, ends)))
 
 
 def _middle(values: np.ndarray) -> np.ndarray:

@@ -67,7 +67,7 @@ def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, gene_order: str, p
         far[:columns, :rows] = _distances(np.pad(grid.occupied, 1, constant_values=True), *np.floor(ends[0, ::-1]).astype(int), STEPS).T
         rank[np.argsort(far[column, row], kind="stable")] = np.arange(len(points))
     room = ndimage.distance_transform_cdt(~grid.occupied, "chessboard")
-    room[room < 0] = longer
+    room[room < 0] = longer  # there is no occupied cell
     by_rows = gene_order == "rows"
     on_map = int((steps < columns).sum()), int((steps < rows).sum())
     places = (len(steps), *(reversed(on_map) if by_rows else on_map))
