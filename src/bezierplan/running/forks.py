@@ -6,6 +6,7 @@ child inherits modules, never results: the parent reads no file of the workflow.
 """
 
 import contextlib
+import gc
 import importlib
 import inspect
 import logging
@@ -131,6 +132,8 @@ def run(parent: socket.socket) -> None:
     """Run, in a child, the script that a socket brings, and end the process. An exception ends it as it would end an interpreter."""
     signal.signal(signal.SIGINT, signal.default_int_handler)
     signal.signal(signal.SIGCHLD, signal.SIG_DFL)
+    # What was imported before the fork is no garbage: to look through it again and again takes a fifth of a second of most jobs.
+    gc.freeze()
     # Held until the process ends: Python 3.13 drops an exception's frames, and sockets in them, before it says what sys.exit was given.
     os.dup(parent.fileno())
     with parent.makefile("rb") as stream:
