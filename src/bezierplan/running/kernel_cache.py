@@ -16,6 +16,7 @@ from typing import Any
 from numba.core.caching import Cache, IndexDataCacheFile, UserProvidedCacheLocator
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.dispatcher import Dispatcher
+from numba.core.types import unliteral
 
 from bezierplan.running import effort
 from bezierplan.running.digest import kernel_folder
@@ -77,6 +78,9 @@ def compile_once(compiled: Callable[[Dispatcher, Any], Any]) -> Callable[[Dispat
         with global_compiler_lock:
             cache = self._cache
             ours = isinstance(cache, Cache) and isinstance(cache._impl.locator, KernelCacheLocator)
+            if ours and isinstance(signature, tuple):
+                # numba would compile a kernel once more for each constant that another kernel passes.
+                signature = tuple(map(unliteral, signature))
             if not ours or signature in self.overloads or _is_kept(cache, signature, self.targetctx.codegen()):
                 with effort.spending("loading kernels"):
                     return compiled(self, signature)
