@@ -5,16 +5,19 @@ import math
 import numpy as np
 from numba import njit
 
+from bezierplan.kernels import allocation_free
+
 _NODES_8, _WEIGHTS_8 = np.polynomial.legendre.leggauss(8)
 _NODES_16, _WEIGHTS_16 = np.polynomial.legendre.leggauss(16)
 
 
-@njit(cache=True)
+@allocation_free
 def _speed(differences: np.ndarray, t: float) -> float:
     """|B'(t)| of a piece from its control points' differences (degree, 2), by Horner's rule in Bernstein form."""
     n = len(differences) - 1
     s = 1.0 - t
-    x, y = differences[0] * s if n else differences[0]
+    first = s if n else 1.0
+    x, y = differences[0, 0] * first, differences[0, 1] * first
     factor = 1.0
     binomial = 1.0
     for i in range(1, n):
@@ -29,7 +32,7 @@ def _speed(differences: np.ndarray, t: float) -> float:
     return (n + 1) * math.hypot(x, y)
 
 
-@njit(cache=True)
+@allocation_free
 def _integral(differences: np.ndarray, low: float, high: float, nodes: np.ndarray, weights: np.ndarray) -> float:
     """Gauss-Legendre quadrature of the speed between two parameters; nodes, weights: (n,), on -1 to 1."""
     total = 0.0
