@@ -71,7 +71,7 @@ def rules(**changed):
     """The settings as `plan` hands them to the search."""
     seen = []
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(planner, "search", lambda rng, field, rules, first, counts: seen.append(rules) or nothing_found())
+        patch.setattr(planner, "search", lambda rng, field, rules, *_: seen.append(rules) or nothing_found())
         planner.plan(BARE, np.random.default_rng(0), **(SETTINGS | changed))
     return seen[0]
 
@@ -165,40 +165,57 @@ def test_points_can_be_joined_in_the_order_of_the_genes():
 # Validation.
 
 
+def validated(ones, found, rules):
+    """`validate` with a scratch of its own."""
+    return gene_curves.validate(ones, found, rules, gene_curves.scratch_for(found))
+
+
 def test_constraints_in_their_order():
     found = field(100, (50, 50, 3))
     empty = np.empty(0, dtype=np.int64)
-    assert gene_curves.validate(empty, found, rules()) == (np.inf, False)
+    assert validated(empty, found, rules()) == (np.inf, False)
     straight = np.array([gene(25, 25)])
-    assert gene_curves.validate(straight, found, rules()) == (np.inf, False)
+    assert validated(straight, found, rules()) == (np.inf, False)
     around = np.array([gene(25, 75)])
-    cost, free = gene_curves.validate(around, found, rules())
+    cost, free = validated(around, found, rules())
     assert free
     assert cost > 141.5
     near = np.array([gene(25, 75), gene(25, 80)])
-    assert gene_curves.validate(near, found, rules(least_distance=5.0))[1]
-    assert gene_curves.validate(near, found, rules(least_distance=5.1)) == (np.inf, False)
+    assert validated(near, found, rules(least_distance=5.0))[1]
+    assert validated(near, found, rules(least_distance=5.1)) == (np.inf, False)
+
+
+@pytest.mark.parametrize("curve", ["single", "composite"])
+def test_the_longest_curve_has_room(curve):
+    """59 control points that alternate between opposite corners of a field."""
+    found = field(20, gene_lattice="cell")
+    corners = [20 * x + y for k in range(30) for x, y in ((k % 5, k // 5), (19 - k % 5, 19 - k // 5))][:59]
+    rank = np.zeros(len(found.points), dtype=np.int64)
+    rank[corners] = np.arange(59)
+    scratch = gene_curves.scratch_for(found)._replace(x=np.full(len(gene_curves.scratch_for(found).x), -1.0))
+    assert gene_curves.validate(np.sort(corners), found._replace(rank=rank), rules(curve=curve, least_distance=0.0), scratch)[1]
+    assert 0.5 * len(scratch.x) < np.count_nonzero(scratch.x != -1.0) < len(scratch.x)
 
 
 def test_more_than_59_points_are_too_many():
     found = field(100)
     ones = np.array([gene(5 * i, 5 * j) for i in range(4) for j in range(1, 16)])
     assert len(ones) == 60
-    assert gene_curves.validate(ones, found, rules()) == (np.inf, False)
-    assert gene_curves.validate(ones[:59], found, rules())[1]
+    assert validated(ones, found, rules()) == (np.inf, False)
+    assert validated(ones[:59], found, rules())[1]
 
 
 def test_the_free_diagonal_costs_its_length():
     found = field(100)
     for name, length in (("length", 100 * np.sqrt(2)), ("cells4", 150.0), ("cells8", 150.0)):
-        assert gene_curves.validate(np.array([gene(50, 50)]), found, rules(fitness_length=name))[0] == pytest.approx(length, rel=1e-12)
+        assert validated(np.array([gene(50, 50)]), found, rules(fitness_length=name))[0] == pytest.approx(length, rel=1e-12)
 
 
 def test_a_colliding_curve_may_be_punished_for_each_cell():
     found = field(100, (50, 50, 3))
     ones = np.array([gene(50, 45)])
-    cost, free = gene_curves.validate(ones, found, rules(invalid="penalty"))
-    x, y = cell_length.sample(planner.polygon(ones, found), cell_length.parts(planner.polygon(ones, found)), 1)
+    cost, free = validated(ones, found, rules(invalid="penalty"))
+    x, y = cell_length.sample(planner.polygon(ones, found), cell_length.parts(planner.polygon(ones, found)))
     bad = cell_length.occupied_cells(*cell_length.touched_cells(x, y), found.occupied)
     assert bad > 0
     assert not free
@@ -217,9 +234,9 @@ def test_first_sights_never_change_a_verdict():
         for _ in range(100):
             ones = np.sort(rng.choice(found.choices, rng.integers(1, 6), replace=False))
             points = planner.polygon(ones, found)
-            x, y = cell_length.sample(points, cell_length.parts(points), 1)
+            x, y = cell_length.sample(points, cell_length.parts(points))
             bad = cell_length.occupied_cells(*cell_length.touched_cells(x, y), found.occupied)
-            cost, verdict = gene_curves.validate(ones, found, rules(least_distance=0.0))
+            cost, verdict = validated(ones, found, rules(least_distance=0.0))
             assert verdict == (bad == 0)
             if verdict:
                 assert cost == cell_length.polyline_length(x, y)
@@ -233,7 +250,7 @@ def test_a_target_on_the_border_is_looked_at_within_the_grid():
     room = np.full((20, 20), 1)
     for start, target in (((0.5, 0.5), (20.0, 20.0)), ((0.5, 10.5), (20.0, 10.5)), ((10.5, 0.5), (10.5, 20.0)), ((20.0, 20.0), (0.5, 0.5))):
         points = np.array([start, target])
-        x, y = cell_length.sample(points, cell_length.parts(points), 1)
+        x, y = cell_length.sample(points, cell_length.parts(points))
         # A sample on a grid line is left to the walk over the cells.
         assert gene_curves._at_first_sight.py_func(x, y, room) == gene_curves._UNKNOWN
         assert gene_curves._at_first_sight(x, y, room) == gene_curves._UNKNOWN
@@ -419,7 +436,8 @@ def batch(seed, pool, field_, **changed):
     for place, ones in enumerate(pool):
         gene_lists.put(np.array(ones), len(ones), 100.0, True, filled_pool, place)
     child, memory = np.empty(planner._ROOM, dtype=np.int64), gene_lists.empty_memory(planner._ROOM)
-    arguments = (filled_pool, len(pool), np.cumsum(np.ones(len(pool))), 0.8, child, memory, field_, rules(population=20, **changed))
+    wheel, scratch = np.cumsum(np.ones(len(pool))), gene_curves.scratch_for(field_)
+    arguments = (filled_pool, len(pool), wheel, 0.8, child, memory, field_, rules(population=20, **changed), scratch)
     filled, tried, invalid = planner._add_offspring(np.random.default_rng(seed), *arguments)
     return [filled_pool.ones[place, : filled_pool.count[place]].tolist() for place in range(len(pool), filled)], tried, invalid
 

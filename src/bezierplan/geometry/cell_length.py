@@ -10,9 +10,9 @@ In the kernels coordinates are in cells from the grid's lower left corner (`Grid
 import math
 
 import numpy as np
-from numba import njit
 
 from bezierplan.geometry import curves
+from bezierplan.kernels import allocation_free
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path
 
@@ -33,7 +33,7 @@ _BLOCK = 64
 _CENTRE = 1e-9
 
 
-@njit(cache=True)
+@allocation_free
 def parts(points: np.ndarray) -> int:
     """Number of equal parameter intervals over each of which a Bezier piece (degree + 1, 2), in cells, moves less than one cell.
 
@@ -51,19 +51,27 @@ def parts(points: np.ndarray) -> int:
     return math.ceil(max(2.0 * total, 1.02 * degree * longest)) + 2
 
 
-@njit(cache=True)
-def sample(points: np.ndarray, last: int, stride: int) -> tuple[np.ndarray, np.ndarray]:
-    """x and y of a Bezier piece (degree + 1, 2) at the parameters 0, stride / last, 2 stride / last, ..., including 1 if the stride is 1.
+def sample(points: np.ndarray, last: int) -> tuple[np.ndarray, np.ndarray]:
+    """x and y of a Bezier piece (degree + 1, 2) at the parameters 0, 1 / last, 2 / last, ..., 1."""
+    x, y, t, power = np.empty((4, last + 1))
+    write_samples(points, last, 1, x, y, t, power)
+    return x, y
+
+
+@allocation_free
+def write_samples(points: np.ndarray, last: int, stride: int, x: np.ndarray, y: np.ndarray, t: np.ndarray, power: np.ndarray) -> int:
+    """Write x and y of a Bezier piece (degree + 1, 2) at the parameters 0, stride / last, 2 stride / last, ...; returns their number. With
+    stride 1 the last parameter is 1. t, power: scratch, as long as x and y.
 
     Horner's rule in Bernstein form, all weights positive, for all samples at once; two control points at a time, so that each sample is
     read and written fewer times.
     """
     degree = len(points) - 1
     count = last // stride + 1
-    x, y = np.full(count, points[0, 0]), np.full(count, points[0, 1])
-    t, power = np.empty(count), np.ones(count)
     for s in range(count):
         t[s] = s * stride / last
+        power[s] = 1.0
+        x[s], y[s] = points[0, 0], points[0, 1]
     binomial = 1.0
     if degree % 2:
         binomial = float(degree)
@@ -85,10 +93,10 @@ def sample(points: np.ndarray, last: int, stride: int) -> tuple[np.ndarray, np.n
             y[s] = (y[s] * rest + here * weight_y) * rest + power[s] * next_y
     if stride == 1:
         x[last], y[last] = points[degree, 0], points[degree, 1]
-    return x, y
+    return count
 
 
-@njit(cache=True)
+@allocation_free
 def _cell(coordinate: float, before: int) -> int:
     """Column or row of a coordinate; on a grid line that of the previous sample, if it is next to the line."""
     line = math.floor(coordinate + 0.5)
@@ -97,14 +105,19 @@ def _cell(coordinate: float, before: int) -> int:
     return math.floor(coordinate)
 
 
-@njit(cache=True)
 def touched_cells(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Columns and rows of the cells that a polyline touches, in order; consecutive vertices are less than a cell apart.
 
     A step is diagonal only where the polyline passes through a corner of cells.
     """
-    columns = np.empty(2 * len(x), dtype=np.int64)
-    rows = np.empty(2 * len(x), dtype=np.int64)
+    columns, rows = np.empty((2, 2 * len(x)), dtype=np.int64)
+    count = write_touched_cells(x, y, columns, rows)
+    return columns[:count], rows[:count]
+
+
+@allocation_free
+def write_touched_cells(x: np.ndarray, y: np.ndarray, columns: np.ndarray, rows: np.ndarray) -> int:
+    """Write the `touched_cells` of a polyline (n,), at most 2 n; returns their number."""
     column, row = math.floor(x[0]), math.floor(y[0])
     columns[0], rows[0] = column, row
     count = 1
@@ -122,10 +135,10 @@ def touched_cells(x: np.ndarray, y: np.ndarray) -> tuple[np.ndarray, np.ndarray]
         column, row = next_column, next_row
         columns[count], rows[count] = column, row
         count += 1
-    return columns[:count], rows[:count]
+    return count
 
 
-@njit(cache=True)
+@allocation_free
 def occupied_cells(columns: np.ndarray, rows: np.ndarray, occupied: np.ndarray) -> int:
     """Number of cells of a sequence that are occupied or outside the grid; `occupied` is bool (rows, columns)."""
     count = 0
@@ -135,7 +148,7 @@ def occupied_cells(columns: np.ndarray, rows: np.ndarray, occupied: np.ndarray) 
     return count
 
 
-@njit(cache=True)
+@allocation_free
 def is_free_leg(occupied: np.ndarray, x0: float, y0: float, x1: float, y1: float) -> bool:
     """Whether all cells that a straight leg touches are free; cells outside the grid are not free.
 
@@ -169,7 +182,7 @@ def is_free_leg(occupied: np.ndarray, x0: float, y0: float, x1: float, y1: float
     return True
 
 
-@njit(cache=True)
+@allocation_free
 def _last_cell(first: float, last: float) -> int:
     """Column or row in which a leg ends; the previous one if it ends on a grid line."""
     if last > first:
@@ -177,7 +190,7 @@ def _last_cell(first: float, last: float) -> int:
     return min(math.floor(first), math.floor(last + _ON_LINE))
 
 
-@njit(cache=True)
+@allocation_free
 def cells4(columns: np.ndarray, rows: np.ndarray) -> float:
     """Length of a sequence of cells, each a neighbour of the one before."""
     length = 0.0
@@ -187,7 +200,7 @@ def cells4(columns: np.ndarray, rows: np.ndarray) -> float:
     return length
 
 
-@njit(cache=True)
+@allocation_free
 def cells8(columns: np.ndarray, rows: np.ndarray) -> float:
     """Length of a sequence of cells in which two straight steps that form a diagonal one are replaced by it, from the beginning onwards."""
     length = 0.0
@@ -205,12 +218,16 @@ def cells8(columns: np.ndarray, rows: np.ndarray) -> float:
     return length
 
 
-@njit(cache=True)
 def polyline_length(x: np.ndarray, y: np.ndarray) -> float:
     """Length of a polyline."""
+    return sum_of_steps(x, y, np.empty(_BLOCK))
+
+
+@allocation_free
+def sum_of_steps(x: np.ndarray, y: np.ndarray, steps: np.ndarray) -> float:
+    """`polyline_length`, for kernels. steps: scratch, at least as many numbers as in a block or as steps."""
     # Square roots and their sum are computed in two loops, so that the first can use vector instructions, and the order of the sum stays as
     # written; by blocks, so that a processor takes the roots of one block while it still adds those of the one before.
-    steps = np.empty(_BLOCK)
     length = 0.0
     for first in range(0, len(x) - 1, _BLOCK):
         size = min(_BLOCK, len(x) - 1 - first)
@@ -223,7 +240,7 @@ def polyline_length(x: np.ndarray, y: np.ndarray) -> float:
 
 def samples(path: Path, grid: Grid) -> tuple[np.ndarray, np.ndarray]:
     """x and y of samples of a path, in cells, less than a cell apart."""
-    xs, ys = zip(*(sample(piece, parts(piece), 1) for piece in grid.in_cells(curves.bezier_pieces(path))))
+    xs, ys = zip(*(sample(piece, parts(piece)) for piece in grid.in_cells(curves.bezier_pieces(path))))
     return np.concatenate(xs), np.concatenate(ys)
 
 

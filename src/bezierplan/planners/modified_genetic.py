@@ -16,9 +16,10 @@ from typing import Annotated, Any, Literal, NamedTuple, get_args
 import numpy as np
 from numba import njit
 
+from bezierplan.kernels import allocation_free
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts import gene_lists
-from bezierplan.planners.parts.gene_curves import MOST_POINTS, FitnessLength, validate
+from bezierplan.planners.parts.gene_curves import MOST_POINTS, FitnessLength, Scratch, scratch_for, validate
 from bezierplan.planners.parts.gene_lattice import Field, field_of, genes_at, polygon
 from bezierplan.planners.parts.genetic import check_pairs
 from bezierplan.planners.parts.random_integers import integer
@@ -191,7 +192,7 @@ def plan(
         known = genes_at(grid.in_cells(last), field)
         row = np.concatenate([known, np.zeros(_ROOM - len(known), dtype=np.int64)])
         first, counts = np.vstack([row, first])[:population], np.append(len(known), counts)[:population]
-    found = search(rng, field, rules, first, counts)
+    found = search(rng, field, rules, first, counts, scratch_for(field))
     solved = len(found.ones) > 0
     points = grid.in_units(polygon(found.ones, field))
     points[[0, -1]] = problem.start, problem.target
@@ -241,7 +242,7 @@ def _from_roadmaps(
 
 
 @njit(cache=True)
-def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarray, counts: np.ndarray) -> Found:
+def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarray, counts: np.ndarray, scratch: Scratch) -> Found:
     """Algorithm 2; without a diversity rule, the plain algorithm.
 
     first: (n, `_ROOM`) chromosomes with which the first population begins; counts: (n,) their numbers of ones.
@@ -257,19 +258,16 @@ def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarr
     further = evaluations = bred = lost = 0
 
     for place in range(size):
-        if place < len(first):
-            count = counts[place]
-            for k in range(count):  # an assignment to a slice takes seconds to compile
-                child[k] = first[place, k]
-            cost, free = validate(child[:count], field, rules)
-            evaluations += 1
-            gene_lists.put(child, count, min(cost, 1.0 / _UNFIT), free, pool, place)
-            continue
         for _ in range(rules.first_draws):
-            count = _random_chromosome(rng, child, field, rules)
-            cost, free = validate(child[:count], field, rules)
+            if place < len(first):
+                count = counts[place]
+                for k in range(count):  # an assignment to a slice takes seconds to compile
+                    child[k] = first[place, k]
+            else:
+                count = _random_chromosome(rng, child, field, rules)
+            cost, free = validate(child[:count], field, rules, scratch)
             evaluations += 1
-            if cost < np.inf:
+            if cost < np.inf or place < len(first):
                 break
         gene_lists.put(child, count, min(cost, 1.0 / _UNFIT), free, pool, place)
     eta = rules.eta
@@ -283,31 +281,27 @@ def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarr
             break
 
         wheel = np.cumsum(1.0 / pool.cost[:size])
-        filled, tried, invalid = _add_offspring(rng, pool, size, wheel, eta, child, memory, field, rules)
-        evaluations += tried
-        bred += children
-        lost += invalid
-        if rules.diversity == _MORE_OFFSPRING:
-            pairs = gene_lists.sum_of_q(pool, 0, filled, len(field.points))
-            for _ in range(rules.most_batches):
-                if pairs / (filled * (filled - 1) / 2) <= eta:
+        filled, pairs = size, 0.0
+        for batch in range(batches):
+            before = filled
+            filled, tried, invalid = _add_offspring(rng, pool, before, wheel, eta, child, memory, field, rules, scratch)
+            evaluations += tried
+            bred += children
+            lost += invalid
+            further += batch > 0
+            if rules.diversity == _MORE_OFFSPRING:
+                pairs += gene_lists.sum_of_q(pool, before if batch > 0 else 0, filled, len(field.points))
+                q[iteration] = pairs / (filled * (filled - 1) / 2)
+                if q[iteration] <= eta:
                     break
-                before = filled
-                filled, tried, invalid = _add_offspring(rng, pool, before, wheel, eta, child, memory, field, rules)
-                pairs += gene_lists.sum_of_q(pool, before, filled, len(field.points))
-                evaluations += tried
-                bred += children
-                lost += invalid
-                further += 1
-            q[iteration] = pairs / (filled * (filled - 1) / 2)
         # Where a diversity rule rejects so many children that places remain free, the last parents keep them.
         gene_lists.select(pool, min(size, filled - size) if rules.generational else 0, filled, spare)
         eta *= rules.eta_decay
     return Found(best, best_cost, history, distinct, q, further, evaluations, 1.0 - lost / bred)
 
 
-@njit(cache=True)
-def _add_offspring(rng, pool, filled, wheel, eta, child, memory, field, rules):
+@allocation_free
+def _add_offspring(rng, pool, filled, wheel, eta, child, memory, field, rules, scratch):
     """Add a batch of offspring of the pool's first chromosomes (Algorithm 2, lines 6 and 7) after those already in it.
 
     wheel: (population,) running sum of the parents' fitness. memory: of validated children, changed in place. Returns the number of
@@ -320,18 +314,17 @@ def _add_offspring(rng, pool, filled, wheel, eta, child, memory, field, rules):
         cut = integer(rng, 1, len(field.points)) if crossed else 0
         for head, tail in ((one, other), (other, one)):
             for mutated in range(0 if rules.unmutated else 1, 2):
-                count = gene_lists.cross(pool, head, tail, cut, child) if crossed else gene_lists.cross(pool, head, head, 0, child)
+                count = gene_lists.cross(pool, head, tail if crossed else head, cut, child)
                 if mutated:
                     count = _mutate(rng, child, count, field, rules)
-                cost, free = _validated(child[:count], memory, field, rules)
-                tried += 1
-                invalid += cost == np.inf
-                for _ in range(rules.replacements):
+                for replaced in range(rules.replacements + 1):
+                    if replaced > 0:
+                        count = _random_chromosome(rng, child, field, rules)
+                    cost, free = _validated(child[:count], memory, field, rules, scratch)
+                    tried += 1
+                    invalid += replaced == 0 and cost == np.inf
                     if cost < np.inf:
                         break
-                    count = _random_chromosome(rng, child, field, rules)
-                    cost, free = validate(child[:count], field, rules)
-                    tried += 1
                 if cost == np.inf:
                     if not rules.generational:
                         continue
@@ -344,17 +337,17 @@ def _add_offspring(rng, pool, filled, wheel, eta, child, memory, field, rules):
     return filled, tried, invalid
 
 
-@njit(cache=True)
-def _validated(ones, memory, field, rules):
+@allocation_free
+def _validated(ones, memory, field, rules, scratch):
     """`validate`, without the work for a child that has been there before, as most have once the population is alike."""
     place, known = gene_lists.entry(ones, memory)
     if not known:
-        cost, free = validate(ones, field, rules)
+        cost, free = validate(ones, field, rules, scratch)
         gene_lists.put(ones, len(ones), cost, free, memory, place)
     return memory.cost[place], memory.free[place]
 
 
-@njit(cache=True)
+@allocation_free
 def _parents(rng, wheel):
     """Two different parents in proportion to fitness (Algorithm 1, line 9). The second is drawn from the wheel without the first one."""
     one = np.searchsorted(wheel, rng.random() * wheel[-1], side="right")
@@ -370,7 +363,7 @@ def _parents(rng, wheel):
     return one, other
 
 
-@njit(cache=True)
+@allocation_free
 def _mutate(rng, child, count, field, rules):
     """Change random genes, except those that must not be set; returns how many are 1."""
     genes = len(field.points)
@@ -391,7 +384,7 @@ def _mutate(rng, child, count, field, rules):
     return count
 
 
-@njit(cache=True)
+@allocation_free
 def _change_point(rng, child, count, field):
     """Remove a control point (unless it is the only one), add one, or shift one, each with equal probability; returns how many there
     are.
@@ -416,7 +409,7 @@ def _change_point(rng, child, count, field):
     return count
 
 
-@njit(cache=True)
+@allocation_free
 def _random_chromosome(rng, child, field, rules):
     """Write a chromosome of 1 to `first_points` random genes; returns how many."""
     wanted = min(integer(rng, 1, rules.first_points + 1), len(field.choices))
@@ -428,7 +421,7 @@ def _random_chromosome(rng, child, field, rules):
     return count
 
 
-@njit(cache=True)
+@allocation_free
 def _is_too_alike(ones, cost, pool, filled, eta, field, rules):
     """Whether a diversity rule rejects a child (Section 3.3)."""
     if rules.diversity == _UNIQUE:

@@ -1,10 +1,11 @@
 """Agreement of two binary chromosomes: the Q statistic (elhoseny2017, equation 10)."""
 
 import numpy as np
-from numba import njit
+
+from bezierplan.kernels import allocation_free
 
 
-@njit(cache=True)
+@allocation_free
 def q_statistic(both: int, neither: int, only_one: int, only_other: int) -> float:
     """Q, from -1 (they share no gene) to 1, from the numbers of genes that are set in both, in neither, and in only one of two chromosomes.
 
@@ -16,7 +17,7 @@ def q_statistic(both: int, neither: int, only_one: int, only_other: int) -> floa
     return (agree - differ) / (agree + differ)
 
 
-@njit(cache=True)
+@allocation_free
 def shared(one: np.ndarray, other: np.ndarray) -> int:
     """Number of elements that two ascending lists share."""
     i = j = found = 0

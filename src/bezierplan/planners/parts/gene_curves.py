@@ -4,10 +4,10 @@ import math
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numba import njit
 
-from bezierplan.geometry.cell_length import cells4, cells8, occupied_cells, parts, polyline_length, sample, touched_cells
-from bezierplan.planners.parts.gene_lattice import Field, polygon
+from bezierplan.geometry.cell_length import cells4, cells8, occupied_cells, parts, sum_of_steps, write_samples, write_touched_cells
+from bezierplan.kernels import allocation_free
+from bezierplan.planners.parts.gene_lattice import Field, write_polygon
 
 # More control points make a chromosome invalid: the curve's degree is at most 60.
 MOST_POINTS = 59
@@ -21,15 +21,41 @@ _LENGTH, _CELLS4, _CELLS8 = range(3)
 _FREE, _OCCUPIED, _UNKNOWN = range(3)
 
 
-@njit(cache=True)
-def validate(ones: np.ndarray, field: Field, rules: NamedTuple) -> tuple[float, bool]:
+class Scratch(NamedTuple):
+    """Room for a chromosome's curve, overwritten by each `validate`.
+
+    order: (points,) its genes. points: (points, 2) its polygon. piece: (3, 2) one of its quadratic pieces. x, y: (samples,). t, power:
+    (samples,) of `write_samples`. columns, rows: (2 samples,) the cells that it touches.
+    """
+
+    order: np.ndarray
+    points: np.ndarray
+    piece: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    t: np.ndarray
+    power: np.ndarray
+    columns: np.ndarray
+    rows: np.ndarray
+
+
+def scratch_for(field: Field) -> Scratch:
+    """Room for any curve on a field."""
+    # `parts` of a curve: at most 2.04 for each cell of its polygon, whose legs are no longer than the diagonal, and 3 more for each piece.
+    samples = math.ceil(2.04 * (MOST_POINTS + 1) * math.hypot(*field.occupied.shape)) + 4 * (MOST_POINTS + 1)
+    numbers, cells = np.empty((4, samples)), np.empty((2, 2 * samples), dtype=np.int64)
+    return Scratch(np.empty(MOST_POINTS, dtype=np.int64), np.empty((MOST_POINTS + 2, 2)), np.empty((3, 2)), *numbers, *cells)
+
+
+@allocation_free
+def validate(ones: np.ndarray, field: Field, rules: NamedTuple, scratch: Scratch) -> tuple[float, bool]:
     """Apply the constraints of equation 6 and Section 3.2.2: the cost (length) of a chromosome, infinite if it is to be deleted, and
     whether its curve is collision-free. `Obstacles` needs no test, as genes of occupied cells are never set. rules:
     `modified_genetic.Rules`.
     """
     if not 0 < len(ones) <= MOST_POINTS:
         return np.inf, False
-    points = polygon(ones, field)
+    points = scratch.points[: write_polygon(ones, field, scratch.points, scratch.order)]
     for i in range(1, len(points) - 1):  # `Distance Threshold`
         for j in range(1, i):
             width, height = abs(points[i, 0] - points[j, 0]), abs(points[i, 1] - points[j, 1])
@@ -37,21 +63,23 @@ def validate(ones: np.ndarray, field: Field, rules: NamedTuple) -> tuple[float, 
                 return np.inf, False
     if not rules.composite and not rules.punished:
         last = parts(points)
-        x, y = sample(points, last, max(1, last // _FIRST_SAMPLES))
-        if _collides(x, y, field.room):
+        count = write_samples(points, last, max(1, last // _FIRST_SAMPLES), scratch.x, scratch.y, scratch.t, scratch.power)
+        if _collides(scratch.x[:count], scratch.y[:count], field.room):
             return np.inf, False
-    x, y = _curve(points, rules.composite)
+    count = _write_curve(points, rules.composite, scratch)
+    x, y = scratch.x[:count], scratch.y[:count]
     sight = _at_first_sight(x, y, field.room)
     if sight == _OCCUPIED and not rules.punished:
         return np.inf, False
     if sight == _FREE and rules.fitness_length == _LENGTH:
-        return polyline_length(x, y), True
-    columns, rows = touched_cells(x, y)
+        return sum_of_steps(x, y, scratch.t), True
+    count = write_touched_cells(x, y, scratch.columns, scratch.rows)
+    columns, rows = scratch.columns[:count], scratch.rows[:count]
     bad = occupied_cells(columns, rows, field.occupied)  # `Valid Path`
     if bad > 0 and not rules.punished:
         return np.inf, False
     if rules.fitness_length == _LENGTH:
-        length = polyline_length(x, y)
+        length = sum_of_steps(x, y, scratch.t)
     elif rules.fitness_length == _CELLS4:
         length = cells4(columns, rows)
     else:
@@ -59,7 +87,7 @@ def validate(ones: np.ndarray, field: Field, rules: NamedTuple) -> tuple[float, 
     return length + rules.penalty * bad, bad == 0
 
 
-@njit(cache=True)
+@allocation_free
 def _collides(x, y, room):
     """Whether any of some samples of a curve lie in occupied cells; those on grid lines are left to the walk over the cells."""
     rows, columns = room.shape
@@ -70,13 +98,13 @@ def _collides(x, y, room):
     return False
 
 
-@njit(cache=True)
+@allocation_free
 def _is_within(right, above):
     """Whether a sample is not on a grid line, by its distances from those to the left and below."""
     return _ON_LINE < right < 1.0 - _ON_LINE and _ON_LINE < above < 1.0 - _ON_LINE
 
 
-@njit(cache=True)
+@allocation_free
 def _at_first_sight(x, y, room):
     """What a walk over the cells of a curve would find, if a look at its samples tells: `_OCCUPIED` if a sample is in an occupied cell;
     `_FREE` if the cells of all samples are free, as well as those whose corner a step between two samples may cut. `_UNKNOWN` where neither
@@ -105,25 +133,18 @@ def _at_first_sight(x, y, room):
     return _UNKNOWN if on_line else _FREE
 
 
-@njit(cache=True)
-def _curve(points, composite):
-    """x and y of samples of the curve less than a cell apart (equation 2)."""
+@allocation_free
+def _write_curve(points, composite, scratch):
+    """Write x and y of samples of the curve less than a cell apart (equation 2); returns their number."""
+    x, y, t, power, piece = scratch.x, scratch.y, scratch.t, scratch.power, scratch.piece
     if not composite:
-        return sample(points, parts(points), 1)
+        return write_samples(points, parts(points), 1, x, y, t, power)
     pieces = len(points) - 2
-    piece = np.empty((pieces, 3, 2))
-    lasts = np.empty(pieces, dtype=np.int64)
+    count = 0
     for k in range(pieces):
         for axis in range(2):
-            piece[k, 0, axis] = 0.5 * (points[k, axis] + points[k + 1, axis]) if k > 0 else points[0, axis]
-            piece[k, 1, axis] = points[k + 1, axis]
-            piece[k, 2, axis] = 0.5 * (points[k + 1, axis] + points[k + 2, axis]) if k < pieces - 1 else points[-1, axis]
-        lasts[k] = parts(piece[k])
-    x, y = np.empty(lasts.sum() + pieces), np.empty(lasts.sum() + pieces)
-    first = 0
-    for k in range(pieces):
-        piece_x, piece_y = sample(piece[k], lasts[k], 1)
-        for s in range(len(piece_x)):
-            x[first + s], y[first + s] = piece_x[s], piece_y[s]
-        first += len(piece_x)
-    return x, y
+            piece[0, axis] = 0.5 * (points[k, axis] + points[k + 1, axis]) if k > 0 else points[0, axis]
+            piece[1, axis] = points[k + 1, axis]
+            piece[2, axis] = 0.5 * (points[k + 1, axis] + points[k + 2, axis]) if k < pieces - 1 else points[-1, axis]
+        count += write_samples(piece, parts(piece), 1, x[count:], y[count:], t, power)
+    return count

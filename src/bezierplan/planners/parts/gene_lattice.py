@@ -10,7 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from bezierplan.planners.parts.sorting import ascending
+from bezierplan.kernels import allocation_free
+from bezierplan.planners.parts.sorting import sort
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.lattice import STEPS
 
@@ -106,13 +107,22 @@ def genes_at(points: np.ndarray, field: Field) -> np.ndarray:
     return np.unique(genes[(apart.min(axis=1) < 0.5) & field.settable[genes] & ahead])
 
 
-@njit(cache=True)
 def polygon(ones: np.ndarray, field: Field) -> np.ndarray:
     """Start, the control points of a chromosome in their order, and target: (points, 2)."""
     points = np.empty((len(ones) + 2, 2))
-    order = ones[ascending(field.rank[ones])]
-    for axis in range(2):
-        points[0, axis], points[-1, axis] = field.start[axis], field.target[axis]
-        for i in range(len(order)):
-            points[i + 1, axis] = field.points[order[i], axis]
+    write_polygon(ones, field, points, np.empty_like(ones))
     return points
+
+
+@allocation_free
+def write_polygon(ones: np.ndarray, field: Field, points: np.ndarray, order: np.ndarray) -> int:
+    """Write the `polygon` of a chromosome (n,) to the first n + 2 of some points; returns their number. order: (n,) or more, scratch."""
+    count = len(ones)
+    for i in range(count):
+        order[i] = ones[i]
+    sort(order[:count], field.rank)
+    for axis in range(2):
+        points[0, axis], points[count + 1, axis] = field.start[axis], field.target[axis]
+        for i in range(count):
+            points[i + 1, axis] = field.points[order[i], axis]
+    return count + 2

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from bezierplan.kernels import allocation_free
 from bezierplan.planners.parts.diversity import q_statistic, shared
 from bezierplan.planners.parts.sorting import ascending
 
@@ -30,7 +31,7 @@ def empty_pool(places: int, room: int) -> Pool:
     return Pool(np.empty((places, room), np.int64), np.zeros(places, np.int64), np.empty(places), np.zeros(places, np.bool_))
 
 
-@njit(cache=True)
+@allocation_free
 def put(ones: np.ndarray, count: int, cost: float, free: bool, pool: Pool, place: int) -> None:
     """Write a chromosome to a place of the pool, in place."""
     for k in range(count):
@@ -52,7 +53,7 @@ def select(pool: Pool, first: int, filled: int, spare: Pool) -> None:
         put(spare.ones[place], spare.count[place], spare.cost[place], spare.free[place], pool, place)
 
 
-@njit(cache=True)
+@allocation_free
 def position(genes: np.ndarray, count: int, gene: int) -> int:
     """Index of a gene among the first `count` of a list, `count` if it is not there."""
     for i in range(count):
@@ -61,7 +62,7 @@ def position(genes: np.ndarray, count: int, gene: int) -> int:
     return count
 
 
-@njit(cache=True)
+@allocation_free
 def flip(genes: np.ndarray, count: int, gene: int) -> int:
     """Flip a gene of a list, in place; returns how many are 1. Genes that do not fit are dropped."""
     place = position(genes, count, gene)
@@ -79,7 +80,7 @@ def flip(genes: np.ndarray, count: int, gene: int) -> int:
     return count + 1
 
 
-@njit(cache=True)
+@allocation_free
 def gap(rng: np.random.Generator, rate: float) -> int:
     """Number of genes left unchanged before the next change, if each changes with the probability `rate`; 2**31 stands for more than there
     are genes.
@@ -89,7 +90,7 @@ def gap(rng: np.random.Generator, rate: float) -> int:
     return int(min(math.log(1.0 - rng.random()) / math.log1p(-rate), 2.0**31)) if rate < 1.0 else 0
 
 
-@njit(cache=True)
+@allocation_free
 def cross(pool: Pool, head: int, tail: int, cut: int, child: np.ndarray) -> int:
     """Write, to a child, the genes of one chromosome before a cut and of another from it on; returns how many are 1."""
     count = 0
@@ -104,7 +105,7 @@ def cross(pool: Pool, head: int, tail: int, cut: int, child: np.ndarray) -> int:
     return count
 
 
-@njit(cache=True)
+@allocation_free
 def same(one: np.ndarray, other: np.ndarray) -> bool:
     """Whether two lists are equal."""
     if len(one) != len(other):
@@ -115,7 +116,7 @@ def same(one: np.ndarray, other: np.ndarray) -> bool:
     return True
 
 
-@njit(cache=True)
+@allocation_free
 def distinct(pool: Pool, size: int) -> int:
     """Number of distinct chromosomes among the first `size` of the pool; equal ones have equal costs."""
     found = size
@@ -127,7 +128,7 @@ def distinct(pool: Pool, size: int) -> int:
     return found
 
 
-@njit(cache=True)
+@allocation_free
 def q(one: np.ndarray, other: np.ndarray, genes: int) -> float:
     """The Q statistic of two lists, each of a chromosome with the given number of genes (`diversity.q_statistic`)."""
     both = shared(one, other)
@@ -185,7 +186,7 @@ def empty_memory(room: int) -> Pool:
     return memory
 
 
-@njit(cache=True)
+@allocation_free
 def entry(ones: np.ndarray, memory: Pool) -> tuple[int, bool]:
     """The place of a chromosome in a memory, and whether it is there."""
     mixed = np.uint64(len(ones))

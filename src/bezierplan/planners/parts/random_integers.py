@@ -1,11 +1,12 @@
 """Random integers in kernels, for `rng.integers` in compiled code makes an array for each number."""
 
 import numpy as np
-from numba import njit
 from numba.np.random.random_methods import buffered_bounded_lemire_uint32
 
+from bezierplan.kernels import allocation_free
 
-@njit(cache=True)
+
+@allocation_free
 def integer(rng: np.random.Generator, low: int, high: int) -> int:
     """The number that `rng.integers(low, high)` gives (Lemire 2019, as in numpy), many times faster; high - low must lie between 1 and
     2**32 - 1.
@@ -14,7 +15,7 @@ def integer(rng: np.random.Generator, low: int, high: int) -> int:
     return low + np.int64(buffered_bounded_lemire_uint32(rng.bit_generator, high - low - 1)) if high - low > 1 else low
 
 
-@njit(cache=True)
+@allocation_free
 def below(rng: np.random.Generator, count: int) -> int:
     """A uniform integer below `count` from a single random number of `rng.random`."""
     return int(rng.random() * count)

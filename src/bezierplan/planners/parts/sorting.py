@@ -3,22 +3,31 @@
 import numpy as np
 from numba import njit
 
+from bezierplan.kernels import allocation_free
+
 
 @njit(cache=True)
 def ascending(values: np.ndarray) -> np.ndarray:
     """Indices (n,) that sort values in ascending order, ties in their original order: numpy's stable argsort, which takes far longer to
     compile.
 
-    An insertion sort: as fast as any for a few values, and for sorted survivors followed by their offspring.
-
     >>> ascending(np.array([3.0, 1.0, 2.0, 1.0])).tolist()
     [1, 3, 2, 0]
     """
     order = np.arange(len(values))
-    for k in range(1, len(values)):
-        i, place = order[k], k
-        while place > 0 and values[order[place - 1]] > values[i]:
-            order[place] = order[place - 1]
-            place -= 1
-        order[place] = i
+    sort(order, values)
     return order
+
+
+@allocation_free
+def sort(indices: np.ndarray, values: np.ndarray) -> None:
+    """Sort indices (n,), in place, by their values in ascending order, ties in their original order.
+
+    An insertion sort: as fast as any for a few values, and for sorted survivors followed by their offspring.
+    """
+    for k in range(1, len(indices)):
+        i, place = indices[k], k
+        while place > 0 and values[indices[place - 1]] > values[i]:
+            indices[place] = indices[place - 1]
+            place -= 1
+        indices[place] = i
