@@ -400,7 +400,7 @@ def mutated(path, grid, mutation, seed=0, **changes):
     rules = RULES._replace(mutation=OPERATORS.index(mutation), **changes)
     path = np.array(path)
     drawn = np.setdiff1d(np.flatnonzero(~grid.occupied), [path[0], path[-1]])
-    tried = mutate(np.random.default_rng(seed), path, drawn, ground_of(grid, 1.0), rules)
+    tried = mutate(np.random.default_rng(seed), path, drawn, ground_of(grid, 1.0), rules, np.empty(8, dtype=np.int64))
     return path.tolist(), tried
 
 

@@ -11,6 +11,7 @@ from typing import Annotated, Literal, NamedTuple, get_args
 import numpy as np
 from numba import njit
 
+from bezierplan.kernels import allocation_free
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts.genetic import check_pairs, roulette
 from bezierplan.planners.parts.node_mutation import Mutation, mutate
@@ -230,7 +231,7 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
             return _Found(np.empty(0, dtype=np.int64), np.inf, 0, np.full(1, np.inf), 1, False, 0.0, np.nan, 0.0)
     children, child_lengths = paths.copy(), lengths.copy()
     objective, met = np.empty(population), np.empty(population, dtype=np.int64)
-    ranks = np.arange(population, 0, -1).astype(np.float64)
+    ranks, neighbours = np.arange(population, 0, -1).astype(np.float64), np.empty(8, dtype=np.int64)
     history = np.empty(rules.generations + 1)
     best, best_length, best_objective, best_met = paths[0].copy(), 0, np.inf, 0
     improved = evaluations = feasible = spoiled = 0
@@ -279,7 +280,7 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
                 if moves.random() < rules.mutation_probability and lengths[i] > 2:
                     path = paths[i, : lengths[i]]
                     was_feasible = path_met(path, ground) == 0
-                    evaluations += mutate(moves, path, drawn, ground, rules)
+                    evaluations += mutate(moves, path, drawn, ground, rules, neighbours)
                     feasible += was_feasible
                     spoiled += was_feasible and path_met(path, ground) > 0
         if rules.elitism:
@@ -301,13 +302,13 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
     )
 
 
-@njit(cache=True)
+@allocation_free
 def _copy(source, target, length):
     for k in range(length):
         target[k] = source[k]
 
 
-@njit(cache=True)
+@allocation_free
 def join(head: np.ndarray, cut: int, tail: np.ndarray, tail_cut: int, tail_length: int, child: np.ndarray) -> int:
     """Write to a child the first `cut` nodes of one path and those after the first `tail_cut` of another (meledje, Section 2.6).
 
@@ -320,7 +321,7 @@ def join(head: np.ndarray, cut: int, tail: np.ndarray, tail_cut: int, tail_lengt
     return cut + tail_length - tail_cut
 
 
-@njit(cache=True)
+@allocation_free
 def _evaluate(path, ground, penalty):
     """Energy of a path plus its penalty, and the number of occupied cells that its edges meet (meledje, eqs. 1 to 3)."""
     energy = 0.0
@@ -349,7 +350,7 @@ def node_diversity(paths: np.ndarray, lengths: np.ndarray, cells: int) -> float:
 # The first population (meledje, Section 2.3).
 
 
-@njit(cache=True)
+@allocation_free
 def _first_path(rng, path, target, free, ground, rules):
     """A random path, written after its start; returns its number of nodes, or 0 if none was found."""
     for _ in range(_MOST_TRIES):
@@ -359,7 +360,7 @@ def _first_path(rng, path, target, free, ground, rules):
     return 0
 
 
-@njit(cache=True)
+@allocation_free
 def _walk(rng, path, target, free, ground):
     """A walk from cell to visible cell, none visited twice, until the target is visible; returns 0 if it becomes too long or sees no new
     cell.
@@ -371,7 +372,7 @@ def _walk(rng, path, target, free, ground):
         path[length] = -1
         for _ in range(len(free)):
             cell = free[below(rng, len(free))]
-            if obstacles_met(ground, path[length - 1], cell) == 0 and not _among(cell, path, length):
+            if _continues(cell, path, length, ground):
                 path[length] = cell
                 break
         if path[length] < 0:
@@ -383,20 +384,32 @@ def _walk(rng, path, target, free, ground):
     return length + 1
 
 
-@njit(cache=True)
+@allocation_free
 def _one_of_few(rng, path, length, free, ground):
     """A uniformly drawn cell that is visible from the last cell of a path and not yet part of it, found by checking all cells; -1 if there
     is none.
     """
-    seen, count = np.empty_like(free), 0
+    count = 0
     for cell in free:
-        if obstacles_met(ground, path[length - 1], cell) == 0 and not _among(cell, path, length):
-            seen[count] = cell
-            count += 1
-    return seen[below(rng, count)] if count else -1
+        count += _continues(cell, path, length, ground)
+    if count == 0:
+        return -1
+    chosen = below(rng, count)
+    for cell in free:
+        if _continues(cell, path, length, ground):
+            if chosen == 0:
+                return cell
+            chosen -= 1
+    return -1
 
 
-@njit(cache=True)
+@allocation_free
+def _continues(cell, path, length, ground):
+    """Whether a cell is visible from the last cell of a path and not yet part of it."""
+    return obstacles_met(ground, path[length - 1], cell) == 0 and not _among(cell, path, length)
+
+
+@allocation_free
 def _among(cell, path, length):
     for k in range(length):
         if path[k] == cell:
@@ -404,7 +417,7 @@ def _among(cell, path, length):
     return False
 
 
-@njit(cache=True)
+@allocation_free
 def _random_path(rng, path, target, free):
     """A random number of inner nodes within the limit, each a random free cell."""
     inner = below(rng, len(path) - 1)

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from bezierplan.kernels import allocation_free
 from bezierplan.workspaces.grid import Grid
 
 # For a map with more cells than this no table of all edges is made: it would grow with the square of their number.
@@ -81,7 +82,7 @@ def obstacles_met(ground: Ground, one: int, other: int) -> int:
     return _passed(ground, one, other)[0]
 
 
-@njit(cache=True)
+@allocation_free
 def path_met(path: np.ndarray, ground: Ground) -> int:
     """Number of occupied cells that the edges of a path of cells (n,) meet; a cell counts once for every edge that meets it."""
     met = 0
@@ -99,7 +100,7 @@ def edge_energy(ground: Ground, one: int, other: int) -> float:
     return length + _passed(ground, one, other)[1] / ground.friction if ground.heights.size else length
 
 
-@njit(cache=True)
+@allocation_free
 def distance(ground: Ground, one: int, other: int) -> float:
     """Length of the edge between two cells."""
     columns = ground.occupied.shape[1]
@@ -107,7 +108,7 @@ def distance(ground: Ground, one: int, other: int) -> float:
     return np.sqrt(float(across * across + up * up))
 
 
-@njit(cache=True)
+@allocation_free
 def _passed(ground, one, other):
     """Number of occupied cells that an edge meets, and the sum of its climbs from cell to cell.
 
@@ -185,14 +186,14 @@ def centres(grid: Grid, cells: np.ndarray) -> np.ndarray:
     return np.array([grid.centre(cell) for cell in cells.tolist()]).reshape(-1, 2)
 
 
-@njit(cache=True)
-def free_neighbours(cell: int, ground: Ground) -> tuple[np.ndarray, int]:
-    """The free cells among the eight around a cell, row by row from the lower left, and how many there are."""
+@allocation_free
+def free_neighbours(cell: int, ground: Ground, neighbours: np.ndarray) -> int:
+    """Write the free cells among the eight around a cell, row by row from the lower left, to `neighbours` (8,); returns their number."""
     rows, columns = ground.occupied.shape
-    neighbours, count = np.empty(8, dtype=np.int64), 0
+    count = 0
     for row in range(max(cell // columns - 1, 0), min(cell // columns + 2, rows)):
         for column in range(max(cell % columns - 1, 0), min(cell % columns + 2, columns)):
             if row * columns + column != cell and not ground.occupied[row, column]:
                 neighbours[count] = row * columns + column
                 count += 1
-    return neighbours, count
+    return count

@@ -104,7 +104,7 @@ def _shown(grid: Grid, operator: str, before: np.ndarray, rules: node_genetic.Ru
     rules = rules._replace(mutation=get_args(Mutation).index(operator))
     for seed in range(SEEDS):
         after = before.copy()
-        mutate(np.random.default_rng(seed), after, drawn, ground, rules)
+        mutate(np.random.default_rng(seed), after, drawn, ground, rules, np.empty(8, dtype=np.int64))
         for k in np.flatnonzero(after != before).tolist():
             blocked = any(obstacles_met(ground, *edge) for edge in itertools.pairwise(after.tolist()))
             if blocked != (operator == "proposed"):

@@ -8,6 +8,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numba import njit
 
+from bezierplan.kernels import allocation_free
 from bezierplan.planners.parts.random_integers import below
 from bezierplan.workspaces.ground import Ground, edge_energy, free_neighbours, obstacles_met, path_met
 
@@ -20,11 +21,11 @@ _MOST_REPAIRS = 50
 _TIE = 1e-12
 
 
-@njit(cache=True)
-def mutate(rng: np.random.Generator, path: np.ndarray, drawn: np.ndarray, ground: Ground, rules: NamedTuple) -> int:
+@allocation_free
+def mutate(rng: np.random.Generator, path: np.ndarray, drawn: np.ndarray, ground: Ground, rules: NamedTuple, neighbours: np.ndarray) -> int:
     """Apply the operator once to a path of cells (n,), n at least 3; returns how many paths it evaluated.
 
-    drawn: the cells from which random mutation draws. rules: `node_genetic.Rules`.
+    drawn: the cells from which random mutation draws. rules: `node_genetic.Rules`. neighbours: (8,) scratch.
     """
     if rules.mutation == _RANDOM:
         path[1 + below(rng, len(path) - 2)] = drawn[below(rng, len(drawn))]
@@ -32,16 +33,16 @@ def mutate(rng: np.random.Generator, path: np.ndarray, drawn: np.ndarray, ground
     if rules.mutation == _RANDOM_REPAIR:
         return _random_repair(rng, path, drawn, ground)
     if rules.mutation == _REF21:
-        return _ref21(rng, path, ground, rules)
+        return _ref21(rng, path, ground, rules, neighbours)
     k = _blocked_node(rng, path, ground, rules.beside_obstacle) if rules.mutation == _PROPOSED else 0
     if k == 0:
         if rules.mutation == _PROPOSED and not rules.any_node:
             return 0
         k = 1 + below(rng, len(path) - 2)
-    return _best_neighbour(path, k, ground, rules)
+    return _best_neighbour(path, k, ground, rules, neighbours)
 
 
-@njit(cache=True)
+@allocation_free
 def _random_repair(rng, path, drawn, ground):
     """Random mutation, repeated until the path is feasible."""
     for _ in range(_MOST_REPAIRS):
@@ -54,7 +55,7 @@ def _random_repair(rng, path, drawn, ground):
     return 0
 
 
-@njit(cache=True)
+@allocation_free
 def _blocked_node(rng, path, ground, beside_obstacle):
     """A random inner node that encounters an obstacle, 0 if there is none (Table 1, step 1)."""
     count = 0
@@ -71,7 +72,7 @@ def _blocked_node(rng, path, ground, beside_obstacle):
     return 0
 
 
-@njit(cache=True)
+@allocation_free
 def _encounters(path, k, ground, beside_obstacle):
     """Whether the edge from node k to the next one meets an obstacle, or whether one of the eight cells around the node is occupied."""
     if not beside_obstacle:
@@ -80,13 +81,13 @@ def _encounters(path, k, ground, beside_obstacle):
     return ground.occupied[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2].any()
 
 
-@njit(cache=True)
-def _best_neighbour(path, k, ground, rules):
+@allocation_free
+def _best_neighbour(path, k, ground, rules, neighbours):
     """Replace node k by the free neighbour cell that gives the best path (Table 1, steps 2 to 4; reference 12).
 
     Ties go to the first from the lower left, row by row. Only the two edges of the node change.
     """
-    neighbours, count = free_neighbours(path[k], ground)
+    count = free_neighbours(path[k], ground, neighbours)
     best, least = path[k], np.inf
     if rules.keep_better:
         least = _cost_through(path, k, path[k], ground, rules.penalty)
@@ -105,13 +106,13 @@ def _cost_through(path, k, cell, ground, penalty):
     return edge_energy(ground, path[k - 1], cell) + edge_energy(ground, cell, path[k + 1]) + penalty * met
 
 
-@njit(cache=True)
-def _ref21(rng, path, ground, rules):
+@allocation_free
+def _ref21(rng, path, ground, rules, neighbours):
     """Replace a random inner node by the first of its free neighbours, in random order, that lies in the direction of the target and whose
     two edges are free, or which makes the whole path free (reference 21).
     """
     k = 1 + below(rng, len(path) - 2)
-    neighbours, count = free_neighbours(path[k], ground)
+    count = free_neighbours(path[k], ground, neighbours)
     elsewhere = 0
     if rules.whole_path:
         elsewhere = path_met(path[:k], ground) + path_met(path[k + 1 :], ground)
@@ -126,7 +127,7 @@ def _ref21(rng, path, ground, rules):
     return count
 
 
-@njit(cache=True)
+@allocation_free
 def _towards(start, cell, target, columns, same_signs):
     """Whether the direction from a cell to the target agrees with that from the start to the target."""
     across, up = target % columns - cell % columns, target // columns - cell // columns
