@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from bezierplan.kernels import allocation_free
 from bezierplan.planners.parts.genetic import roulette
 from bezierplan.planners.parts.random_integers import integer
 
@@ -87,7 +88,7 @@ def evolve(rng, lattice, paths, sizes, generations, rules):
     return best[:best_size], history
 
 
-@njit(cache=True)
+@allocation_free
 def put(part, path, size):
     """Write a part after the first `size` cells of a path. Returns the new size."""
     for k in range(len(part)):
@@ -95,7 +96,7 @@ def put(part, path, size):
     return size + len(part)
 
 
-@njit(cache=True)
+@allocation_free
 def _replace(path, size, child, cut, marks):
     """Replace a path of the given size by a child if it fits, with its loops removed if `cut` says so. Returns the new size."""
     child_size = cut_loops(child, marks) if cut else len(child)
@@ -122,7 +123,7 @@ def _mutant(rng, lattice, path, rules, child, part, marks):
     return put(path[last + 1 :], child, put(part[:size], child, put(path[:first], child, 0)))
 
 
-@njit(cache=True)
+@allocation_free
 def length(path, lattice):
     """Length in cells, including the way from the start and to the target; equal numbers of steps give equal lengths, whatever their
     order.
@@ -134,7 +135,7 @@ def length(path, lattice):
     return len(path) - 1 - diagonal + diagonal * lattice.diagonal + lattice.ends
 
 
-@njit(cache=True)
+@allocation_free
 def step_between(lattice, one, other):
     """Which of the eight steps leads from one cell to another, -1 if none does."""
     for step in range(8):
@@ -143,7 +144,7 @@ def step_between(lattice, one, other):
     return -1
 
 
-@njit(cache=True)
+@allocation_free
 def join(lattice, cells, path, marks):
     """Join cells (n,) to a path by inserting midpoints. Returns its size, 0 if they cannot be joined within len(path) cells.
 
@@ -153,36 +154,34 @@ def join(lattice, cells, path, marks):
     """
     if len(cells) > len(path):
         return 0
-    # The list holds the path so far, followed by the waiting cells, the next one on top.
-    waiting = np.empty(len(path), dtype=np.int64)
-    size, height = 0, 0
-    for cell in cells[::-1]:
-        waiting[height] = cell
-        height += 1
-        marks[cell] = 1
-    while height:
-        cell = waiting[height - 1]
+    # The cells that wait, the next one first, fill the end of the path.
+    size, first = 0, len(path) - len(cells)
+    for k in range(len(cells)):
+        path[first + k] = cells[k]
+        marks[cells[k]] = 1
+    while first < len(path):
+        cell = path[first]
         if size == 0 or step_between(lattice, path[size - 1], cell) >= 0:
             path[size] = cell
             size += 1
-            height -= 1
+            first += 1
         elif cell == path[size - 1]:
-            height -= 1
+            first += 1
         else:
             between = _between(lattice, path[size - 1], cell, marks)
-            if between < 0 or size + height == len(path):
+            if between < 0 or size == first:
                 break
-            waiting[height] = between
-            height += 1
+            first -= 1
+            path[first] = between
             marks[between] = 1
     for k in range(size):
         marks[path[k]] = 0
-    for k in range(height):
-        marks[waiting[k]] = 0
-    return 0 if height else size
+    for k in range(first, len(path)):
+        marks[path[k]] = 0
+    return 0 if first < len(path) else size
 
 
-@njit(cache=True)
+@allocation_free
 def _between(lattice, one, other, marks):
     """The cell that `join` inserts between two cells, -1 if there is none."""
     # Cells are numbered row by row, so the last one gives the number of columns.
@@ -197,7 +196,7 @@ def _between(lattice, one, other, marks):
     return -1
 
 
-@njit(cache=True)
+@allocation_free
 def common_cell(rng, one, other, marks):
     """Indices, in two paths, of a random inner cell of the first that is also an inner cell of the other; in the other, its last
     occurrence.
@@ -221,7 +220,7 @@ def common_cell(rng, one, other, marks):
     return k, m
 
 
-@njit(cache=True)
+@allocation_free
 def cut_loops(path, marks):
     """Remove, in place, whatever lies between two visits to a cell, starting with the first revisit. Returns the new size."""
     size = 0
@@ -239,7 +238,7 @@ def cut_loops(path, marks):
     return size
 
 
-@njit(cache=True)
+@allocation_free
 def change_cell(rng, lattice, path, child):
     """Replace a random inner cell by another random cell that neighbours both adjacent cells of the path; if there is none and these two
     are neighbours, drop it. Returns the child's size, or 0 if nothing changed, as always for paths of fewer than 4 cells.
@@ -275,7 +274,7 @@ def reconnect(rng, lattice, first, last, part, marks):
     return join(lattice, np.array([first, cell, last]), part, marks)
 
 
-@njit(cache=True)
+@allocation_free
 def walk(rng, lattice, first, last, tries, part, marks):
     """Forage from one cell until another is reached. Returns the part's size, or 0 if the walk ends early or would exceed the part."""
     part[0] = first
@@ -293,7 +292,7 @@ def walk(rng, lattice, first, last, tries, part, marks):
     return size if part[size - 1] == last else 0
 
 
-@njit(cache=True)
+@allocation_free
 def forage(rng, lattice, cell, target, tries, visited):
     """A fish's next cell when it looks for prey (ma2020, reference 31), -1 if all neighbours are visited.
 
@@ -323,7 +322,7 @@ def forage(rng, lattice, cell, target, tries, visited):
     return other
 
 
-@njit(cache=True)
+@allocation_free
 def distance_square(lattice, one, other):
     """Square of the distance between the centres of two cells, an integer."""
     return (lattice.row[one] - lattice.row[other]) ** 2 + (lattice.column[one] - lattice.column[other]) ** 2
