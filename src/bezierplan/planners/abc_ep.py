@@ -14,6 +14,7 @@ import numpy as np
 from numba import njit
 
 from bezierplan.geometry.cell_length import is_free_leg
+from bezierplan.kernels import allocation_free
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts.genetic import roulette
 from bezierplan.planners.parts.random_integers import integer
@@ -202,14 +203,14 @@ def _next_point(rng, occupied, target, path, count, colony):
     return best_cost
 
 
-@njit(cache=True)
+@allocation_free
 def _draw(rng, low, high, point):
     """A random point of a box, in place."""
     for k in range(2):
         point[k] = low[k] + (high[k] - low[k]) * rng.random()
 
 
-@njit(cache=True)
+@allocation_free
 def _cost(occupied, target, path, count, point, colony):
     """Cost of the next point: the distance to it, the distance from it to the target, and cones over the cells around the points chosen
     before.
@@ -228,7 +229,7 @@ def _cost(occupied, target, path, count, point, colony):
     )
 
 
-@njit(cache=True)
+@allocation_free
 def _length(x0, y0, x1, y1):
     return np.sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2)
 
@@ -282,7 +283,7 @@ def _evolve(rng, occupied, path, evolution):
     return points[slots[0], : counts[slots[0]]], history
 
 
-@njit(cache=True)
+@allocation_free
 def _mutated(rng, occupied, points, legs, count, child, child_legs, evolution):
     """Make a child of a path, in place: an inner point is moved or dropped, or a midpoint is inserted. Returns the child's number of
     points.
@@ -317,7 +318,7 @@ def _mutated(rng, occupied, points, legs, count, child, child_legs, evolution):
     return count + behind - kept
 
 
-@njit(cache=True)
+@allocation_free
 def _shift(rng, occupied, point, spread):
     """Move a point by a Gaussian step in both coordinates, in place; it stays within the centres of the outermost cells."""
     for k in range(2):
@@ -325,7 +326,7 @@ def _shift(rng, occupied, point, spread):
         point[k] = min(max(point[k] + spread * rng.standard_normal(), 0.5), side - 0.5)
 
 
-@njit(cache=True)
+@allocation_free
 def _leg(occupied, points, p, blocked_penalty):
     """Length of the leg after point p, plus the penalty if it is blocked."""
     x0, y0 = points[p]

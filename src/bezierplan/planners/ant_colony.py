@@ -10,6 +10,7 @@ from typing import Annotated, Literal, NamedTuple
 import numpy as np
 from numba import njit
 
+from bezierplan.kernels import allocation_free
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts.cell_paths import length, put, step_between
 from bezierplan.planners.parts.random_integers import integer
@@ -188,7 +189,7 @@ def _walk(rng, lattice, trail, heuristic, rules, path, visits, ant):
     return size
 
 
-@njit(cache=True)
+@allocation_free
 def _choose(rng, attraction, exploitation):
     """A random index of an array (n,), in proportion to its values, or uniform if all are 0; with the probability `exploitation`, that of
     the largest.
@@ -206,7 +207,7 @@ def _choose(rng, attraction, exploitation):
     return len(attraction) - 1
 
 
-@njit(cache=True)
+@allocation_free
 def _lay(lattice, trail, one, other, kept, added):
     """Keep a share of a step's trail and add to it, in both directions."""
     there, back = step_between(lattice, one, other), step_between(lattice, other, one)

@@ -15,6 +15,7 @@ import numpy as np
 from numba import njit
 
 from bezierplan.geometry import curves
+from bezierplan.kernels import allocation_free
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts.genetic import check_pairs, complement_bit, redraw_gene, roulette, swap_tails
 from bezierplan.planners.parts.random_integers import integer
@@ -284,7 +285,7 @@ def _redraw(rng, codes, cells, curve):
                 codes[i, gene] = cells.free[integer(rng, 0, len(cells.free))]
 
 
-@njit(cache=True)
+@allocation_free
 def _mutate(rng, genes, bits, cells, rules):
     """Change random genes of a chromosome in place (ma2020, Section 3.4)."""
     if rules.mutation == _PER_GENE:
@@ -298,7 +299,7 @@ def _mutate(rng, genes, bits, cells, rules):
             redraw_gene(rng, genes, cells.free)
 
 
-@njit(cache=True)
+@allocation_free
 def _flip(rng, genes, gene, bits, legal):
     """Flip a random bit of a gene in place; a bit that leaves the free cells is redrawn."""
     before = genes[gene]
@@ -309,7 +310,7 @@ def _flip(rng, genes, gene, bits, legal):
         genes[gene] = before
 
 
-@njit(cache=True)
+@allocation_free
 def _cost(genes, cells, curve, rules, scratch):
     """Cost of a chromosome, the reciprocal of its fitness (`plan` lists the forms)."""
     length, bad, clearance = _measure(genes, cells, curve, scratch, rules.fitness != _LENGTH)
@@ -328,7 +329,7 @@ def _cost(genes, cells, curve, rules, scratch):
     return length * rules.cell if rules.fitness == _RECIPROCAL_LITERAL else 1.0 / (length * rules.cell)
 
 
-@njit(cache=True)
+@allocation_free
 def _safety_term(bad, clearance, safety_distance):
     """How far the path undercuts the safety distance, from 0 to 1 (ma2020, eq. 14; 1 for a path that collides)."""
     if safety_distance == 0 or (bad == 0 and clearance >= safety_distance):
@@ -336,7 +337,7 @@ def _safety_term(bad, clearance, safety_distance):
     return 1.0 if bad > 0 else (1.0 - clearance / safety_distance) ** 2
 
 
-@njit(cache=True)
+@allocation_free
 def _measure(genes, cells, curve, scratch, with_clearance):
     """Length in cells of the polyline through a curve's samples, the number of colliding samples, and the minimum distance of the samples
     to the occupied cells nearby: infinite if there are none, 0 for a path that collides or if it is not requested.
@@ -363,7 +364,7 @@ def _measure(genes, cells, curve, scratch, with_clearance):
     return length, bad, _clearance(x, y, cells) if with_clearance and bad == 0 else 0.0
 
 
-@njit(cache=True)
+@allocation_free
 def _collisions(x, y, occupied):
     """Number of samples that lie inside an occupied cell or end a chord that passes through one between its ends. Touching is allowed."""
     rows, columns = occupied.shape
@@ -379,13 +380,13 @@ def _collisions(x, y, occupied):
     return bad
 
 
-@njit(cache=True)
+@allocation_free
 def _inside(value, cell):
     """Whether a coordinate lies between the two grid lines of its column or row; rounding alone must not decide."""
     return cell + ON_LINE < value < cell + 1 - ON_LINE
 
 
-@njit(cache=True)
+@allocation_free
 def _cuts(x, y, x_end, y_end, occupied):
     """Whether a chord passes through an occupied cell between the cells of its ends.
 
@@ -412,7 +413,7 @@ def _cuts(x, y, x_end, y_end, occupied):
     return False
 
 
-@njit(cache=True)
+@allocation_free
 def _clearance(x, y, cells):
     """Minimum distance in cells of the samples to the occupied cells listed as near to theirs; infinite if there are none."""
     rows, columns = cells.occupied.shape
@@ -427,7 +428,7 @@ def _clearance(x, y, cells):
     return np.sqrt(least)
 
 
-@njit(cache=True)
+@allocation_free
 def _same(one, other):
     """Whether two chromosomes are equal."""
     for k in range(len(one)):
@@ -436,7 +437,7 @@ def _same(one, other):
     return True
 
 
-@njit(cache=True)
+@allocation_free
 def _copy(source, target):
     """Copy a one-dimensional array. Compiles much faster than numpy's slice assignment."""
     for k in range(len(source)):

@@ -14,6 +14,7 @@ import numpy as np
 from numba import njit
 
 from bezierplan.geometry import curves
+from bezierplan.kernels import allocation_free
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts.genetic import check_pairs, complement_bit, roulette, swap_tails
 from bezierplan.planners.parts.random_integers import integer
@@ -221,14 +222,14 @@ def _search(rng, cells, occupied, places, curve, rules):
     return best, best_bad, history
 
 
-@njit(cache=True)
+@allocation_free
 def _copy(source, target):
     """Copy a one-dimensional array. Compiles much faster than numpy's slice assignment."""
     for k in range(len(source)):
         target[k] = source[k]
 
 
-@njit(cache=True)
+@allocation_free
 def _same(cells, others, first, last):
     """Whether two chromosomes have the same control points first .. last."""
     for p in range(first, last + 1):
@@ -237,7 +238,7 @@ def _same(cells, others, first, last):
     return True
 
 
-@njit(cache=True)
+@allocation_free
 def _mutate(rng, genes, bits, probability, mutation):
     """Complement random bits of a chromosome in place (song2016, Section III-E describes `one_bit`)."""
     if mutation == _ONE_BIT:
@@ -253,7 +254,7 @@ def _mutate(rng, genes, bits, probability, mutation):
                 complement_bit(genes, position, bits)
 
 
-@njit(cache=True)
+@allocation_free
 def _measure(cells, occupied, places, basis, stretch, x, y):
     """Length in cells of one stretch of a curve and the number of its samples in occupied cells, not counting the first.
 

@@ -18,6 +18,7 @@ import numpy as np
 from numba import njit
 
 from bezierplan.geometry import curves
+from bezierplan.kernels import allocation_free
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts import chaotic_maps, penalised
 from bezierplan.planners.parts.penalised import FEASIBLE, Objective, Penalty
@@ -404,19 +405,19 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
     return g[: t + 1], g_fitness[: t + 1], g_violation, infeasible, colliding_samples, best_colliding_samples, best_infeasible
 
 
-@njit(cache=True)
+@allocation_free
 def _copy(source, target):
     for d in range(len(source)):
         target[d] = source[d]
 
 
-@njit(cache=True)
+@allocation_free
 def _draw(rng, r):
     r[0] = rng.random()
     r[1] = rng.random()
 
 
-@njit(cache=True)
+@allocation_free
 def _move(rng, r, x, v, p, g, zeta, w, limit, rules):
     """Velocity and position of one particle, in place (tharwat2018, eqs. 8 and 7; CPSO-I: eq. 17, CPSO-II: eq. 18).
 
@@ -435,7 +436,7 @@ def _move(rng, r, x, v, p, g, zeta, w, limit, rules):
         x[d] += v[d]
 
 
-@njit(cache=True)
+@allocation_free
 def _hold(x, v, low, high, bound_rule):
     """Bring one particle back into the field, in place."""
     if bound_rule == _NO_BOUND:

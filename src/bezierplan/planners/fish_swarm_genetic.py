@@ -9,6 +9,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numba import njit
 
+from bezierplan.kernels import allocation_free
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import check_pairs
@@ -140,7 +141,7 @@ def _release(rng, lattice, swarm, wanted, releases):
     return found[:arrived], found_sizes[:arrived], released
 
 
-@njit(cache=True)
+@allocation_free
 def _follow(lattice, i, cells, states, visited, swarm):
     """The unvisited neighbour of a fish's cell that is nearest to its leader, the fish in sight nearest to the target; -1 if there is none.
 

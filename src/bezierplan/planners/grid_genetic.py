@@ -13,6 +13,7 @@ from typing import Annotated, NamedTuple
 import numpy as np
 from numba import njit
 
+from bezierplan.kernels import allocation_free
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts.genetic import roulette
 from bezierplan.planners.parts.random_integers import integer
@@ -210,7 +211,7 @@ def _first_walks(rng, walker, start, target, rules, walk, last_visit):
     return paths, costs
 
 
-@njit(cache=True)
+@allocation_free
 def _extend(rng, walker, walk, count, goal):
     """Continue a walk of `count` cells to a goal, in place. Returns the new number of cells, or 0 if the walk becomes too long or cannot
     move.
@@ -252,7 +253,7 @@ def _extend(rng, walker, walk, count, goal):
     return count
 
 
-@njit(cache=True)
+@allocation_free
 def _random_step(rng, walled, columns, cell):
     """A random step to a free neighbour of a cell, -1 if it has none."""
     free = 0
@@ -268,7 +269,7 @@ def _random_step(rng, walled, columns, cell):
     return step
 
 
-@njit(cache=True)
+@allocation_free
 def _cut_loops(walk, count, last_visit):
     """Remove the loops of a walk, in place: after each cell it continues as after its last visit there. Returns the remaining number of
     cells.
@@ -284,7 +285,7 @@ def _cut_loops(walk, count, last_visit):
     return kept
 
 
-@njit(cache=True)
+@allocation_free
 def _join(rng, head, tail, place, common, walk):
     """Write the head of one path and the tail of another, joined at a random inner cell of both. Returns its length, or 0 if there is no
     such cell.
@@ -308,7 +309,7 @@ def _join(rng, head, tail, place, common, walk):
     return count
 
 
-@njit(cache=True)
+@allocation_free
 def _walk_anew(rng, walker, path, count, last_visit):
     """Replace the section between two random cells of a path by a new walk, in place; a failed walk changes nothing."""
     one = integer(rng, 0, count)
@@ -324,7 +325,7 @@ def _walk_anew(rng, walker, path, count, last_visit):
     return _cut_loops(path, _copy(path, count + 1, end, path, first + 1), last_visit)
 
 
-@njit(cache=True)
+@allocation_free
 def _copy(source, first, last, target, place):
     """Copy the cells first .. last - 1 of one path to a place in another. Returns the place after them."""
     for k in range(first, last):
@@ -332,7 +333,7 @@ def _copy(source, first, last, target, place):
     return place + last - first
 
 
-@njit(cache=True)
+@allocation_free
 def _cost(path, count, columns, diagonal_cost):
     """Cost of a path of `count` cells."""
     diagonal = 0

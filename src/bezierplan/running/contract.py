@@ -13,10 +13,10 @@ from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 
 from bezierplan.geometry import checker, curves
 from bezierplan.geometry.region import Region, region
+from bezierplan.kernels import allocation_free
 from bezierplan.planners import Plan, Range, known_planners, planner_settings, setting_fault
 from bezierplan.running import answer, interface
 from bezierplan.running.execution import TAKEN
@@ -282,7 +282,7 @@ def _global_states() -> dict[str, tuple]:
     return {"numpy.random": (name, keys.tobytes(), *rest), "random": random.getstate()}
 
 
-@njit(cache=True)
+@allocation_free
 def _seed_compiled(seed: int) -> None:
     """Seed the global generators of compiled code, which numba keeps apart from Python's. Their state cannot be read."""
     np.random.seed(seed)  # noqa: NPY002

@@ -6,7 +6,6 @@ Each kind of region has its own answers. The overloads at the end select them by
 import math
 
 import numpy as np
-from numba import njit
 from numba.extending import overload
 
 from bezierplan.geometry.checker.hulls import (
@@ -20,6 +19,7 @@ from bezierplan.geometry.checker.hulls import (
     range_along,
 )
 from bezierplan.geometry.region import CircleRegion, GridRegion, PolygonRegion
+from bezierplan.kernels import allocation_free
 
 # Extent of the cells around a grid that represent its outside: beyond every coordinate.
 _FAR = 4 * LARGEST_COORDINATE
@@ -68,7 +68,7 @@ def depth_bound(points, region):
 # Cells: elements of the doubled grid, and separating axes
 
 
-@njit(cache=True)
+@allocation_free
 def _element(x: float, cell: float, last: int) -> int:
     """Index in the doubled grid of a coordinate: odd on a grid line (within the tolerance), even in a cell; the outside is 0 and `last`."""
     line = round(x / cell)
@@ -78,7 +78,7 @@ def _element(x: float, cell: float, last: int) -> int:
     return min(max(index, 0), last)
 
 
-@njit(cache=True)
+@allocation_free
 def _sides(index: int, cell: float, last: int) -> tuple[float, float]:
     """Lowest and highest coordinate of the cells that touch an element: one cell for even indices, two for odd ones."""
     low = -_FAR if index <= 1 else (index // 2 - 1) * cell
@@ -86,7 +86,7 @@ def _sides(index: int, cell: float, last: int) -> tuple[float, float]:
     return low, high
 
 
-@njit(cache=True)
+@allocation_free
 def _blocked_elements(counts: np.ndarray, bottom: int, top: int, left: int, right: int) -> int:
     """Number of blocked elements in a range of the doubled grid, both ends inclusive."""
     return counts[top + 1, right + 1] - counts[bottom, right + 1] - counts[top + 1, left] + counts[bottom, left]
@@ -142,7 +142,7 @@ def _depth_in_grid(x, y, region):
 # Distance to boundary edges, for cells and polygons
 
 
-@njit(cache=True)
+@allocation_free
 def _distance_to_edges(x: float, y: float, edges: np.ndarray) -> float:
     least = math.inf
     for ax, ay, bx, by in edges:
@@ -164,7 +164,7 @@ def _depth_bound_by_edges(points, region):
 # Circles: the Bernstein form of the squared distance
 
 
-@njit(cache=True)
+@allocation_free
 def least_distance_to_centre(points: np.ndarray, x: float, y: float) -> float:
     """Lower bound of the distance of a curve to a point: the square root of the smallest Bernstein coefficient of the squared distance.
 
@@ -246,7 +246,7 @@ def _is_blocked_in_polygons(x, y, region):
     return depth_at(x, y, region) > TOLERANCE
 
 
-@njit(cache=True)
+@allocation_free
 def _sides_of_edge(points, edge, normal) -> tuple[float, float]:
     """Smallest and largest distance of control points from the line of an edge, positive on its free side."""
     low = math.inf
@@ -292,7 +292,7 @@ def _is_free_in_polygons(points, region):
     return remaining == 0 and not is_blocked(points[0, 0], points[0, 1], region)
 
 
-@njit(cache=True)
+@allocation_free
 def _passes_chain(points, region, touched, first, along_x, along_y, across_low, across_high) -> int:
     """Number of edges of a chain of touched edges if a hull passes it on the free side, otherwise 0.
 

@@ -8,6 +8,7 @@ from numba import njit
 from bezierplan.geometry.checker.certificates import depth_at, depth_bound, is_free, least_distance_to_centre
 from bezierplan.geometry.checker.hulls import ROUNDING, STACK, bulge_of, copy_points, distance_to_segment, halve, size
 from bezierplan.geometry.region import Region
+from bezierplan.kernels import allocation_free
 
 # Proven error of the clearance in units, and of the depth relative to it.
 CLEARANCE_TOLERANCE = 1e-9
@@ -71,7 +72,7 @@ def least_clearance(pieces: np.ndarray, edges: np.ndarray, centres: np.ndarray, 
     return least
 
 
-@njit(cache=True)
+@allocation_free
 def _clearance_of_point(x: float, y: float, obstacles: np.ndarray, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> float:
     """Minimum distance of a point to some of the obstacles, given by number: edges first, then discs."""
     least = math.inf
@@ -85,7 +86,7 @@ def _clearance_of_point(x: float, y: float, obstacles: np.ndarray, edges: np.nda
     return least
 
 
-@njit(cache=True)
+@allocation_free
 def _clearance_bound(points: np.ndarray, bulge: float, obstacle: int, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> float:
     """Lower bound of the distance of a curve to an obstacle. A curve deviates from its chord by at most `bulge`."""
     ax, ay = points[0]
@@ -100,7 +101,7 @@ def _clearance_bound(points: np.ndarray, bulge: float, obstacle: int, edges: np.
     return max(0.0, from_chord - radii[disc])
 
 
-@njit(cache=True)
+@allocation_free
 def _distance_of_segments(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> float:
     if _turn(a, b, c) * _turn(a, b, d) < 0.0 and _turn(c, d, a) * _turn(c, d, b) < 0.0:
         return 0.0
@@ -112,7 +113,7 @@ def _distance_of_segments(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.nda
     )
 
 
-@njit(cache=True)
+@allocation_free
 def _turn(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> float:
     """Twice the signed area of a triangle, positive if it is counterclockwise."""
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])

@@ -3,7 +3,8 @@
 import math
 
 import numpy as np
-from numba import njit
+
+from bezierplan.kernels import allocation_free
 
 # Depth in units above which a point is certainly blocked.
 TOLERANCE = 1e-9
@@ -23,7 +24,7 @@ STACK = 64
 _SHORT_CHORD = 1e-3
 
 
-@njit(cache=True)
+@allocation_free
 def copy_points(points: np.ndarray, place: np.ndarray) -> None:
     """Copy control points one by one. Array assignment does the same, but takes seconds to compile."""
     for i in range(len(points)):
@@ -31,7 +32,7 @@ def copy_points(points: np.ndarray, place: np.ndarray) -> None:
         place[i, 1] = points[i, 1]
 
 
-@njit(cache=True)
+@allocation_free
 def halve(points: np.ndarray, left: np.ndarray) -> None:
     """Replace a piece by its right half and write its left half (de Casteljau's construction)."""
     n = len(points) - 1
@@ -43,7 +44,7 @@ def halve(points: np.ndarray, left: np.ndarray) -> None:
             points[i, 1] = 0.5 * (points[i, 1] + points[i + 1, 1])
 
 
-@njit(cache=True)
+@allocation_free
 def split_top(stack: np.ndarray, begin: np.ndarray, width: np.ndarray, top: int) -> None:
     """Split the uppermost entry of a stack of parts of a piece: its right half stays, and the left half is put on it.
 
@@ -56,7 +57,7 @@ def split_top(stack: np.ndarray, begin: np.ndarray, width: np.ndarray, top: int)
     begin[top] += width[top]
 
 
-@njit(cache=True)
+@allocation_free
 def size(points: np.ndarray) -> float:
     """Largest distance of a control point from the first one."""
     largest = 0.0
@@ -65,7 +66,7 @@ def size(points: np.ndarray) -> float:
     return largest
 
 
-@njit(cache=True)
+@allocation_free
 def direction(points: np.ndarray) -> tuple[float, float]:
     """Unit vector along a hull: the direction of its chord or, where the chord is short, towards the point farthest from the first one."""
     farthest = len(points) - 1
@@ -82,7 +83,7 @@ def direction(points: np.ndarray) -> tuple[float, float]:
     return x / length, y / length
 
 
-@njit(cache=True)
+@allocation_free
 def range_along(points: np.ndarray, x: float, y: float) -> tuple[float, float]:
     """Smallest and largest component of the control points in a direction, relative to the first one."""
     low = high = 0.0
@@ -93,7 +94,7 @@ def range_along(points: np.ndarray, x: float, y: float) -> tuple[float, float]:
     return low, high
 
 
-@njit(cache=True)
+@allocation_free
 def box(points: np.ndarray) -> tuple[float, float, float, float]:
     """Lowest and highest x, lowest and highest y of the control points."""
     left = right = points[0, 0]
@@ -106,7 +107,7 @@ def box(points: np.ndarray) -> tuple[float, float, float, float]:
     return left, right, bottom, top
 
 
-@njit(cache=True)
+@allocation_free
 def distance_to_segment(x: float, y: float, ax: float, ay: float, bx: float, by: float) -> float:
     """Distance of the point (x, y) from the segment from (ax, ay) to (bx, by)."""
     dx = bx - ax
@@ -120,7 +121,7 @@ def distance_to_segment(x: float, y: float, ax: float, ay: float, bx: float, by:
     return math.sqrt(dx * dx + dy * dy)
 
 
-@njit(cache=True)
+@allocation_free
 def bulge_of(points: np.ndarray) -> float:
     """Largest distance of a control point from the chord."""
     largest = 0.0

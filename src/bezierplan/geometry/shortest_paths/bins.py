@@ -6,6 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from bezierplan.kernels import allocation_free
+
 
 class Bins(NamedTuple):
     """Edges by the bins that they pass through.
@@ -56,7 +58,7 @@ def _sort(edges: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
     return first, found
 
 
-@njit(cache=True)
+@allocation_free
 def columns_between(x: float, other: float, bins: Bins) -> tuple[int, int]:
     """The first and the last column of bins between two abscissas."""
     begin = int((min(x, other) - bins.low[0]) // bins.side)
@@ -64,7 +66,7 @@ def columns_between(x: float, other: float, bins: Bins) -> tuple[int, int]:
     return max(begin, 0), min(end, bins.columns - 1)
 
 
-@njit(cache=True)
+@allocation_free
 def rows_between(a: np.ndarray, b: np.ndarray, column: int, bins: Bins) -> tuple[int, int]:
     """The first and the last row of bins that a segment passes within a column, a little more rather than less."""
     low, high = min(a[1], b[1]), max(a[1], b[1])

@@ -9,6 +9,7 @@ from numba import njit
 from bezierplan.geometry.region import GridRegion, from_origin, occupied_around, walled
 from bezierplan.geometry.shortest_paths import shadows
 from bezierplan.geometry.shortest_paths.graph import Bound, along, moved, no_path, shortest_in_graph
+from bezierplan.kernels import allocation_free
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 
@@ -157,12 +158,12 @@ def _visible_on_grid(
     return visible
 
 
-@njit(cache=True)
+@allocation_free
 def _in_quadrant(dx: int, dy: int, quadrant: np.ndarray) -> bool:
     return dx * quadrant[0] >= 0 and dy * quadrant[1] >= 0
 
 
-@njit(cache=True)
+@allocation_free
 def _sees(one: np.ndarray, other: np.ndarray, cells: np.ndarray, scale: int, closed: bool) -> bool:
     """Whether the segment between two different points of the lattice is free."""
     dx, dy = other[0] - one[0], other[1] - one[1]
@@ -173,7 +174,7 @@ def _sees(one: np.ndarray, other: np.ndarray, cells: np.ndarray, scale: int, clo
     return _sees_across(one[0], one[1], dx, dy, cells, scale, closed)
 
 
-@njit(cache=True)
+@allocation_free
 def _sees_along_column(x: int, low: int, length: int, cells: np.ndarray, scale: int, closed: bool) -> bool:
     """Whether a vertical segment is free. On a grid line it runs along edges, which are blocked if both of their cells are occupied."""
     column = x // scale
@@ -186,7 +187,7 @@ def _sees_along_column(x: int, low: int, length: int, cells: np.ndarray, scale: 
     return True
 
 
-@njit(cache=True)
+@allocation_free
 def _is_contact(cells: np.ndarray, row: int, column: int) -> bool:
     """Whether two occupied cells share only a corner at a vertex, given by its grid lines."""
     below_left, below_right = cells[row, column], cells[row, column + 1]
@@ -194,7 +195,7 @@ def _is_contact(cells: np.ndarray, row: int, column: int) -> bool:
     return below_left == above_right and below_right == above_left and below_left != below_right
 
 
-@njit(cache=True)
+@allocation_free
 def _sees_across(x: int, y: int, dx: int, dy: int, cells: np.ndarray, scale: int, closed: bool) -> bool:
     """Whether a slanted segment is free: a walk over the cells that it enters.
 

@@ -10,6 +10,7 @@ from bezierplan.geometry.checker import TOLERANCE, first_collision
 from bezierplan.geometry.region import PolygonRegion
 from bezierplan.geometry.shortest_paths.bins import Bins, bins_of, columns_between, rows_between
 from bezierplan.geometry.shortest_paths.graph import Bound, along, shortest_in_graph, way_back
+from bezierplan.kernels import allocation_free
 from bezierplan.workspaces.problem import Problem
 
 # With more nodes than this, a search that tests pairs only when needed replaces the full graph.
@@ -86,7 +87,7 @@ def _search_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, r
     return np.empty(0, dtype=np.int64)
 
 
-@njit(cache=True)
+@allocation_free
 def _turn_at(nodes: np.ndarray, tail: int, i: int, before: np.ndarray, after: np.ndarray) -> int:
     """To which side a shortest path turns at corner i, where the obstacle is: to the left (1), to the right (-1), or both (0)."""
     if tail < 0:
@@ -95,7 +96,7 @@ def _turn_at(nodes: np.ndarray, tail: int, i: int, before: np.ndarray, after: np
     return int(max(one, other) > TOLERANCE) - int(min(one, other) < -TOLERANCE)
 
 
-@njit(cache=True)
+@allocation_free
 def _is_taut(nodes: np.ndarray, i: int, j: int, before: np.ndarray, after: np.ndarray) -> bool:
     """Whether a shortest path can turn at corner i on its way to or from j: the corner lies on one side of the line."""
     x, y = nodes[i, 0], nodes[i, 1]
@@ -108,7 +109,7 @@ def _is_taut(nodes: np.ndarray, i: int, j: int, before: np.ndarray, after: np.nd
     return not _apart(one, other)
 
 
-@njit(cache=True)
+@allocation_free
 def _crosses_any(a: np.ndarray, b: np.ndarray, edges: np.ndarray, bins: Bins) -> bool:
     """Whether a segment crosses an edge strictly; mere touching is left to the certified check. Edges near its beginning come first."""
     left, right, bottom, top = min(a[0], b[0]), max(a[0], b[0]), min(a[1], b[1]), max(a[1], b[1])
@@ -127,18 +128,18 @@ def _crosses_any(a: np.ndarray, b: np.ndarray, edges: np.ndarray, bins: Bins) ->
     return False
 
 
-@njit(cache=True)
+@allocation_free
 def _crosses_edge(a: np.ndarray, b: np.ndarray, c: np.ndarray, d: np.ndarray) -> bool:
     return _apart(_offset(a, b, c), _offset(a, b, d)) and _apart(_offset(c, d, a), _offset(c, d, b))
 
 
-@njit(cache=True)
+@allocation_free
 def _apart(first: float, second: float) -> bool:
     """Whether two offsets lie strictly on opposite sides of a line."""
     return min(first, second) < -TOLERANCE and max(first, second) > TOLERANCE
 
 
-@njit(cache=True)
+@allocation_free
 def _offset(a: np.ndarray, b: np.ndarray, point: np.ndarray) -> float:
     """Distance of a point from the line through a and b, positive on its left; 0 if a and b coincide."""
     length = math.hypot(b[0] - a[0], b[1] - a[1])

@@ -15,6 +15,7 @@ from numba import njit
 
 from bezierplan.geometry.region import occupied_around
 from bezierplan.geometry.shortest_paths.graph import way_back
+from bezierplan.kernels import allocation_free
 
 
 class Scene(NamedTuple):
@@ -91,7 +92,7 @@ def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> 
     return np.empty(0, dtype=np.int64)
 
 
-@njit(cache=True)
+@allocation_free
 def _look_around(point: np.ndarray, scene: Scene, fans: np.ndarray, seen: np.ndarray) -> int:
     """The corners that a point sees and a shortest path can pass in that direction: their number, and themselves in `seen`.
 
@@ -104,7 +105,7 @@ def _look_around(point: np.ndarray, scene: Scene, fans: np.ndarray, seen: np.nda
     return count
 
 
-@njit(cache=True)
+@allocation_free
 def _look(point: np.ndarray, came: np.ndarray, corner: int, scene: Scene, fans: np.ndarray, seen: np.ndarray) -> int:
     """As `_look_around`, from a corner that a path has come to along a vector.
 
@@ -128,7 +129,7 @@ def _look(point: np.ndarray, came: np.ndarray, corner: int, scene: Scene, fans: 
     return _look_across(x, y, side, cone, scene, fans, seen, count)
 
 
-@njit(cache=True)
+@allocation_free
 def _look_along(x: int, y: int, to: int, scene: Scene, seen: np.ndarray) -> int:
     """The corners that a point sees along its horizontal grid line, if it lies on one: to the right (1), to the left (-1), or both (0).
 
@@ -145,7 +146,7 @@ def _look_along(x: int, y: int, to: int, scene: Scene, seen: np.ndarray) -> int:
     return _gather(left, right, y // scene.scale, x, 0, scene, seen, 0)
 
 
-@njit(cache=True)
+@allocation_free
 def _look_across(x, y, side, cone, scene, fans, seen, count):
     """Add to `seen` the corners within a cone above a point (side 1) or below it (-1), and return how many there are now.
 
@@ -179,7 +180,7 @@ def _look_across(x, y, side, cone, scene, fans, seen, count):
     return count
 
 
-@njit(cache=True)
+@allocation_free
 def _cast_shadows(x, band, near, fan, intervals, scene, following):
     """Take what a row of cells hides out of the intervals; write what remains and return how many intervals that is.
 
@@ -212,7 +213,7 @@ def _cast_shadows(x, band, near, fan, intervals, scene, following):
     return count
 
 
-@njit(cache=True)
+@allocation_free
 def _first_run_beyond(column: int, band: int, scene: Scene) -> int:
     """The first run of a row that ends to the right of a grid line. The ring around the cells ends every row with one."""
     low, high = scene.first_run[band + 1], scene.first_run[band + 2] - 1
@@ -225,7 +226,7 @@ def _first_run_beyond(column: int, band: int, scene: Scene) -> int:
     return low
 
 
-@njit(cache=True)
+@allocation_free
 def _gather(left, right, line, x, side, scene, seen, count):
     """Add to `seen` the corners on a horizontal grid line between two vertical ones that a shortest path from x can pass; their number."""
     corner, end = scene.first_corner[line], scene.first_corner[line + 1]

@@ -11,6 +11,8 @@ from typing import Literal, NamedTuple, get_args
 import numpy as np
 from numba import njit
 
+from bezierplan.kernels import allocation_free
+
 Map = Literal["gauss", "singer", "tent", "circle", "logistic", "sine", "piecewise", "sinusoidal", "gauss_printed", "constant"]
 MAPS = get_args(Map)
 _GAUSS, _SINGER, _TENT, _CIRCLE, _LOGISTIC, _SINE, _PIECEWISE, _SINUSOIDAL, _GAUSS_PRINTED, _CONSTANT = range(len(MAPS))
@@ -105,7 +107,7 @@ def _sequence(number, start, length, parameters):
     return values, clipped, collapsed_at
 
 
-@njit(cache=True)
+@allocation_free
 def _lives(number, start, parameters):
     """Whether a sequence without clipping is neither at (or below) 0 nor at a fixed point after a number of steps."""
     before = x = start
@@ -114,7 +116,7 @@ def _lives(number, start, parameters):
     return x >= STANDSTILL and abs(x - before) >= STANDSTILL
 
 
-@njit(cache=True)
+@allocation_free
 def _next(number, x, parameters):
     """x_{k+1} of a map from x_k (tharwat2018, eqs. 9 to 16)."""
     if number == _GAUSS:
@@ -140,7 +142,7 @@ def _next(number, x, parameters):
     return x
 
 
-@njit(cache=True)
+@allocation_free
 def _fraction(x):
     """x mod 1."""
     return x - math.floor(x)

@@ -6,6 +6,7 @@ A chromosome (genes,) is one bit string in the order of its genes. Functions tha
 import numpy as np
 from numba import njit
 
+from bezierplan.kernels import allocation_free
 from bezierplan.planners.parts.random_integers import integer
 
 
@@ -26,7 +27,7 @@ def roulette(rng: np.random.Generator, fitness: np.ndarray, draws: int) -> np.nd
     return parents
 
 
-@njit(cache=True)
+@allocation_free
 def swap_tails(one: np.ndarray, other: np.ndarray, cut: int, bits: int) -> None:
     """Exchange, in place, the bits after the first `cut` bits of two chromosomes (song2016, Section III-E: single-point crossover)."""
     gene = cut // bits
@@ -38,13 +39,13 @@ def swap_tails(one: np.ndarray, other: np.ndarray, cut: int, bits: int) -> None:
         one[later], other[later] = other[later], one[later]
 
 
-@njit(cache=True)
+@allocation_free
 def complement_bit(chromosome: np.ndarray, position: int, bits: int) -> None:
     """Complement, in place, one bit of a chromosome, counted from its beginning (song2016, Section III-E: mutation)."""
     chromosome[position // bits] ^= 1 << (bits - 1 - position % bits)
 
 
-@njit(cache=True)
+@allocation_free
 def redraw_gene(rng: np.random.Generator, chromosome: np.ndarray, alleles: np.ndarray) -> None:
     """Replace, in place, one random gene of a chromosome by a random allele, which may equal the old gene."""
     chromosome[integer(rng, 0, len(chromosome))] = alleles[integer(rng, 0, len(alleles))]

@@ -10,8 +10,8 @@ bounds keep the control points inside.
 from typing import TYPE_CHECKING, Literal, NamedTuple
 
 import numpy as np
-from numba import njit
 
+from bezierplan.kernels import allocation_free
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.spheres import Spheres
@@ -55,7 +55,7 @@ class Objective(NamedTuple):
     beta: float
 
 
-@njit(cache=True)
+@allocation_free
 def fitness(length: float, violation: float, objective: Objective) -> float:
     """Length of a path combined with the penalty for its violation (tharwat2018, eq. 22, which leaves the penalty open)."""
     if objective.penalty == _MULTIPLY:
@@ -65,13 +65,13 @@ def fitness(length: float, violation: float, objective: Objective) -> float:
     return objective.beta if violation > FEASIBLE else length
 
 
-@njit(cache=True)
+@allocation_free
 def least_fitness(length: float, objective: Objective) -> float:
     """The lowest fitness that a path of this length can have, whatever it meets."""
     return min(length, objective.beta) if objective.penalty == _DEATH else length
 
 
-@njit(cache=True)
+@allocation_free
 def length(particle: np.ndarray, objective: Objective, curve: np.ndarray, chords: np.ndarray) -> float:
     """Length of the polyline through the samples of a particle's curve (tharwat2018, eq. 19).
 
@@ -144,7 +144,7 @@ def _sides(ring: "LinearRing") -> np.ndarray:
     return np.hstack([corners[:-1], corners[1:]])
 
 
-@njit(cache=True)
+@allocation_free
 def violation(curve: np.ndarray, objective: Objective, scratch: np.ndarray) -> tuple[float, int]:
     """Violation of a path, and its number of samples in obstacles, both summed over the obstacles.
 
@@ -158,7 +158,7 @@ def violation(curve: np.ndarray, objective: Objective, scratch: np.ndarray) -> t
     return of_balls + of_polygons, in_balls + in_polygons
 
 
-@njit(cache=True)
+@allocation_free
 def _among_polygons(x, y, polygons):
     samples = len(x)
     total, colliding = 0.0, 0
@@ -175,7 +175,7 @@ def _among_polygons(x, y, polygons):
     return total, colliding
 
 
-@njit(cache=True)
+@allocation_free
 def _depth(x, y, edges):
     """Distance of a point to the nearest edge (n, 4) of a polygon; 0 outside of it, where a ray to the right crosses an even number of
     edges.
@@ -192,7 +192,7 @@ def _depth(x, y, edges):
     return np.sqrt(nearest) if inside else 0.0
 
 
-@njit(cache=True)
+@allocation_free
 def _among_balls(curve, balls, squares):
     """The parts of `violation` for circles or spheres (obstacles, d + 1)."""
     dimensions, samples = curve.shape

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from bezierplan.kernels import allocation_free
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.ways import Way
 from bezierplan.workspaces.worlds import MovingCircles, positions
@@ -75,7 +76,7 @@ def _follow(points, at, step, circles, pace, end, rules):
     return ENDED, reached[: n + 1]
 
 
-@njit(cache=True)
+@allocation_free
 def comes_near(points, at, begin, end, centres, drift, radii, margin, pace):
     """Whether a robot that drives the part of a way between two lengths comes nearer to a circle than its radius plus a margin.
 
@@ -110,7 +111,7 @@ def comes_near(points, at, begin, end, centres, drift, radii, margin, pace):
     return False
 
 
-@njit(cache=True)
+@allocation_free
 def _place(points, at, s):
     """The point after a length of way."""
     i = min(max(np.searchsorted(at, s, side="right"), 1), len(at) - 1)

@@ -17,6 +17,7 @@ import numpy as np
 from numba import njit
 
 from bezierplan.geometry import shortest_paths
+from bezierplan.kernels import allocation_free
 from bezierplan.running.simulation.motion_check import Motion, check
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
@@ -162,7 +163,7 @@ def _safe_intervals(origin, columns, rows, centres, radii, pace, end):
     return begins
 
 
-@njit(cache=True)
+@allocation_free
 def _meets(x, y, to_x, to_y, begin, end, centres, radius, step):
     """Whether a robot that moves from one point at `begin` to another at `end`, both within a step, enters a circle that moves from the
     first to the second of two centres (2, 2) during the step."""
@@ -176,7 +177,7 @@ def _meets(x, y, to_x, to_y, begin, end, centres, radius, step):
     return (dx + share * ex) ** 2 + (dy + share * ey) ** 2 < radius * radius
 
 
-@njit(cache=True)
+@allocation_free
 def _departure(x, y, to_x, to_y, earliest, latest, duration, centres, radii):
     """The first of some departures between two times, in steps, after which a drive collides with nothing; infinite without one."""
     depart = earliest
@@ -189,7 +190,7 @@ def _departure(x, y, to_x, to_y, earliest, latest, duration, centres, radii):
     return np.inf
 
 
-@njit(cache=True)
+@allocation_free
 def _is_free(x, y, to_x, to_y, depart, duration, centres, radii):
     begin = depart
     while begin < depart + duration:
@@ -271,7 +272,7 @@ def _between_corners(places, occupied, begins, pace):
                     lengths[j, into] = lengths[i, f] + size
 
 
-@njit(cache=True)
+@allocation_free
 def _end_of(since, first, begins):
     """When the safe interval that begins with a map ends."""
     f = first
@@ -318,7 +319,7 @@ def _crossings(one, other):
 _ON_LINE = 1e-9
 
 
-@njit(cache=True)
+@allocation_free
 def _inside(x, y, occupied):
     """Whether a point lies in the interior of the occupied cells."""
     left, right = math.floor(x - _ON_LINE), math.floor(x + _ON_LINE)

@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numba import njit
 
+from bezierplan.kernels import allocation_free
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.workspaces.worlds import MovingCircles, positions
 
@@ -65,7 +66,7 @@ def _best(place, moves, centres, drift, radii, margin, bounds):
     return best
 
 
-@njit(cache=True)
+@allocation_free
 def _nearest(dx, dy, ex, ey):
     """Least distance from the origin of a point that moves from (dx, dy) by (ex, ey)."""
     size = ex * ex + ey * ey
@@ -73,7 +74,7 @@ def _nearest(dx, dy, ex, ey):
     return math.hypot(dx + share * ex, dy + share * ey)
 
 
-@njit(cache=True)
+@allocation_free
 def _comes_at(dx, dy, vx, vy, reach):
     """When a point at (dx, dy) with a velocity comes nearer than `reach` to the origin, in steps; at most `_AHEAD`."""
     excess, along, size = dx * dx + dy * dy - reach * reach, dx * vx + dy * vy, vx * vx + vy * vy

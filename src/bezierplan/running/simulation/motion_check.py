@@ -13,6 +13,7 @@ from numba import njit
 
 from bezierplan.geometry import checker
 from bezierplan.geometry.region import region
+from bezierplan.kernels import allocation_free
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World, positions
 
 
@@ -98,7 +99,7 @@ def _approach(points, times, centres, velocities, walls, radii, tolerance):
     return collision_at, clearance
 
 
-@njit(cache=True)
+@allocation_free
 def _relative(points, i, share, before, after, moved):
     """The robot's place on leg i, relative to a circle that has made a share of its step."""
     x = points[i, 0] + share * (points[i + 1, 0] - points[i, 0])
