@@ -51,7 +51,7 @@ def scratch_for(field: Field) -> Scratch:
 def validate(ones: np.ndarray, field: Field, rules: NamedTuple, scratch: Scratch) -> tuple[float, bool]:
     """Apply the constraints of equation 6 and Section 3.2.2: the cost (length) of a chromosome, infinite if it is to be deleted, and
     whether its curve is collision-free. `Obstacles` needs no test, as genes of occupied cells are never set. rules:
-    `modified_genetic.Rules`.
+    `modified_genetic.Rules`. scratch: `scratch_for` the field.
     """
     if not 0 < len(ones) <= MOST_POINTS:
         return np.inf, False
