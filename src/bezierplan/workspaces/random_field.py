@@ -58,13 +58,11 @@ def _centres(rng: np.random.Generator, count: int, side: float, ends: np.ndarray
 
 def from_circles(circles: Circles) -> Grid:
     """The field of some circles; their bounds are its square, from 0 to N."""
+    from bezierplan.workspaces.cells_in_circles import occupy
+
     count = round(circles.bounds[1]) + 1
     occupied = np.zeros((count, count), dtype=bool)
-    for (x, y), radius in zip(circles.centres, circles.radii):
-        left, bottom = (max(0, int(np.ceil(value - radius))) for value in (x, y))
-        right, top = (min(count - 1, int(np.floor(value + radius))) for value in (x, y))
-        columns, rows = np.arange(left, right + 1), np.arange(bottom, top + 1)
-        occupied[bottom : top + 1, left : right + 1] |= np.hypot(columns - x, rows[:, None] - y) <= radius
+    occupy(occupied, circles.centres, circles.radii)
     return Grid(occupied, 1.0, circles.unit, (-0.5, -0.5), circles)
 
 
