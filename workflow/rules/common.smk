@@ -1,4 +1,5 @@
 # The checked configuration, and what rules share. What a job reads and depends on is in src/bezierplan/study/targets.py.
+import gc
 import os
 import re
 import shlex
@@ -23,6 +24,8 @@ try:
     reading.check_folder()
 except checked.Fault as fault:
     sys.exit(str(fault))
+# All this stays until the end: to look for garbage in it takes a tenth of a start.
+gc.freeze()
 
 # What the directive `script` calls: a fork of one process with all libraries, instead of a new interpreter.
 FORKS = forks.Forks(INTERPRETER, script)
