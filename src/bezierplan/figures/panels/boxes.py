@@ -134,8 +134,10 @@ def _draw_far(axes: Axes, groups: list[dict[str, list[float]]], limits: list[flo
             far.update(beyond)
             # Several, of several conditions, by their range: one text each would lie on the other.
             told = " to ".join(dict.fromkeys(f"{value:.4g}" for value in (beyond[0], beyond[-1])))
-            at = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "va": "center", "ha": "right" if above else "left"}
-            axes.annotate(told, (1.0 if above else 0.0, height), xytext=(-7 if above else 7, 0), zorder=5, bbox=_BEHIND_TEXT, **at)
+            # On the right, beside the panel, where they hide no data; on the left are the names of the rows.
+            at = {"xycoords": ("axes fraction", "data"), "textcoords": "offset points", "xytext": (7, 0), "va": "center", "ha": "left"}
+            behind = None if above else _BEHIND_TEXT
+            axes.annotate(told, (1.0 if above else 0.0, height), zorder=5, bbox=behind, **at)
             edge = style.PUBLISHED_MARK | {"marker": ">" if above else "<", "label": "published mean, off the scale"}
             axes.plot(1.0 if above else 0.0, height, transform=axes.get_yaxis_transform(), clip_on=False, zorder=5, **edge)
     if far:
