@@ -23,6 +23,10 @@ def outer(x):
     return inner(x) * 2
 
 @njit(cache=True)
+def constant(x):
+    return inner(1) + inner(x)
+
+@njit(cache=True)
 def wrong(x):
     return x + "a"
 """
@@ -89,6 +93,13 @@ def test_one_of_two_processes_compiles(start, tmp_path):
     answers = [process.communicate(timeout=120)[0].split() for process in both]
     # Who loads the outer kernel never asks for the inner one.
     assert sorted(answers) == [["42", "0", "0"], ["42", "1", "1"]]
+
+
+def test_a_constant_compiles_nothing_twice(start, tmp_path):
+    """numba alone would compile the inner kernel for any integer and for this one."""
+    process = start("print(mine.constant(20), len(mine.inner.signatures))")
+    (tmp_path / "go").touch()
+    assert process.communicate(timeout=120)[0].split() == ["23", "1"]
 
 
 def test_a_process_that_is_killed_while_it_compiles_holds_up_nobody(start, tmp_path):

@@ -245,7 +245,8 @@ def _from_roadmaps(
 def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarray, counts: np.ndarray, scratch: Scratch) -> Found:
     """Algorithm 2; without a diversity rule, the plain algorithm.
 
-    first: (n, `_ROOM`) chromosomes with which the first population begins; counts: (n,) their numbers of ones.
+    first: (n, `_ROOM`) chromosomes with which the first population begins; counts: (n,) their numbers of ones. scratch: `scratch_for` the
+    field.
     """
     batches = 1 + (rules.most_batches if rules.diversity == _MORE_OFFSPRING else 0)
     size = rules.population
@@ -304,7 +305,7 @@ def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarr
 def _add_offspring(rng, pool, filled, wheel, eta, child, memory, field, rules, scratch):
     """Add a batch of offspring of the pool's first chromosomes (Algorithm 2, lines 6 and 7) after those already in it.
 
-    wheel: (population,) running sum of the parents' fitness. memory: of validated children, changed in place. Returns the number of
+    wheel: (population,) running sum of the parents' fitness. memory: of validated chromosomes, changed in place. Returns the number of
     chromosomes now in the pool, of chromosomes validated, and of invalid children.
     """
     tried = invalid = 0
@@ -339,7 +340,7 @@ def _add_offspring(rng, pool, filled, wheel, eta, child, memory, field, rules, s
 
 @allocation_free
 def _validated(ones, memory, field, rules, scratch):
-    """`validate`, without the work for a child that has been there before, as most have once the population is alike."""
+    """`validate`, without the work for a chromosome that has been there before, as most children have once the population is alike."""
     place, known = gene_lists.entry(ones, memory)
     if not known:
         cost, free = validate(ones, field, rules, scratch)
