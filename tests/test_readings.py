@@ -132,7 +132,7 @@ def test_numbers_lie_in_range_where_the_comparison_says_so():
     near, _ = readings.numbers_of(results(5.0), SPEC, printed(5.1, 9.0), "study/table")
     assert near["in_range"].to_list() == [True, False]
     ours = results(5.0).runs.query("method == 'a'")["objective"].to_numpy()
-    low, high = statistics.prediction_interval("mean", np.sort(ours), 10, generator("any"))
+    *_, low, high = statistics.prediction("mean", np.sort(ours), 5.1, 10, None, generator("any"))
     assert near[["low", "high"]].iloc[0].to_list() == pytest.approx([low, high], abs=0.05)
 
 

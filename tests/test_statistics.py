@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezierplan.analysis import statistics
-from bezierplan.analysis.statistics import LEAST_RUNS, STATISTICS, interval, predicted, predictive_quantile, resampled, statistic
+from bezierplan.analysis.statistics import LEAST_RUNS, STATISTICS, interval, predicted, prediction, resampled, statistic
 from bezierplan.workspaces.seeds import generator
 
 samples = st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=30).map(np.array)
@@ -135,12 +135,12 @@ OURS = np.random.default_rng(3).normal(100, 5, size=60)
 @pytest.mark.parametrize("size", [None, 1, 10, 60])
 @pytest.mark.parametrize(("published", "quantile"), [(0.0, 0.0), (200.0, 1.0)])
 def test_value_far_outside_is_not_reproduced(size, published, quantile):
-    assert predictive_quantile("mean", OURS, published, size, 2, generator("far")) == (quantile, False)
+    assert prediction("mean", OURS, published, size, 2, generator("far"))[:2] == (quantile, False)
 
 
 @pytest.mark.parametrize("size", [None, 1, 10, 60])
 def test_value_in_the_middle_is_reproduced(size):
-    quantile, reproduced = predictive_quantile("mean", OURS, float(np.median(OURS)), size, 2, generator("middle"))
+    quantile, reproduced, *_ = prediction("mean", OURS, float(np.median(OURS)), size, 2, generator("middle"))
     assert reproduced
     assert 0.2 < quantile < 0.8
 
@@ -148,27 +148,27 @@ def test_value_in_the_middle_is_reproduced(size):
 def test_size_of_the_papers_experiment_matters():
     # One and a half standard deviations are ordinary for one run, and far from the mean of sixty.
     published = float(OURS.mean() + 1.5 * OURS.std())
-    assert predictive_quantile("mean", OURS, published, 1, None, generator("size"))[1]
-    assert not predictive_quantile("mean", OURS, published, 60, None, generator("size"))[1]
+    assert prediction("mean", OURS, published, 1, None, generator("size"))[1]
+    assert not prediction("mean", OURS, published, 60, None, generator("size"))[1]
 
 
 def test_ties_count_for_it():
-    assert predictive_quantile("median", np.full(20, 64.0), 64.0, None, 0, generator("ties")) == (0.5, True)
+    assert prediction("median", np.full(20, 64.0), 64.0, None, 0, generator("ties"))[:2] == (0.5, True)
 
 
 def test_ours_are_rounded_like_the_printed_number():
     exact = np.full(20, 29.94163)
-    assert predictive_quantile("mean", exact, 29.9416, 20, 4, generator("rounded"))[1]
-    assert not predictive_quantile("mean", exact, 29.9417, 20, 4, generator("rounded"))[1]
+    assert prediction("mean", exact, 29.9416, 20, 4, generator("rounded"))[1]
+    assert not prediction("mean", exact, 29.9417, 20, 4, generator("rounded"))[1]
 
 
 def test_too_few_runs_are_not_judged():
-    assert predictive_quantile("mean", OURS[: LEAST_RUNS - 1], 0.0, 10, 2, generator("few")) == (0.0, None)
+    assert prediction("mean", OURS[: LEAST_RUNS - 1], 0.0, 10, 2, generator("few"))[:2] == (0.0, None)
 
 
 @pytest.mark.parametrize(("values", "published"), [(np.array([]), 1.0), (OURS, math.nan)])
 def test_nothing_to_judge(values, published):
-    quantile, reproduced = predictive_quantile("mean", values, published, 10, 2, generator("nothing"))
+    quantile, reproduced, *_ = prediction("mean", values, published, 10, 2, generator("nothing"))
     assert math.isnan(quantile)
     assert reproduced is None
 
@@ -185,7 +185,7 @@ def test_prediction_refuses_few_true_numbers(name, ours, theirs):
     refused = 0
     for repeat in range(300):
         values, published = _drawn(name, ours, rng), statistic(name, _drawn(name, theirs, rng))
-        refused += not predictive_quantile(name, values, published, theirs, None, generator(f"true {repeat}"))[1]
+        refused += not prediction(name, values, published, theirs, None, generator(f"true {repeat}"))[1]
     assert refused / 300 <= 0.08
 
 
@@ -205,9 +205,7 @@ def test_resampling_alone_would_refuse_many(runs):
 def test_prediction_refuses_what_is_far_off(name, away):
     rng = np.random.default_rng(6)
     values = np.ones(30) if name == "share" else rng.normal(size=30)
-    assert not predictive_quantile(
-        name, values, statistic(name, values) + (away if name != "share" else -away), 30, None, generator("far")
-    )[1]
+    assert not prediction(name, values, statistic(name, values) + (away if name != "share" else -away), 30, None, generator("far"))[1]
 
 
 @pytest.mark.parametrize(("ours", "theirs"), [(10, 10), (30, 30), (10, 40), (200, 10)])
@@ -221,14 +219,14 @@ def test_prediction_refuses_few_true_standard_deviations(shape, most, ours, thei
     refused = 0
     for _ in range(400):
         values, published = draw(size=ours), statistic("std", draw(size=theirs))
-        refused += not predictive_quantile("std", values, published, theirs, None, generator("std"))[1]
+        refused += not prediction("std", values, published, theirs, None, generator("std"))[1]
     assert refused / 400 <= most
 
 
 def test_standard_deviation_far_off_is_refused():
     for factor in (0.4, 2.5):
-        assert not predictive_quantile("std", OURS, factor * statistic("std", OURS), 30, None, generator("far"))[1]
-    assert predictive_quantile("std", np.full(30, 5.0), 0.0, 30, None, generator("same")) == (0.5, True)
+        assert not prediction("std", OURS, factor * statistic("std", OURS), 30, None, generator("far"))[1]
+    assert prediction("std", np.full(30, 5.0), 0.0, 30, None, generator("same"))[:2] == (0.5, True)
 
 
 @pytest.mark.parametrize(
@@ -253,11 +251,11 @@ def test_power_is_the_share_of_numbers_beyond_the_ends():
 
 
 def test_no_extreme_lies_beyond_what_is_possible():
-    assert statistics.prediction_interval("min", OURS, 60, generator("bound"), (80.0, math.inf))[0] == 80.0
-    assert predictive_quantile("min", OURS, 80.0, 60, None, generator("bound"), (80.0, math.inf))[1]
-    assert not predictive_quantile("min", OURS, 79.99, 60, None, generator("bound"), (80.0, math.inf))[1]
-    assert predictive_quantile("min", OURS, 79.99, 60, None, generator("bound"))[1]
-    assert statistics.prediction_interval("max", OURS, 60, generator("bound"), (80.0, 130.0))[1] == 130.0
+    assert prediction("min", OURS, 80.0, 60, None, generator("bound"), (80.0, math.inf)).low == 80.0
+    assert prediction("min", OURS, 80.0, 60, None, generator("bound"), (80.0, math.inf))[1]
+    assert not prediction("min", OURS, 79.99, 60, None, generator("bound"), (80.0, math.inf))[1]
+    assert prediction("min", OURS, 79.99, 60, None, generator("bound"))[1]
+    assert prediction("max", OURS, 130.0, 60, None, generator("bound"), (80.0, 130.0)).high == 130.0
 
 
 def test_predicted_mean_has_the_error_of_both_samples():
@@ -271,15 +269,15 @@ def test_prediction_interval_is_what_the_quantile_accepts():
     """A published number is reproduced where it lies between the ends, and beyond them it is not."""
     values = np.random.default_rng(0).normal(10, 2, 30)
     for name in ("mean", "median", "min"):
-        low, high = statistics.prediction_interval(name, values, 10, generator(name))
+        *_, low, high = prediction(name, values, 10.0, 10, None, generator(name))
         assert low < statistics.statistic(name, values) < high or name == "min"
         for published, within in ((low + 1e-6, True), (high - 1e-6, True), (low - 0.05, False), (high + 0.05, False)):
             if np.isfinite(published):
-                assert statistics.predictive_quantile(name, values, published, 10, None, generator(name))[1] == within, (
+                assert prediction(name, values, published, 10, None, generator(name))[1] == within, (
                     name,
                     published,
                 )
-    assert np.isnan(statistics.prediction_interval("mean", np.array([]), 10, generator("empty"))).all()
+    assert np.isnan(prediction("mean", np.array([]), 10.0, 10, None, generator("empty"))[2:]).all()
 
 
 def test_holm_against_a_worked_example():
@@ -295,10 +293,10 @@ def test_experiments_within_one_group_vary_as_the_groups_do():
     drawn = statistics.predicted_within("mean", groups, 10, generator("within"))
     assert set(drawn) == set(map(float, range(8)))
     together = np.concatenate(groups)
-    quantile, reproduced = predictive_quantile("mean", together, 7.0, 10, None, generator("within"), groups=groups)
+    quantile, reproduced, *_ = prediction("mean", together, 7.0, 10, None, generator("within"), groups=groups)
     assert reproduced
     assert quantile == pytest.approx(1 - 1 / 16, abs=0.03)
-    assert predictive_quantile("mean", together, 7.0, 10, None, generator("within"))[1] is False
+    assert prediction("mean", together, 7.0, 10, None, generator("within"))[1] is False
 
 
 def test_predictions_within_groups_are_right_as_often_as_stated():
@@ -308,6 +306,6 @@ def test_predictions_within_groups_are_right_as_often_as_stated():
     for _ in range(500):
         groups = [rng.normal(centre, 1.0, 10) for centre in rng.normal(0.0, 2.0, 50)]
         new = rng.normal(rng.normal(0.0, 2.0), 1.0, 10).mean()
-        low, high = statistics.prediction_interval("mean", np.concatenate(groups), 10, rng, groups=groups)
+        *_, low, high = prediction("mean", np.concatenate(groups), new, 10, None, rng, groups=groups)
         inside.append(low <= new <= high)
     assert 0.92 <= np.mean(inside) <= 0.98

@@ -304,7 +304,7 @@ def test_number_that_the_metric_cannot_have_is_not_possible():
 def test_size_of_the_paper_is_not_cut_to_the_share_that_counts(monkeypatch):
     """A fifth of our runs failed; the paper's ten are ten."""
     sizes = []
-    monkeypatch.setattr(statistics, "predictive_quantile", lambda *given: sizes.append(given[3]) or (0.5, True))
+    monkeypatch.setattr(statistics, "prediction", lambda *given: sizes.append(given[3]) or statistics.Prediction(0.5, True, 9.0, 11.0))
     least(10.0, n=10)
     assert set(sizes) == {10, None}
 

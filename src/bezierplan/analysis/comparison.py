@@ -82,7 +82,8 @@ def compare(
     both = both.loc[order].reset_index(drop=True)
     workspace_unit = next(iter(results.problems.values())).workspace.unit
     both["unit"] = [metrics.unit(metric, workspace_unit) for metric in both["metric"]]
-    described = pd.DataFrame([_described(row, keys, name, _rivals(row, given, published)) for _, row in both.iterrows()], index=both.index)
+    rows, printed = both.to_dict("records"), {column: published[column].to_numpy() for column in [*given, "metric", "statistic", "value"]}
+    described = pd.DataFrame([_described(row, keys, name, _rivals(row, given, printed)) for row in rows], index=both.index)
     table = both.join(described).reindex(columns=keys + _COLUMNS)
     table.loc[_impossible_ranks(both, published, spec), "possible"] = False
     whole, marks = ("n_published", "n_ours", "n_asked"), ("reproduced", "can_fail", "possible")
@@ -133,19 +134,17 @@ def _with_variants(spec: dict, variant_of: dict[str, str], baselines: list[str])
     return spec | {"where": where | {"method": methods + beside}, "beside": beside}
 
 
-def _rivals(row: pd.Series, given: list[str], published: pd.DataFrame) -> np.ndarray:
-    """The paper's numbers (n,) for other methods that match a row in metric, statistic and keys."""
+def _rivals(row: dict[str, Any], given: list[str], printed: dict[str, np.ndarray]) -> np.ndarray:
+    """The paper's numbers (n,) for other methods that match a row in metric, statistic and keys; printed: columns of its numbers."""
     if "method" not in given or pd.isna(row["value_published"]):
         return np.empty(0)
-    place = published[(published["metric"] == row["metric"]) & (published["statistic"] == row["statistic"])]
-    for key in given:
-        place = place[place[key] == row[key]] if key != "method" else place
+    place = np.logical_and.reduce([printed[key] == row[key] for key in ("metric", "statistic", *given) if key != "method"])
     # A variant's own name is in no published row; its number is that of its published method.
-    own = place[place["method"] == row.get("printed_method", row["method"])]
-    return place.drop(own.index)["value"].to_numpy(dtype=float)
+    own = printed["method"] == row.get("printed_method", row["method"])
+    return printed["value"][place & ~own].astype(float)
 
 
-def _described(row: pd.Series, keys: list[str], name: str, rivals: np.ndarray) -> dict[str, Any]:
+def _described(row: dict[str, Any], keys: list[str], name: str, rivals: np.ndarray) -> dict[str, Any]:
     """Our side of one row, and the published number's position in it; empty for a published number without runs of ours."""
     if pd.isna(row["runs"]):
         return {"n_ours": 0, "n_asked": 0, "reproduced": None, "can_fail": None, "possible": None}
@@ -161,15 +160,11 @@ def _described(row: pd.Series, keys: list[str], name: str, rivals: np.ndarray) -
     # The paper's number of runs, whatever share of ours failed.
     size = None if pd.isna(row["n_published"]) else int(row["n_published"])
     published, single = row["value_published"], (row["least"], row["most"])
-    quantile, reproduced = statistics.predictive_quantile(
+    placed = statistics.prediction(
         statistic, numbers, published, size, row["decimals"], generator(f"{row_name}/prediction"), single, groups
     )
-    if row["unit"] == "s":
-        # Seconds of another machine are shown, not judged.
-        reproduced = None
-    predicted = (math.nan, math.nan)
-    if not pd.isna(published):
-        predicted = statistics.prediction_interval(statistic, numbers, size, generator(f"{row_name}/prediction"), single, groups)
+    # Seconds of another machine are shown, not judged.
+    reproduced = None if row["unit"] == "s" else placed.reproduced
     return {
         "n_ours": len(numbers),
         "n_asked": int(row["asked"]),
@@ -178,16 +173,16 @@ def _described(row: pd.Series, keys: list[str], name: str, rivals: np.ndarray) -
         **{each: statistics.statistic(each, numbers) for each in ("mean", "median", "quartile1", "quartile3")},
         "low95_ours": low,
         "high95_ours": high,
-        "low95_predicted": predicted[0],
-        "high95_predicted": predicted[1],
-        "quantile_published": quantile,
+        "low95_predicted": placed.low,
+        "high95_predicted": placed.high,
+        "quantile_published": placed.quantile,
         "reproduced": reproduced,
-        **_judged(row, reproduced, statistics.statistic(statistic, numbers), predicted, size, rivals),
+        **_judged(row, reproduced, statistics.statistic(statistic, numbers), (placed.low, placed.high), size, rivals),
     }
 
 
 def _judged(
-    row: pd.Series, reproduced: bool | None, ours: float, predicted: tuple[float, float], size: int | None, rivals: np.ndarray
+    row: dict[str, Any], reproduced: bool | None, ours: float, predicted: tuple[float, float], size: int | None, rivals: np.ndarray
 ) -> dict[str, Any]:
     """Whether the test of one row could have failed, its power, and its verdict; empty if it is not judged."""
     published = row["value_published"]

@@ -1,7 +1,7 @@
 """Which reading of what a paper leaves open explains its published numbers? A search over the choices of `study.choices`.
 
 A reading assigns a value to some choices, by id; all others keep the value in force. It is scored by how many published numbers lie in the
-central 95 % of what experiments of the paper's size would print (`statistics.predictive_quantile`), ties by the joint likelihood of the
+central 95 % of what experiments of the paper's size would print (`statistics.prediction`), ties by the joint likelihood of the
 numbers of each table: whole experiments are drawn from our runs, so that numbers from the same runs stay correlated, and the published
 numbers are placed in the multivariate t distribution of these draws.
 """
@@ -103,10 +103,11 @@ def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str)
         if metrics.METRICS[row["metric"]].unit == "s" or not isinstance(row["numbers"], np.ndarray):
             continue
         size = None if pd.isna(row["n"]) else int(row["n"])
-        place = (row["statistic"], row["numbers"], size, generator(f"{name}/{number}"), (row["least"], row["most"]), row["groups"] or None)
-        low, high = statistics.prediction_interval(*place)
         half = 0.0 if pd.isna(row["decimals"]) else 0.5 * 10.0 ** -int(row["decimals"])
-        value = row["value_published"]
+        value, single = row["value_published"], (row["least"], row["most"])
+        *_, low, high = statistics.prediction(
+            row["statistic"], row["numbers"], value, size, None, generator(f"{name}/{number}"), single, row["groups"] or None
+        )
         # Without enough runs nothing is in range: a reading under which most runs fail explains nothing.
         enough = len(row["numbers"]) >= statistics.LEAST_RUNS
         described = {key: row[key] for key in [*given, "metric", "statistic", "value_published"]}

@@ -36,16 +36,16 @@ def read(runs: list[str], repeats: int, problems: str, bounds: str) -> Results:
     Chunks always run whole, so a file may hold more repeats than requested. Raises ValueError, naming the run, if a feasible path is
     shorter than the shortest path: then the checker or the bound is wrong.
     """
-    table = pd.concat([_with_times(file) for file in runs], ignore_index=True)
+    times = _read_tables([str(PurePath(file).with_suffix(".times.parquet")) for file in runs])
+    table = _read_tables(runs).merge(times, on="id", validate="one_to_one")
     table = table[table["repeat"] < repeats].reset_index(drop=True)
     found = joined(table, problem_files.read(problems), parquet.read_table(bounds).to_pandas())
     return found._replace(worlds=worlds.read(problems))
 
 
-def _with_times(file: str) -> pd.DataFrame:
-    """A chunk file of runs, joined with the times in the file next to it."""
-    times = parquet.read_table(PurePath(file).with_suffix(".times.parquet")).to_pandas()
-    return parquet.read_table(file).to_pandas().merge(times, on="id", validate="one_to_one")
+def _read_tables(files: list[str]) -> pd.DataFrame:
+    """The rows of Parquet files as one table."""
+    return pd.concat([parquet.read_table(file).to_pandas() for file in files], ignore_index=True)
 
 
 def joined(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFrame) -> Results:
@@ -93,9 +93,8 @@ def path_of(run: pd.Series) -> Path | None:
 
 def select(runs: pd.DataFrame, where: dict) -> pd.DataFrame:
     """The runs whose columns equal the given values, or one of the values in a list."""
-    for column, wanted in where.items():
-        runs = runs[runs[column].isin(one_or_list(wanted))]
-    return runs
+    chosen = [runs[column].isin(one_or_list(wanted)) for column, wanted in where.items()]
+    return runs[np.logical_and.reduce(chosen)] if chosen else runs
 
 
 def pick(runs: pd.DataFrame, which: dict) -> pd.Series | None:

@@ -5,6 +5,7 @@ Resampling uses plain numpy: `scipy.stats.bootstrap` makes the same draws, but i
 
 import math
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -79,11 +80,13 @@ def statistic(name: str, values: np.ndarray) -> float:
 
 def resampled(name: str, values: np.ndarray, size: int, rng: np.random.Generator) -> np.ndarray:
     """A named statistic of `size` values drawn with replacement from values (n,), n at least 1: (DRAWS,)."""
+    if values.min() == values.max():
+        return np.full(DRAWS, STATISTICS[name](np.full(size, values[0])))  # all draws are alike
     rows = max(1, BLOCK // size)
     drawn = np.empty(DRAWS)
     for first in range(0, DRAWS, rows):
         block = drawn[first : first + rows]
-        block[:] = STATISTICS[name](values[rng.integers(len(values), size=(len(block), size), dtype=np.int32)])
+        block[:] = STATISTICS[name](values.take(rng.integers(len(values), size=(len(block), size), dtype=np.int32)))
     return drawn
 
 
@@ -178,7 +181,21 @@ def predicted_within(name: str, groups: list[np.ndarray], size: int, rng: np.ran
     return drawn
 
 
-def predictive_quantile(
+class Prediction(NamedTuple):
+    """A published number among those that experiments of the paper's size would print, judging by our runs.
+
+    quantile: its position, ties counted half. reproduced: whether it is within the central 95 %, ties counted in its favour; None below
+    `LEAST_RUNS` values. low, high: ends of the central 95 %. If our values do not determine how far the least or the largest of others may
+    lie, an end is the least or the largest possible value, or infinite.
+    """
+
+    quantile: float
+    reproduced: bool | None
+    low: float
+    high: float
+
+
+def prediction(
     name: str,
     values: np.ndarray,
     published: float,
@@ -187,45 +204,25 @@ def predictive_quantile(
     rng: np.random.Generator,
     possible: tuple[float, float] = (-math.inf, math.inf),
     groups: list[np.ndarray] | None = None,
-) -> tuple[float, bool | None]:
-    """The position of a published number among the numbers that experiments of the paper's size would print, judging by our values (n,).
+) -> Prediction:
+    """Place a published number among the numbers that experiments of the paper's size would print, judging by our values (n,).
 
     size: number of values behind the published statistic; if None (not stated), the number is placed among our single values.
     decimals: those of the printed number, to which ours are rounded before comparison; None to compare without rounding.
     possible: the least and the largest possible single value; no experiment's extreme lies beyond them. groups: our values by group, if
     all values of the paper's experiment belong to one.
 
-    Returns the number's quantile, ties counted half, and whether it is within the central 95 %, ties counted in its favour (None
-    below `LEAST_RUNS` values). NaN and None without values or without a published number.
+    NaN and None without values or without a published number.
     """
     if not len(values) or math.isnan(published):
-        return math.nan, None
+        return Prediction(math.nan, None, math.nan, math.nan)
     least, most, tail = _experiments(name, values, size, rng, possible, groups)
+    low, high = np.quantile(least, tail, method="lower"), np.quantile(most, 1 - tail, method="higher")
     if decimals is not None:
         least, most, published = np.round(least, decimals), np.round(most, decimals), round(published, decimals)
     below, above = np.mean(most < published), np.mean(least > published)
     reproduced = bool(below <= 1 - tail and above <= 1 - tail) if len(values) >= LEAST_RUNS else None
-    return float((below + 1 - above) / 2), reproduced
-
-
-def prediction_interval(
-    name: str,
-    values: np.ndarray,
-    size: int | None,
-    rng: np.random.Generator,
-    possible: tuple[float, float] = (-math.inf, math.inf),
-    groups: list[np.ndarray] | None = None,
-) -> tuple[float, float]:
-    """Ends of the central 95 % in which `predictive_quantile` expects a published number, from the same random draws; NaN without values.
-
-    If our values (n,) do not determine how far the least or the largest of `size` others may lie, an end is the least or the largest
-    possible value, or infinite.
-    """
-    if not len(values):
-        return math.nan, math.nan
-    least, most, tail = _experiments(name, values, size, rng, possible, groups)
-    low, high = np.quantile(least, tail, method="lower"), np.quantile(most, 1 - tail, method="higher")
-    return float(low), float(high)
+    return Prediction(float((below + 1 - above) / 2), reproduced, float(low), float(high))
 
 
 def _experiments(

@@ -51,34 +51,43 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
     metric's kind of length.
     """
     # Sorted by name, so that no sum depends on the order in which chunks were read.
-    runs = select(results.runs, spec.get("where", {})).sort_values("id")
+    runs = select(results.runs, spec.get("where", {})).sort_values("id", ignore_index=True)
     entries = spec["values"]
     described = [metrics.METRICS[entry["metric"]] for entry in entries]
     wanted = {entry["metric"] for entry in entries} | {metric.gap for metric in described}
-    measured = {name: _measured(runs, name, results, spec) for name in sorted(wanted)}
-    asked = [measured[entry["metric"]].reindex(select(runs, entry.get("where", {})).index) for entry in entries]
+    measured = {name: _measured(runs, name, results, spec).to_numpy() for name in sorted(wanted)}
+    bounds = {metric.bound: runs[metric.bound].to_numpy(dtype=float) for metric in described}
+    asked = [runs.index.isin(select(runs, entry.get("where", {})).index) for entry in entries]
+    units = runs[spec["within"]].to_numpy() if "within" in spec else None
     rows = []
-    for key, group in runs.groupby(keys, dropna=False):
-        shares = {"share_claimed": group["claimed_feasible"].mean(), "share_feasible": group["feasible"].mean()}
-        same = {**dict(zip(keys, key)), "runs": len(group), **shares}
+    for key, group in runs[keys].groupby(keys, dropna=False):
+        place = group.index.to_numpy()
+        feasible, claimed = (runs[name].to_numpy()[place].mean() for name in ("feasible", "claimed_feasible"))
+        same = {**dict(zip(keys, key)), "runs": len(place), "share_claimed": claimed, "share_feasible": feasible}
         for value, (entry, metric) in enumerate(zip(entries, described)):
             of_group = {
-                "bound": group[metric.bound].median(),
-                "gap": measured[metric.gap].loc[group.index].median(),
-                "least": group[metric.least].min() if isinstance(metric.least, str) else metric.least,
+                "bound": _median(bounds[metric.bound][place]),
+                "gap": _median(measured[metric.gap][place]),
+                "least": np.fmin.reduce(runs[metric.least].to_numpy()[place]) if isinstance(metric.least, str) else metric.least,
                 "most": metric.most,
             }
-            own = asked[value].loc[asked[value].index.intersection(group.index)]
+            own = place[asked[value][place]]
             cell = {"value": value, "metric": entry["metric"], "decimals": entry.get("decimals"), "asked": len(own)}
-            own = own.dropna()
+            own = own[~np.isnan(measured[entry["metric"]][own])]
+            numbers = measured[entry["metric"]][own]
             # Tuples, because pandas would expand lists of arrays.
-            groups = tuple(np.sort(each.to_numpy()) for _, each in own.groupby(group[spec["within"]])) if "within" in spec else None
+            groups = None if units is None else tuple(np.sort(numbers[units[own] == unit]) for unit in np.unique(units[own]))
             for statistic in _statistics(entry):
-                rows.append(same | of_group | cell | {"statistic": statistic, "numbers": np.sort(own.to_numpy()), "groups": groups})
+                rows.append(same | of_group | cell | {"statistic": statistic, "numbers": np.sort(numbers), "groups": groups})
     of_runs = ["runs", "share_claimed", "share_feasible", "bound", "gap", "least", "most"]
     columns = [*keys, *of_runs, "value", "metric", "statistic", "decimals", "asked", "numbers", "groups"]
     # Of type object, so that integers stay integers next to entries without decimals.
     return pd.DataFrame(rows, columns=columns).assign(decimals=pd.Series([row["decimals"] for row in rows], dtype=object))
+
+
+def _median(values: np.ndarray) -> float:
+    """The median of values (n,), NaN left out; NaN if no others remain."""
+    return statistics.statistic("median", values[~np.isnan(values)])
 
 
 def _measured(runs: pd.DataFrame, metric: str, results: Results, spec: dict) -> pd.Series:

@@ -25,6 +25,7 @@ import matplotlib as mpl
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from bezierplan.analysis.results import Results, select
@@ -127,6 +128,7 @@ def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, column
     scene = scene._replace(narrow=width / columns < style.NARROW_PANEL)
     with mpl.rc_context(style.SETTINGS):
         figure = Figure(figsize=(width, width * rows / columns))
+        FigureCanvasAgg(figure)  # remembers the extents of texts, which the bare canvas of a figure measures anew for each question
         grid = _places(figure, panels, rows, columns)
         headings, notes = [], []
         for number, panel in enumerate(panels):

@@ -3,9 +3,8 @@
 import math
 
 import numpy as np
-from numba import njit
 
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 
 _NODES_8, _WEIGHTS_8 = np.polynomial.legendre.leggauss(8)
 _NODES_16, _WEIGHTS_16 = np.polynomial.legendre.leggauss(16)
@@ -41,7 +40,7 @@ def _integral(differences: np.ndarray, low: float, high: float, nodes: np.ndarra
     return 0.5 * (high - low) * total
 
 
-@njit(cache=True)
+@compiled
 def piece_length(piece: np.ndarray) -> float:
     """Arc length of one Bezier piece (degree + 1, 2), in its unit, to a relative 1e-10, by adaptive Gauss-Legendre quadrature of its speed.
 

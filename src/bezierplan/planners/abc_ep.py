@@ -11,10 +11,9 @@ A leg is free if it touches no occupied cell. Lengths and points in the kernels 
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numba import njit
 
 from bezierplan.geometry.cell_length import is_free_leg
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts.genetic import roulette
 from bezierplan.planners.parts.random_integers import integer
@@ -123,7 +122,7 @@ class _Evolution(NamedTuple):
     blocked_penalty: float
 
 
-@njit(cache=True)
+@compiled
 def _search(colony_rng, evolution_rng, occupied, start, target, colony, evolution):
     """Points (points, 2) of the path, empty if the colony found none, and the shortest length so far (generations + 1,)."""
     path = _first_path(colony_rng, occupied, start, target, colony)
@@ -136,7 +135,7 @@ def _search(colony_rng, evolution_rng, occupied, start, target, colony, evolutio
 # The colony
 
 
-@njit(cache=True)
+@compiled
 def _first_path(rng, occupied, start, target, colony):
     """A free path (points, 2), point by point until the target is in sight; empty if no free point is found or most_points do not
     suffice.
@@ -153,7 +152,7 @@ def _first_path(rng, occupied, start, target, colony):
     return np.empty((0, 2))
 
 
-@njit(cache=True)
+@compiled
 def _next_point(rng, occupied, target, path, count, colony):
     """Append the best point that a colony finds after the first `count` points of a path, in place. Returns its cost."""
     sides = np.array([occupied.shape[1], occupied.shape[0]])
@@ -234,7 +233,7 @@ def _length(x0, y0, x1, y1):
     return np.sqrt((x1 - x0) ** 2 + (y1 - y0) ** 2)
 
 
-@njit(cache=True)
+@compiled
 def _cut_short(occupied, path):
     """A path without unnecessary points: each point is joined to the last one that it sees."""
     kept = np.zeros(len(path), dtype=np.int64)
@@ -253,7 +252,7 @@ def _cut_short(occupied, path):
 # Evolution
 
 
-@njit(cache=True)
+@compiled
 def _evolve(rng, occupied, path, evolution):
     """The cheapest path of the last generation (points, 2), and the lowest cost so far (generations + 1,).
 
@@ -335,7 +334,7 @@ def _leg(occupied, points, p, blocked_penalty):
     return length if is_free_leg(occupied, x0, y0, x1, y1) else length + blocked_penalty
 
 
-@njit(cache=True)
+@compiled
 def _wins(rng, cost, opponents):
     """For each path (n,), the number of random opponents that it is not worse than."""
     wins = np.zeros(len(cost), dtype=np.int64)
@@ -347,7 +346,7 @@ def _wins(rng, cost, opponents):
     return wins
 
 
-@njit(cache=True)
+@compiled
 def _rank(slots, wins, cost):
     """Sort slots in place, stably: most wins first, ties by lowest cost. The cheapest of all loses to none, so it comes first."""
     cheapest_first = slots[ascending(cost[slots])]

@@ -8,9 +8,8 @@ ants may also erode trails and take the most attractive step outright (Dorigo an
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
-from numba import njit
 
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts.cell_paths import length, put, step_between
 from bezierplan.planners.parts.random_integers import integer
@@ -119,7 +118,7 @@ def search(places: Lattice, rng: np.random.Generator, rules: Rules) -> Colony:
     return Colony(*_colony(rng, places, heuristic**rules.heuristic_weight, rules))
 
 
-@njit(cache=True)
+@compiled
 def _colony(rng, lattice, heuristic, rules):
     """Best path, history, and the last iteration's paths with their sizes, as in `Colony`. heuristic: (cells,), with its weight applied."""
     cells = len(lattice.row)
@@ -155,7 +154,7 @@ def _colony(rng, lattice, heuristic, rules):
     return best[:best_size], history, paths, sizes
 
 
-@njit(cache=True)
+@compiled
 def _walk(rng, lattice, trail, heuristic, rules, path, visits, ant):
     """Let an ant walk. Writes its path and returns the size, or 0 if the ant dies. visits: (cells,) the number of the last ant that visited
     each cell.

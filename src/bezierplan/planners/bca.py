@@ -12,10 +12,9 @@ from functools import cache
 from typing import Annotated, Literal, NamedTuple, get_args
 
 import numpy as np
-from numba import njit
 
 from bezierplan.geometry import curves
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts.genetic import check_pairs, complement_bit, redraw_gene, roulette, swap_tails
 from bezierplan.planners.parts.random_integers import integer
@@ -227,7 +226,7 @@ def _basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, n
     return basis[[0, -1]], np.ascontiguousarray(basis[1:-1])
 
 
-@njit(cache=True)
+@compiled
 def _search(rng, codes, cells, curve, rules, generations):
     """Genes (control points,) of the best chromosome, and the lowest cost so far (generations + 1,).
 
@@ -273,7 +272,7 @@ def _search(rng, codes, cells, curve, rules, generations):
     return best, history
 
 
-@njit(cache=True)
+@compiled
 def _redraw(rng, codes, cells, curve):
     """Redraw every chromosome, in place, until its curve is collision-free."""
     scratch = np.empty((3, curve.ends.shape[1]))

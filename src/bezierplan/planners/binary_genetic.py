@@ -11,10 +11,9 @@ pieces). A stretch that a child inherits whole from a parent keeps the parent's 
 from typing import Annotated, Literal, NamedTuple, get_args
 
 import numpy as np
-from numba import njit
 
 from bezierplan.geometry import curves
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts.genetic import check_pairs, complement_bit, roulette, swap_tails
 from bezierplan.planners.parts.random_integers import integer
@@ -156,7 +155,7 @@ class _Rules(NamedTuple):
     occupied_point_penalty: float
 
 
-@njit(cache=True)
+@compiled
 def _search(rng, cells, occupied, places, curve, rules):
     """Cells (control points,) of the best chromosome, the number of its samples in occupied cells, and the best objective so far
     (generations + 1,).
@@ -283,7 +282,7 @@ def _measure(cells, occupied, places, basis, stretch, x, y):
     return length, bad
 
 
-@njit(cache=True)
+@compiled
 def _measure_by_arc_length(cells, occupied, places, samples):
     """Length in cells of a polyline and the number of samples, equally spaced along it, that lie in occupied cells."""
     points = len(cells)

@@ -15,10 +15,9 @@ from functools import cache
 from typing import Annotated, Any, Literal, NamedTuple, get_args
 
 import numpy as np
-from numba import njit
 
 from bezierplan.geometry import curves
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts import chaotic_maps, penalised
 from bezierplan.planners.parts.penalised import FEASIBLE, Objective, Penalty
@@ -350,7 +349,7 @@ def _zeta(chaos: np.random.Generator, size: tuple[int, int, int], settings: Sett
     return chaotic_maps.Sequence(found.values.reshape(shape), found.clipped, collapsed_in)
 
 
-@njit(cache=True)
+@compiled
 def _swarm(rng, x, zeta, low, high, limit, objective, rules):
     """Algorithm 1 of tharwat2018; returns the first fields of a `Swarm`.
 

@@ -7,9 +7,8 @@ paths of those that arrive form the first population of a genetic algorithm, whi
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numba import njit
 
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import check_pairs
@@ -101,7 +100,7 @@ class _Swarm(NamedTuple):
 _SWIMMING, _ARRIVED, _DEAD = range(3)
 
 
-@njit(cache=True)
+@compiled
 def _release(rng, lattice, swarm, wanted, releases):
     """The first paths (n, longest path) of fish that arrive, at most `wanted` of them, their sizes (n,), and the number of releases."""
     found, found_sizes = np.empty((wanted, swarm.longest_path), dtype=np.int64), np.empty(wanted, dtype=np.int64)

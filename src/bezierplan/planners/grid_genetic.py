@@ -11,9 +11,8 @@ frame of occupied cells around it, so that no step leaves the grid. Costs in the
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numba import njit
 
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts.genetic import roulette
 from bezierplan.planners.parts.random_integers import integer
@@ -136,7 +135,7 @@ class _Rules(NamedTuple):
     attempts: int
 
 
-@njit(cache=True)
+@compiled
 def _search(walks_rng, moves_rng, walker, start, target, rules):
     """Cells (n,) of the cheapest path, the number of first walks found, and the lowest cost so far (generations + 1,)."""
     size, columns, population = len(walker.walled), walker.columns, rules.population
@@ -174,7 +173,7 @@ def _search(walks_rng, moves_rng, walker, start, target, rules):
     return paths[0], found, history
 
 
-@njit(cache=True)
+@compiled
 def _best(paths, costs, population):
     """The cheapest paths in ascending order of cost, ties in their original order; and their costs (2 population,), with room for
     children.
@@ -186,7 +185,7 @@ def _best(paths, costs, population):
     return [paths[order[k]] for k in range(population)], best
 
 
-@njit(cache=True)
+@compiled
 def _first_walks(rng, walker, start, target, rules, walk, last_visit):
     """Up to `population` paths, and their costs (2 population,): the first one directly to the target, the others through a free cell."""
     paths = [walk[:0]]

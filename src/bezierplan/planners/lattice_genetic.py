@@ -7,8 +7,8 @@ the Bezier curve. With `rows` a chromosome is itself a path, initially one throu
 from typing import Annotated, Literal
 
 import numpy as np
-from numba import njit
 
+from bezierplan.kernels import compiled
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import check_pairs, redraw_gene, roulette, swap_tails
@@ -103,7 +103,7 @@ def plan(
     )
 
 
-@njit(cache=True)
+@compiled
 def _search(
     rng,
     lattice,
@@ -174,7 +174,7 @@ def _first_paths(
     return paths, sizes
 
 
-@njit(cache=True)
+@compiled
 def _fill(rng, lattice, choices, counts, paths, sizes):
     """Fill in paths and their sizes, in place, until one cannot be found.
 

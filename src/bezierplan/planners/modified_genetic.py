@@ -14,9 +14,8 @@ import math
 from typing import Annotated, Any, Literal, NamedTuple, get_args
 
 import numpy as np
-from numba import njit
 
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts import gene_lists
 from bezierplan.planners.parts.gene_curves import MOST_POINTS, FitnessLength, Scratch, scratch_for, validate
@@ -241,7 +240,7 @@ def _from_roadmaps(
     return ones[: len(counts)], np.array(counts, dtype=np.int64)
 
 
-@njit(cache=True)
+@compiled
 def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarray, counts: np.ndarray, scratch: Scratch) -> Found:
     """Algorithm 2; without a diversity rule, the plain algorithm.
 

@@ -9,9 +9,8 @@ import math
 from typing import Annotated, Literal, NamedTuple, get_args
 
 import numpy as np
-from numba import njit
 
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners import Plan, Range
 from bezierplan.planners.parts.genetic import check_pairs, roulette
 from bezierplan.planners.parts.node_mutation import Mutation, mutate
@@ -219,7 +218,7 @@ def _cell_at(grid: Grid, end: str, point: tuple[float, float]) -> int:
 # The search
 
 
-@njit(cache=True)
+@compiled
 def _search(starts, moves, ground, start, target, free, drawn, rules):
     """The genetic algorithm. free: the free cells without start and target; drawn: the cells from which random mutation draws."""
     population = rules.population
@@ -331,7 +330,7 @@ def _evaluate(path, ground, penalty):
     return energy + penalty * met, met
 
 
-@njit(cache=True)
+@compiled
 def node_diversity(paths: np.ndarray, lengths: np.ndarray, cells: int) -> float:
     """Probability that an inner node of one path (n, ...) is not a node of another; 0 without inner nodes. cells: number of cells."""
     having, last = np.zeros(cells, dtype=np.int64), np.full(cells, -1)
@@ -430,7 +429,7 @@ def _random_path(rng, path, target, free):
 # Selection (meledje, Section 2.5).
 
 
-@njit(cache=True)
+@compiled
 def _select(rng, order, ranks, selection):
     """As many parents as there are paths, drawn with replacement. order: paths, best first; ranks: their weights for a linear ranking."""
     if selection == _LINEAR_RANK:

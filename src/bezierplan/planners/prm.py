@@ -10,9 +10,9 @@ from functools import partial
 from typing import Annotated, Literal, NamedTuple
 
 import numpy as np
-from numba import njit
 
 from bezierplan.geometry.cell_length import is_free_leg
+from bezierplan.kernels import compiled
 from bezierplan.planners import Plan, Range
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
@@ -121,7 +121,7 @@ def _free_segments(grid: Grid, starts: np.ndarray, targets: np.ndarray) -> np.nd
     return _free_legs(grid.occupied, grid.in_cells(starts), grid.in_cells(targets))
 
 
-@njit(cache=True)
+@compiled
 def _free_legs(occupied, starts, targets):
     free = np.empty(len(starts), dtype=np.bool_)
     for i in range(len(starts)):
@@ -141,7 +141,7 @@ def _pairs(points: np.ndarray, neighbours: int | None) -> tuple[np.ndarray, np.n
     return np.nonzero(np.triu(near | near.T))
 
 
-@njit(cache=True)
+@compiled
 def _nearest(points, neighbours):
     """Indices (n, neighbours) of the nearest other points of each point (n, 2), nearest first, ties in their original order."""
     nearest = np.empty((len(points), neighbours), dtype=np.int64)

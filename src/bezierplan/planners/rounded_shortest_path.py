@@ -11,11 +11,11 @@ import math
 from typing import Annotated, NamedTuple
 
 import numpy as np
-from numba import njit
 
 from bezierplan.geometry import curves, shortest_paths
 from bezierplan.geometry.checker import first_collision
 from bezierplan.geometry.region import from_origin, region
+from bezierplan.kernels import compiled
 from bezierplan.planners import Plan, Range
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Path, Problem
@@ -239,7 +239,7 @@ def _quarter(vector: np.ndarray) -> np.ndarray:
     return np.array([-vector[1], vector[0]])
 
 
-@njit(cache=True)
+@compiled
 def _colliding(pieces, blocked):
     """Whether (n,) pieces (n, 4, 2) enter the blocked region."""
     hit = np.empty(len(pieces), dtype=np.bool_)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.workspaces.grid import Grid
 
 # For a map with more cells than this no table of all edges is made: it would grow with the square of their number.
@@ -61,7 +61,7 @@ def _ground(shape: tuple[int, int], occupied: bytes, heights: bytes, friction: f
     return bare._replace(**dict(zip(("met", "energy"), _tables(bare)))) if cells.size <= table_cells else bare
 
 
-@njit(cache=True)
+@compiled
 def _tables(ground):
     cells = ground.occupied.size
     met, energy = np.empty((cells, cells), dtype=np.uint16), np.empty((cells, cells))
@@ -157,7 +157,7 @@ def cheapest(ground: Ground, start: int, target: int) -> tuple[float, np.ndarray
     return energy, np.array(path[::-1])
 
 
-@njit(cache=True)
+@compiled
 def _cheapest(ground, start, target):
     """Minimum energy from start to target, and the cell before each cell on its way, by A* with the straight distance.
 

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
-from numba import njit
 
+from bezierplan.kernels import compiled
 from bezierplan.workspaces import files, random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
@@ -77,7 +77,7 @@ class ChangingCells:
 World = MovingCircles | ChangingCells
 
 
-@njit(cache=True)
+@compiled
 def positions(centres, velocities, walls, step):
     """Centres (n, 2) after some steps of uniform motion with reflection at walls (4,): lowest and highest x, lowest and highest y."""
     moved = np.empty_like(centres)

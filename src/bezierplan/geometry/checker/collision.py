@@ -3,17 +3,17 @@
 import math
 
 import numpy as np
-from numba import njit
 
 from bezierplan.geometry.checker.certificates import is_blocked, is_free
 from bezierplan.geometry.checker.hulls import STACK, TOLERANCE, copy_points, size, split_top
 from bezierplan.geometry.region import Region
+from bezierplan.kernels import compiled
 
 # A parameter interval this short that ends at a blocked point is reported as the collision.
 _SHORTEST_INTERVAL = 1e-11
 
 
-@njit(cache=True)
+@compiled
 def first_collision(pieces: np.ndarray, region: Region) -> tuple[float, int]:
     """Piece number plus parameter of the first collision (infinite if there is none), and the number of intervals examined.
 

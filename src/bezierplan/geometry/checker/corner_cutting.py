@@ -3,15 +3,15 @@
 import math
 
 import numpy as np
-from numba import njit
 
 from bezierplan.geometry.checker.hulls import STACK, box, copy_points, size, split_top
+from bezierplan.kernels import compiled
 
 # Radius, in cells, of the disc around a contact in which the rule examines where a path comes from and goes to.
 CONTACT_RADIUS = 1e-6
 
 
-@njit(cache=True)
+@compiled
 def first_corner_cut(pieces: np.ndarray, contacts: np.ndarray, radius: float) -> float:
     """Piece number plus parameter at which a path first passes a closed contact of two occupied cells, infinite if it never does."""
     first = math.inf
@@ -20,7 +20,7 @@ def first_corner_cut(pieces: np.ndarray, contacts: np.ndarray, radius: float) ->
     return first
 
 
-@njit(cache=True)
+@compiled
 def _corner_cut_at(pieces: np.ndarray, x: float, y: float, slope: float, radius: float) -> float:
     """Piece number plus parameter at which a path first passes one contact, infinite if it never does.
 

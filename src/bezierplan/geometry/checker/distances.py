@@ -3,19 +3,18 @@
 import math
 
 import numpy as np
-from numba import njit
 
 from bezierplan.geometry.checker.certificates import depth_at, depth_bound, is_free, least_distance_to_centre
 from bezierplan.geometry.checker.hulls import ROUNDING, STACK, bulge_of, copy_points, distance_to_segment, halve, size
 from bezierplan.geometry.region import Region
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 
 # Proven error of the clearance in units, and of the depth relative to it.
 CLEARANCE_TOLERANCE = 1e-9
 DEPTH_TOLERANCE = 1e-6
 
 
-@njit(cache=True)
+@compiled
 def largest_depth(pieces: np.ndarray, region: Region, collision_at: float) -> float:
     """Largest depth of a path, to a relative `DEPTH_TOLERANCE`, by branch and bound, starting with the piece of its first collision."""
     stack = np.empty((STACK, pieces.shape[1], 2))
@@ -37,7 +36,7 @@ def largest_depth(pieces: np.ndarray, region: Region, collision_at: float) -> fl
     return largest
 
 
-@njit(cache=True)
+@compiled
 def least_clearance(pieces: np.ndarray, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> float:
     """Minimum distance of a free path to edges (n, 4) and discs, to `CLEARANCE_TOLERANCE`, by branch and bound.
 

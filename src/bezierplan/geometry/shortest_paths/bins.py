@@ -4,9 +4,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 
 
 class Bins(NamedTuple):
@@ -35,7 +34,7 @@ def bins_of(edges: np.ndarray) -> Bins:
     return bins._replace(first=first, edges=sorted_edges)
 
 
-@njit(cache=True)
+@compiled
 def _sort(edges: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
     """The numbers of the edges of each bin: counted first, then put in their places."""
     first = np.zeros(bins.columns * bins.rows + 1, dtype=np.int64)

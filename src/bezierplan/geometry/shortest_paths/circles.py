@@ -4,11 +4,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from bezierplan.geometry.checker import TOLERANCE, check
 from bezierplan.geometry.region import CircleRegion
 from bezierplan.geometry.shortest_paths.graph import NO_LENGTH, Bound, dijkstra_path, no_path
+from bezierplan.kernels import compiled
 from bezierplan.workspaces.problem import Problem
 
 # The polyline along arcs is at most this much longer than they are, in units.
@@ -116,7 +116,7 @@ def _tangents(problem: Problem, centres: np.ndarray, radii: np.ndarray) -> _Tang
     return graph
 
 
-@njit(cache=True)
+@compiled
 def _straight_is_free(a: np.ndarray, b: np.ndarray, centres: np.ndarray, radii: np.ndarray, bounds: np.ndarray) -> np.ndarray:
     """Which segments from a to b, both (n, 2), are free: bool (n,). Most are blocked by one of the first circles that are looked at."""
     free = np.empty(len(a), dtype=np.bool_)

@@ -4,7 +4,8 @@ import math
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numba import njit
+
+from bezierplan.kernels import compiled
 
 if TYPE_CHECKING:
     from scipy.sparse import csr_array
@@ -72,7 +73,7 @@ def dijkstra_path(graph: "csr_array", start: int, target: int) -> tuple[float, n
     return float(distances[target]), np.array(nodes[::-1])
 
 
-@njit(cache=True)
+@compiled
 def way_back(before, length):
     """The nodes from node 0 to node 1, from each node's predecessor; empty if the length is infinite."""
     nodes = [1]

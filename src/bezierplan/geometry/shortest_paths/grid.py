@@ -4,12 +4,11 @@ import math
 from fractions import Fraction
 
 import numpy as np
-from numba import njit
 
 from bezierplan.geometry.region import GridRegion, from_origin, occupied_around, walled
 from bezierplan.geometry.shortest_paths import shadows
 from bezierplan.geometry.shortest_paths.graph import Bound, along, moved, no_path, shortest_in_graph
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 
@@ -133,7 +132,7 @@ def _joined(cells: np.ndarray, start: np.ndarray, target: np.ndarray, scale: int
     return one == other
 
 
-@njit(cache=True)
+@compiled
 def _visible_on_grid(
     nodes: np.ndarray, slopes: np.ndarray, quadrants: np.ndarray, cells: np.ndarray, scale: int, closed: bool
 ) -> np.ndarray:

@@ -3,9 +3,9 @@
 import heapq
 
 import numpy as np
-from numba import njit
 
 from bezierplan.geometry.shortest_paths.graph import Bound, no_path
+from bezierplan.kernels import compiled
 from bezierplan.workspaces.lattice import CORNERS, STEPS, Corners
 
 
@@ -46,7 +46,7 @@ def lattice_path(
     return Bound(length, np.column_stack([column - 0.5, row - 0.5]))
 
 
-@njit(cache=True)
+@compiled
 def _least_cells(walled, start, target, steps, diagonal_weight, most_beside):
     """Length of a shortest path and its cells (n,), numbered row by row; infinite and empty if there is no path.
 

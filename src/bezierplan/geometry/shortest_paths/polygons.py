@@ -4,13 +4,12 @@ import heapq
 import math
 
 import numpy as np
-from numba import njit
 
 from bezierplan.geometry.checker import TOLERANCE, first_collision
 from bezierplan.geometry.region import PolygonRegion
 from bezierplan.geometry.shortest_paths.bins import Bins, bins_of, columns_between, rows_between
 from bezierplan.geometry.shortest_paths.graph import Bound, along, shortest_in_graph, way_back
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.workspaces.problem import Problem
 
 # With more nodes than this, a search that tests pairs only when needed replaces the full graph.
@@ -32,7 +31,7 @@ def shortest_among_polygons(problem: Problem, blocked: PolygonRegion) -> Bound:
     return shortest_in_graph(nodes, _visible_among_polygons(nodes, before, after, blocked, bins))
 
 
-@njit(cache=True)
+@compiled
 def _visible_among_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion, bins: Bins) -> np.ndarray:
     """Which pairs i < j of nodes can follow each other on a shortest path: bool (n, n).
 
@@ -52,7 +51,7 @@ def _visible_among_polygons(nodes: np.ndarray, before: np.ndarray, after: np.nda
     return visible
 
 
-@njit(cache=True)
+@compiled
 def _search_polygons(nodes: np.ndarray, before: np.ndarray, after: np.ndarray, region: PolygonRegion, bins: Bins) -> np.ndarray:
     """The nodes of a shortest path from node 0 to node 1 by the algorithm A*, empty if there is no path; pairs are tested only when needed:
     the edges from a node to all others wait in a heap, and each is tested once it is the most promising.

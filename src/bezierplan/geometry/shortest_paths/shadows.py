@@ -11,11 +11,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from bezierplan.geometry.region import occupied_around
 from bezierplan.geometry.shortest_paths.graph import way_back
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 
 
 class Scene(NamedTuple):
@@ -51,7 +50,7 @@ def scene(cells: np.ndarray, corners: np.ndarray, slopes: np.ndarray, scale: int
     return Scene(cells, first_run, runs, corners, first_corner, slopes, sides, scale)
 
 
-@njit(cache=True)
+@compiled
 def search(scene: Scene, ends: np.ndarray, points: np.ndarray, direct: bool) -> np.ndarray:
     """The nodes of a shortest path from start to target by the algorithm A*, empty if there is no path. Node 0 is the start, node 1 the
     target, then come the corners.

@@ -7,9 +7,8 @@ A path is an array (n,) of cell numbers, each a neighbour of the one before on a
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners.parts.genetic import roulette
 from bezierplan.planners.parts.random_integers import integer
 
@@ -35,7 +34,7 @@ class Rules(NamedTuple):
     elitism: int
 
 
-@njit(cache=True)
+@compiled
 def evolve(rng, lattice, paths, sizes, generations, rules):
     """The shortest path (n,) found by a genetic algorithm from some paths, and the shortest length so far (generations + 1,).
 
@@ -105,7 +104,7 @@ def _replace(path, size, child, cut, marks):
     return put(child[:child_size], path, 0)
 
 
-@njit(cache=True)
+@compiled
 def _mutant(rng, lattice, path, rules, child, part, marks):
     """Make a mutant of a path. Returns its size, or 0 if nothing changed."""
     if rules.mutation == ONE_CELL:
@@ -261,7 +260,7 @@ def change_cell(rng, lattice, path, child):
     return 0
 
 
-@njit(cache=True)
+@compiled
 def reconnect(rng, lattice, first, last, part, marks):
     """Join two cells through a random cell of their bounding box. Returns the part's size, or 0 if that cell is occupied or out of
     reach.

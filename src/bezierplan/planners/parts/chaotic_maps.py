@@ -9,9 +9,8 @@ import math
 from typing import Literal, NamedTuple, get_args
 
 import numpy as np
-from numba import njit
 
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 
 Map = Literal["gauss", "singer", "tent", "circle", "logistic", "sine", "piecewise", "sinusoidal", "gauss_printed", "constant"]
 MAPS = get_args(Map)
@@ -86,7 +85,7 @@ def _number(name: str) -> int:
     return MAPS.index(name)
 
 
-@njit(cache=True)
+@compiled
 def _sequence(number, start, length, parameters):
     """The fields of a `Sequence`."""
     values = np.empty(length)

@@ -128,7 +128,8 @@ def _at_first_sight(x, y, room):
         return _UNKNOWN
     on_line = False
     for s in range(len(x)):
-        right, above = x[s] - math.floor(x[s]), y[s] - math.floor(y[s])
+        # `np.floor` returns a float, unlike `math.floor`, whose integer would keep this loop from being vectorised.
+        right, above = x[s] - np.floor(x[s]), y[s] - np.floor(y[s])
         on_line |= (right <= _ON_LINE) | (right >= 1.0 - _ON_LINE) | (above <= _ON_LINE) | (above >= 1.0 - _ON_LINE)
     return _UNKNOWN if on_line else _FREE
 

@@ -8,9 +8,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners.parts.sorting import sort
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.lattice import STEPS
@@ -75,7 +74,7 @@ def field_of(grid: Grid, ends: np.ndarray, gene_lattice: str, gene_order: str, p
     return Field(grid.occupied, room, points, rank, settable, choices, places, by_rows, *map(tuple, ends.tolist()))
 
 
-@njit(cache=True)
+@compiled
 def _distances(walled, row, column, steps):
     """Distance (rows, columns) from a cell to each cell over free cells and their eight neighbours, infinite where there is no path.
 

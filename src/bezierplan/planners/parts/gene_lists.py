@@ -7,9 +7,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners.parts.diversity import q_statistic, shared
 from bezierplan.planners.parts.sorting import ascending
 
@@ -25,7 +24,7 @@ class Pool(NamedTuple):
     free: np.ndarray
 
 
-@njit(cache=True)
+@compiled
 def empty_pool(places: int, room: int) -> Pool:
     """A pool with room for `places` chromosomes of `room` genes each."""
     return Pool(np.empty((places, room), np.int64), np.zeros(places, np.int64), np.empty(places), np.zeros(places, np.bool_))
@@ -39,7 +38,7 @@ def put(ones: np.ndarray, count: int, cost: float, free: bool, pool: Pool, place
     pool.count[place], pool.cost[place], pool.free[place] = count, cost, free
 
 
-@njit(cache=True)
+@compiled
 def select(pool: Pool, first: int, filled: int, spare: Pool) -> None:
     """Move the best of the chromosomes at the places from `first` on to the front, in place; ties in their original order.
 
@@ -135,7 +134,7 @@ def q(one: np.ndarray, other: np.ndarray, genes: int) -> float:
     return q_statistic(both, genes - len(one) - len(other) + both, len(one) - both, len(other) - both)
 
 
-@njit(cache=True)
+@compiled
 def sum_of_q(pool: Pool, first: int, filled: int, genes: int) -> float:
     """Sum of Q over the pairs of the pool whose second chromosome is at a place from `first` on.
 
@@ -178,7 +177,7 @@ def sum_of_q(pool: Pool, first: int, filled: int, genes: int) -> float:
 _REMEMBERED = 1024
 
 
-@njit(cache=True)
+@compiled
 def empty_memory(room: int) -> Pool:
     """A memory of the costs of chromosomes of `room` genes each; a newer one can overwrite an older one."""
     memory = empty_pool(_REMEMBERED, room)

@@ -4,9 +4,8 @@ A chromosome (genes,) is one bit string in the order of its genes. Functions tha
 """
 
 import numpy as np
-from numba import njit
 
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners.parts.random_integers import integer
 
 
@@ -16,7 +15,7 @@ def check_pairs(population: int) -> None:
         raise ValueError(f"population: {population}; parents are crossed in pairs, so an even number is needed")
 
 
-@njit(cache=True)
+@compiled
 def roulette(rng: np.random.Generator, fitness: np.ndarray, draws: int) -> np.ndarray:
     """Indices (draws,) of parents, drawn with replacement in proportion to fitness (n,), all above 0 (song2016, eq. 10)."""
     wheel = np.cumsum(fitness)

@@ -1,12 +1,11 @@
 """Sorting values, for populations."""
 
 import numpy as np
-from numba import njit
 
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 
 
-@njit(cache=True)
+@compiled
 def ascending(values: np.ndarray) -> np.ndarray:
     """Indices (n,) that sort values in ascending order, ties in their original order: numpy's stable argsort, which takes far longer to
     compile.

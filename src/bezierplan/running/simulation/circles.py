@@ -4,9 +4,8 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.ways import Way
 from bezierplan.workspaces.worlds import MovingCircles, positions
@@ -48,7 +47,7 @@ def follow(world: MovingCircles, way: Way, step: int, policy: Policy) -> tuple[i
     return _follow(way.points, way.at, step, circles, float(world.pace), world.end, rules)
 
 
-@njit(cache=True)
+@compiled
 def _follow(points, at, step, circles, pace, end, rules):
     """The loop of `follow`."""
     centres, velocities, walls, radii = circles

@@ -14,10 +14,9 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from bezierplan.geometry import shortest_paths
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.running.simulation.motion_check import Motion, check
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
@@ -82,7 +81,7 @@ def _lattice(world: MovingCircles, problem: Problem) -> tuple:
     return np.array(problem.start) - before * pace, (before + after + 1).astype(np.int64), centres, world.radii
 
 
-@njit(cache=True)
+@compiled
 def _on_lattice(origin, counts, centres, radii, start, target, pace, end):
     """Arrival and length of the earliest schedule on the lattice."""
     columns, rows = counts
@@ -140,7 +139,7 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end):
     return np.inf, np.inf
 
 
-@njit(cache=True)
+@compiled
 def _safe_intervals(origin, columns, rows, centres, radii, pace, end):
     """For each place and step, the first step of the safe interval that holds it, or -1 if some circle comes there during the step."""
     begins = np.zeros((columns * rows, end), dtype=np.int16)
@@ -223,7 +222,7 @@ def _among_cells(world: ChangingCells, problem: Problem) -> Schedule:
     return Schedule(arrival if arrival <= world.end else math.inf, length * grid.cell)
 
 
-@njit(cache=True)
+@compiled
 def _between_corners(places, occupied, begins, pace):
     """Arrival, in steps, and length, in cells, of the earliest schedule from the first place (n, 2) to the second.
 
@@ -281,7 +280,7 @@ def _end_of(since, first, begins):
     return begins[f] if f < len(begins) else np.inf
 
 
-@njit(cache=True)
+@compiled
 def _free_departure(one, other, size, depart, latest, occupied, begins, pace):
     """The first departure from a time on, in steps, after which the straight drive meets no occupied cell; infinite after the latest."""
     cuts = _crossings(one, other)
@@ -304,7 +303,7 @@ def _free_departure(one, other, size, depart, latest, occupied, begins, pace):
     return np.inf
 
 
-@njit(cache=True)
+@compiled
 def _crossings(one, other):
     """Ascending parameters from 0 to 1 at which a segment crosses a grid line."""
     cuts = [0.0, 1.0]

@@ -3,9 +3,8 @@
 import math
 
 import numpy as np
-from numba import njit
 
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.workspaces.worlds import MovingCircles, positions
 
@@ -33,7 +32,7 @@ def refuge(world: MovingCircles, place: np.ndarray, step: int, policy: Policy) -
     return _best(place, moves, during, drift, world.radii, float(policy.check_margin), np.array(world.bounds, dtype=float))
 
 
-@njit(cache=True)
+@compiled
 def _best(place, moves, centres, drift, radii, margin, bounds):
     """The place (2,) at the end of the best step, as `refuge` ranks them.
 

@@ -9,11 +9,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from bezierplan.geometry import checker
 from bezierplan.geometry.region import region
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, compiled
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World, positions
 
 
@@ -61,7 +60,7 @@ def _among_circles(motion: Motion, world: MovingCircles) -> Verdict:
     )
 
 
-@njit(cache=True)
+@compiled
 def _approach(points, times, centres, velocities, walls, radii, tolerance):
     """Time of the first collision, infinite without one, and least clearance (steps,) in each step."""
     first_step, last_step = int(np.floor(times[0])), int(np.ceil(times[-1]))
