@@ -78,8 +78,7 @@ def piece_matrix(curve: str, points: int) -> np.ndarray:
 def _b_spline_pieces(degree: int, points: int) -> np.ndarray:
     pieces = points - degree
     if degree == 1:  # chords; ways that were driven have hundreds
-        ends = np.eye(points)
-        return np.stack([ends[:-1], ends[1:]], axis=1)
+        return np.eye(points)[_legs(points)]
     knots = np.concatenate([np.zeros(degree), np.arange(pieces + 1.0), np.full(degree, float(pieces))])
     matrix = np.zeros((pieces, degree + 1, points))
     for piece in range(pieces):
@@ -105,6 +104,11 @@ def _chained(points: int) -> np.ndarray:
     return np.arange(0, points - 1, 3)[:, None] + np.arange(4)
 
 
+def _legs(points: int) -> np.ndarray:
+    """Indices of both ends of each leg of a polyline: (legs, 2)."""
+    return np.arange(points - 1)[:, None] + np.arange(2)
+
+
 def _ferguson_pieces(points: int) -> np.ndarray:
     if points % 2:
         raise ValueError(f"a curve of kind ferguson needs an even number of control points, not {points}")
@@ -126,9 +130,13 @@ def bezier_pieces(path: Path) -> np.ndarray:
     >>> bezier_pieces(path).tolist()
     [[[0.0, 0.0], [1.0, 2.0], [2.0, 2.0]], [[2.0, 2.0], [3.0, 2.0], [4.0, 0.0]]]
     """
+    points = np.asarray(path.points, dtype=float)
+    # Indices avoid a matrix that grows with the square of the number of pieces.
     if path.curve == "cubic_chain":
-        return path.points[_chained(len(path.points))]  # avoids a matrix that grows with the square of the number of pieces
-    return piece_matrix(path.curve, len(path.points)) @ path.points
+        return points[_chained(len(points))]
+    if path.curve == "polyline" and len(points) > 1:
+        return points[_legs(len(points))]
+    return piece_matrix(path.curve, len(points)) @ points
 
 
 def bernstein(degree: int, t: np.ndarray) -> np.ndarray:

@@ -119,8 +119,7 @@ def _element(coordinate: float, tolerance: float) -> int:
 def border_edges(bounds: tuple[float, float, float, float]) -> np.ndarray:
     """The four edges (4, 4) of a border, as x, y, x, y."""
     left, right, bottom, top = bounds
-    corners = np.array([(left, bottom), (right, bottom), (right, top), (left, top)], dtype=float)
-    return np.hstack([corners, np.roll(corners, -1, axis=0)])
+    return np.array([[left, bottom, right, bottom], [right, bottom, right, top], [right, top, left, top], [left, top, left, bottom]], float)
 
 
 def walled(occupied: np.ndarray) -> np.ndarray:
@@ -145,7 +144,8 @@ def _grid_region(grid: Grid) -> GridRegion:
     around = occupied_around(cells)
     blocked[1::2, 1::2] = around.all(axis=0)
     counts = np.zeros((blocked.shape[0] + 1, blocked.shape[1] + 1), dtype=np.int64)
-    counts[1:, 1:] = blocked.cumsum(axis=0).cumsum(axis=1)
+    np.cumsum(blocked, axis=1, out=counts[1:, 1:])
+    np.cumsum(counts[1:, 1:], axis=0, out=counts[1:, 1:])
 
     horizontal = _runs(cells[:-1, 1:-1] != cells[1:, 1:-1])
     vertical = _runs((cells[1:-1, :-1] != cells[1:-1, 1:]).T)

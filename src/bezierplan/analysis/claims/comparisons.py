@@ -210,10 +210,12 @@ def _note(check: dict, rows: pd.DataFrame, column: str | None, cells: list) -> s
     """A note where two groups are compared on their successful runs but differ in success rate (Fisher's exact test)."""
     if len(cells) != 2 or option(check, "failures") not in (None, "drop") or not metrics.METRICS[check["metric"]].feasible_only:
         return ""
-    from scipy import stats
-
     values = [rows.loc[rows[column] == cell, "value"] for cell in cells]
     counts = [[int(each.notna().sum()), int(each.isna().sum())] for each in values]
+    if not any(failed for _, failed in counts):
+        return ""
+    from scipy import stats
+
     return "compared on successes alone, which are of different number" if stats.fisher_exact(counts).pvalue < effects.ALPHA else ""
 
 

@@ -86,12 +86,13 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end):
     """Arrival and length of the earliest schedule on the lattice."""
     columns, rows = counts
     begins = _safe_intervals(origin, columns, rows, centres, radii, pace, end)
-    best = np.full(begins.shape, np.inf)
-    lengths = np.full(begins.shape, np.inf)
+    # Filling the two others takes longer than the search, which reaches few intervals.
+    reached = np.zeros(begins.shape, dtype=np.bool_)
+    best, lengths = np.empty(begins.shape), np.empty(begins.shape)
     node = round((start[1] - origin[1]) / pace) * columns + round((start[0] - origin[0]) / pace)
     # Where a circle comes during the first step, the robot must leave at once.
     hurried = node if begins[node, 0] < 0 else -1
-    best[node, 0], lengths[node, 0] = 0.0, 0.0
+    reached[node, 0], best[node, 0], lengths[node, 0] = True, 0.0, 0.0
     heap = [(math.hypot(target[0] - start[0], target[1] - start[1]) / pace, 0.0, node, 0)]
     while len(heap) > 0:
         _, time, node, interval = heapq.heappop(heap)
@@ -127,15 +128,18 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end):
                     until = step
                     while until < end and begins[other, until] == into:
                         until += 1
+                    step = until
+                    first = max(time, into - duration)
+                    if reached[other, into] and first + duration >= best[other, into]:
+                        continue
                     other_x, other_y = origin[0] + column * pace, origin[1] + row * pace
                     last = min(leave, until - duration)
-                    depart = _departure(x, y, other_x, other_y, max(time, into - duration), last, duration, centres, radii)
-                    if depart + duration < best[other, into]:
-                        best[other, into] = depart + duration
+                    depart = _departure(x, y, other_x, other_y, first, last, duration, centres, radii)
+                    if depart + duration < (best[other, into] if reached[other, into] else np.inf):
+                        reached[other, into], best[other, into] = True, depart + duration
                         lengths[other, into] = lengths[node, interval] + duration * pace
                         rest = math.hypot(target[0] - other_x, target[1] - other_y) / pace
                         heapq.heappush(heap, (depart + duration + rest, depart + duration, other, into))
-                    step = until
     return np.inf, np.inf
 
 
@@ -156,9 +160,12 @@ def _safe_intervals(origin, columns, rows, centres, radii, pace, end):
                     if _meets(x, y, x, y, step, step + 1.0, centres[step : step + 2, k], reach, step):
                         begins[row * columns + column, step] = -1
     for node in range(columns * rows):
-        for step in range(1, end):
-            if begins[node, step] == 0:
-                begins[node, step] = step if begins[node, step - 1] < 0 else begins[node, step - 1]
+        begin = 0
+        for step in range(end):
+            if begins[node, step] < 0:
+                begin = step + 1
+            else:
+                begins[node, step] = begin
     return begins
 
 
@@ -239,6 +246,7 @@ def _between_corners(places, occupied, begins, pace):
                 since[i, f] = since[i, f - 1] if f > 0 and since[i, f - 1] >= 0 else f
     best, lengths = np.full((n, maps), np.inf), np.full((n, maps), np.inf)
     done = np.zeros((n, maps), dtype=np.bool_)
+    cuts = np.empty(occupied.shape[1] + occupied.shape[2] + 2)
     if since[0, 0] < 0:
         return np.inf, np.inf
     best[0, 0], lengths[0, 0] = 0.0, 0.0
@@ -265,7 +273,8 @@ def _between_corners(places, occupied, begins, pace):
                 earliest = max(time, begins[into] - size / pace) if into > 0 else time
                 if earliest + size / pace >= min(until, best[j, into]):
                     continue
-                depart = _free_departure(places[i], places[j], size, earliest, min(leave, until - size / pace), occupied, begins, pace)
+                latest = min(leave, until - size / pace)
+                depart = _free_departure(places[i], places[j], size, earliest, latest, occupied, begins, pace, cuts)
                 if depart + size / pace < best[j, into]:
                     best[j, into] = depart + size / pace
                     lengths[j, into] = lengths[i, f] + size
@@ -280,13 +289,16 @@ def _end_of(since, first, begins):
     return begins[f] if f < len(begins) else np.inf
 
 
-@compiled
-def _free_departure(one, other, size, depart, latest, occupied, begins, pace):
-    """The first departure from a time on, in steps, after which the straight drive meets no occupied cell; infinite after the latest."""
-    cuts = _crossings(one, other)
+@allocation_free
+def _free_departure(one, other, size, depart, latest, occupied, begins, pace, cuts):
+    """The first departure from a time on, in steps, after which the straight drive meets no occupied cell; infinite after the latest.
+
+    cuts: room for `_write_crossings`.
+    """
+    pieces = _write_crossings(one, other, cuts) - 1
     while depart <= latest:
         delayed = depart
-        for k in range(len(cuts) - 1):
+        for k in range(pieces):
             middle = (cuts[k] + cuts[k + 1]) / 2.0
             x, y = one[0] + middle * (other[0] - one[0]), one[1] + middle * (other[1] - one[1])
             enters, leaves = depart + cuts[k] * size / pace, depart + cuts[k + 1] * size / pace
@@ -297,21 +309,42 @@ def _free_departure(one, other, size, depart, latest, occupied, begins, pace):
                 if enters < ends - 1e-12 and _inside(x, y, occupied[f]):
                     # It may enter this cell only when this map is over.
                     delayed = max(delayed, ends - cuts[k] * size / pace)
+            if delayed > latest:
+                return np.inf
         if delayed == depart:
             return depart
         depart = delayed
     return np.inf
 
 
-@compiled
-def _crossings(one, other):
-    """Ascending parameters from 0 to 1 at which a segment crosses a grid line."""
-    cuts = [0.0, 1.0]
-    for axis in range(2):
-        low, high = min(one[axis], other[axis]), max(one[axis], other[axis])
-        for line in range(math.floor(low) + 1, math.ceil(high)):
-            cuts.append((line - one[axis]) / (other[axis] - one[axis]))
-    return np.unique(np.array(cuts))
+@allocation_free
+def _write_crossings(one, other, cuts):
+    """Write the ascending parameters from 0 to 1 at which a segment crosses a grid line, each once; returns their number."""
+    cuts[0] = 0.0
+    count = 1
+    column, columns, right = _lines_between(one[0], other[0])
+    row, rows, up = _lines_between(one[1], other[1])
+    while columns > 0 or rows > 0:
+        across = (column - one[0]) / (other[0] - one[0]) if columns > 0 else np.inf
+        along = (row - one[1]) / (other[1] - one[1]) if rows > 0 else np.inf
+        if across <= along:
+            column, columns = column + right, columns - 1
+        else:
+            row, rows = row + up, rows - 1
+        if min(across, along) > cuts[count - 1]:
+            cuts[count] = min(across, along)
+            count += 1
+    if cuts[count - 1] < 1.0:
+        cuts[count] = 1.0
+        count += 1
+    return count
+
+
+@allocation_free
+def _lines_between(begin, end):
+    """The first grid line beyond a coordinate on the way to another, how many there are before that one, and the step to the next line."""
+    lines = math.ceil(max(begin, end)) - math.floor(min(begin, end)) - 1
+    return (math.floor(begin) + 1, lines, 1) if end > begin else (math.ceil(begin) - 1, lines, -1)
 
 
 # A coordinate this close to a grid line, in cells, lies on it.
