@@ -155,11 +155,10 @@ def _first_path(rng, occupied, start, target, colony):
 @compiled
 def _next_point(rng, occupied, target, path, count, colony):
     """Append the best point that a colony finds after the first `count` points of a path, in place. Returns its cost."""
-    sides = np.array([occupied.shape[1], occupied.shape[0]])
     low, high = np.empty(2), np.empty(2)
     for k in range(2):
         low[k] = max(0.5, path[count - 1, k] - colony.reach)
-        high[k] = min(sides[k] - 0.5, path[count - 1, k] + colony.reach)
+        high[k] = min(occupied.shape[1 - k] - 0.5, path[count - 1, k] + colony.reach)
     sources = colony.sources
     x, cost, failed = np.empty((sources, 2)), np.empty(sources), np.zeros(sources, dtype=np.int64)
     point = np.empty(2)
@@ -172,7 +171,7 @@ def _next_point(rng, occupied, target, path, count, colony):
         # The best point is recorded before its source can be redrawn.
         for i in range(sources):
             if cost[i] < best_cost:
-                best[0], best[1] = x[i]
+                best[0], best[1] = x[i, 0], x[i, 1]
                 best_cost = cost[i]
         if cycle == colony.cycles:
             break
@@ -189,7 +188,7 @@ def _next_point(rng, occupied, target, path, count, colony):
                 other = integer(rng, 0, sources - 1)
                 other += other >= i
                 k = integer(rng, 0, 2)
-                point[0], point[1] = x[i]
+                point[0], point[1] = x[i, 0], x[i, 1]
                 point[k] += (2 * rng.random() - 1) * (x[i, k] - x[other, k])
                 point[k] = min(max(point[k], low[k]), high[k])
                 tried = _cost(occupied, target, path, count, point, colony)
@@ -265,7 +264,7 @@ def _evolve(rng, occupied, path, evolution):
     slots = np.arange(2 * population)  # parents first, starting with the cheapest; the other slots are for children
     for i in range(population):
         for p in range(len(path)):
-            points[i, p, 0], points[i, p, 1] = path[p]
+            points[i, p, 0], points[i, p, 1] = path[p, 0], path[p, 1]
         for p in range(len(path) - 1):
             legs[i, p] = _leg(occupied, points[i], p, evolution.blocked_penalty)
         cost[i] = legs[i, : len(path) - 1].sum()
@@ -307,10 +306,10 @@ def _mutated(rng, occupied, points, legs, count, child, child_legs, evolution):
         kept = changed + 1
         behind = changed
     for p in range(changed):
-        child[p, 0], child[p, 1] = points[p]
+        child[p, 0], child[p, 1] = points[p, 0], points[p, 1]
         child_legs[p] = legs[p]
     for p in range(kept, count):
-        child[p + behind - kept, 0], child[p + behind - kept, 1] = points[p]
+        child[p + behind - kept, 0], child[p + behind - kept, 1] = points[p, 0], points[p, 1]
         child_legs[p + behind - kept] = legs[p]
     for p in range(changed - 1, behind):
         child_legs[p] = _leg(occupied, child, p, evolution.blocked_penalty)
@@ -328,8 +327,8 @@ def _shift(rng, occupied, point, spread):
 @allocation_free
 def _leg(occupied, points, p, blocked_penalty):
     """Length of the leg after point p, plus the penalty if it is blocked."""
-    x0, y0 = points[p]
-    x1, y1 = points[p + 1]
+    x0, y0 = points[p, 0], points[p, 1]
+    x1, y1 = points[p + 1, 0], points[p + 1, 1]
     length = _length(x0, y0, x1, y1)
     return length if is_free_leg(occupied, x0, y0, x1, y1) else length + blocked_penalty
 

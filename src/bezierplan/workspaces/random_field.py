@@ -62,7 +62,7 @@ def from_circles(circles: Circles) -> Grid:
 
     count = round(circles.bounds[1]) + 1
     occupied = np.zeros((count, count), dtype=bool)
-    occupy(occupied, circles.centres, circles.radii)
+    occupy(occupied, np.ascontiguousarray(circles.centres), np.ascontiguousarray(circles.radii))
     return Grid(occupied, 1.0, circles.unit, (-0.5, -0.5), circles)
 
 

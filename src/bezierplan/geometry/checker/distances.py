@@ -88,12 +88,12 @@ def _clearance_of_point(x: float, y: float, obstacles: np.ndarray, edges: np.nda
 @allocation_free
 def _clearance_bound(points: np.ndarray, bulge: float, obstacle: int, edges: np.ndarray, centres: np.ndarray, radii: np.ndarray) -> float:
     """Lower bound of the distance of a curve to an obstacle. A curve deviates from its chord by at most `bulge`."""
-    ax, ay = points[0]
-    bx, by = points[-1]
+    ax, ay = points[0, 0], points[0, 1]
+    bx, by = points[-1, 0], points[-1, 1]
     disc = obstacle - len(edges)
     if disc < 0:
         return max(0.0, _distance_of_segments(points[0], points[-1], edges[obstacle, :2], edges[obstacle, 2:]) - bulge)
-    x, y = centres[disc]
+    x, y = centres[disc, 0], centres[disc, 1]
     from_chord = distance_to_segment(x, y, ax, ay, bx, by) - bulge
     if bulge > 0.0:
         from_chord = max(from_chord, least_distance_to_centre(points, x, y))

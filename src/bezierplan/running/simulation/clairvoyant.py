@@ -108,7 +108,7 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end):
         x, y = origin[0] + node % columns * pace, origin[1] + node // columns * pace
         home = math.hypot(target[0] - x, target[1] - y)
         if home < 1.5 * pace:
-            depart = _departure(x, y, target[0], target[1], time, leave, home / pace, centres, radii)
+            depart = _departure(x, y, target[0], target[1], time, float(leave), home / pace, centres, radii)
             if depart < np.inf:
                 heapq.heappush(heap, (depart + home / pace, depart + home / pace, -1 - node, interval))
         for dx in range(-1, 2):
@@ -157,7 +157,7 @@ def _safe_intervals(origin, columns, rows, centres, radii, pace, end):
             for row in range(max(bottom, 0), min(top, rows - 1) + 1):
                 for column in range(max(first, 0), min(last, columns - 1) + 1):
                     x, y = origin[0] + column * pace, origin[1] + row * pace
-                    if _meets(x, y, x, y, step, step + 1.0, centres[step : step + 2, k], reach, step):
+                    if _meets(x, y, x, y, float(step), step + 1.0, centres[step : step + 2, k], reach, step):
                         begins[row * columns + column, step] = -1
     for node in range(columns * rows):
         begin = 0
