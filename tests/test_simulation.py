@@ -319,3 +319,15 @@ def test_a_robot_checks_no_farther_than_its_horizon():
     world = circles((15, 10, 2, 0, 0))
     seen, unseen = (drive(world, across(world), REPLANS._replace(horizon=horizon), straight) for horizon in (math.inf, 3.0))
     assert seen.replans > unseen.replans
+
+
+coordinates = st.floats(0.0, 12.0) | st.integers(0, 12).map(float)
+
+
+@given(st.tuples(coordinates, coordinates), st.tuples(coordinates, coordinates))
+def test_crossings_are_where_a_segment_meets_a_grid_line(one, other):
+    """Each line strictly between both ends, in each direction; those met at a grid point count once."""
+    cuts = np.empty(40)
+    count = clairvoyant._write_crossings(np.array(one), np.array(other), cuts)
+    lines = [(line - a) / (b - a) for a, b in zip(one, other) for line in range(13) if min(a, b) < line < max(a, b)]
+    assert cuts[:count].tolist() == np.unique([0.0, 1.0, *lines]).tolist()

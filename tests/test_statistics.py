@@ -129,6 +129,13 @@ def test_interval_is_ordered(values, name):
     assert math.isnan(low) or low <= high
 
 
+@given(st.floats(-1e6, 1e6), st.integers(1, 30), st.integers(1, 30), st.sampled_from(sorted(STATISTICS)))
+def test_draws_from_equal_values_are_the_statistic_of_as_many(value, runs, size, name):
+    drawn = resampled(name, np.full(runs, value), size, generator("equal"))
+    assert drawn.shape == (statistics.DRAWS,)
+    assert np.array_equal(drawn, np.full(statistics.DRAWS, statistic(name, np.full(size, value))), equal_nan=True)
+
+
 OURS = np.random.default_rng(3).normal(100, 5, size=60)
 
 

@@ -82,8 +82,9 @@ def compare(
     both = both.loc[order].reset_index(drop=True)
     workspace_unit = next(iter(results.problems.values())).workspace.unit
     both["unit"] = [metrics.unit(metric, workspace_unit) for metric in both["metric"]]
-    rows, printed = both.to_dict("records"), {column: published[column].to_numpy() for column in [*given, "metric", "statistic", "value"]}
-    described = pd.DataFrame([_described(row, keys, name, _rivals(row, given, printed)) for row in rows], index=both.index)
+    printed = {column: published[column].to_numpy() for column in [*given, "metric", "statistic", "value"]}
+    rows = [_described(row, keys, name, _rivals(row, given, printed)) for row in both.to_dict("records")]
+    described = pd.DataFrame(rows, index=both.index)
     table = both.join(described).reindex(columns=keys + _COLUMNS)
     table.loc[_impossible_ranks(both, published, spec), "possible"] = False
     whole, marks = ("n_published", "n_ours", "n_asked"), ("reproduced", "can_fail", "possible")
@@ -135,13 +136,16 @@ def _with_variants(spec: dict, variant_of: dict[str, str], baselines: list[str])
 
 
 def _rivals(row: dict[str, Any], given: list[str], printed: dict[str, np.ndarray]) -> np.ndarray:
-    """The paper's numbers (n,) for other methods that match a row in metric, statistic and keys; printed: columns of its numbers."""
+    """The paper's numbers (n,) for other methods that match a row in metric, statistic and keys.
+
+    printed: the columns of all its numbers (m,), by name; given: those that are keys.
+    """
     if "method" not in given or pd.isna(row["value_published"]):
         return np.empty(0)
-    place = np.logical_and.reduce([printed[key] == row[key] for key in ("metric", "statistic", *given) if key != "method"])
+    same_place = np.logical_and.reduce([printed[key] == row[key] for key in ("metric", "statistic", *given) if key != "method"])
     # A variant's own name is in no published row; its number is that of its published method.
     own = printed["method"] == row.get("printed_method", row["method"])
-    return printed["value"][place & ~own].astype(float)
+    return printed["value"][same_place & ~own].astype(float)
 
 
 def _described(row: dict[str, Any], keys: list[str], name: str, rivals: np.ndarray) -> dict[str, Any]:

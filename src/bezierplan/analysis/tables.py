@@ -56,24 +56,26 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
     described = [metrics.METRICS[entry["metric"]] for entry in entries]
     wanted = {entry["metric"] for entry in entries} | {metric.gap for metric in described}
     measured = {name: _measured(runs, name, results, spec).to_numpy() for name in sorted(wanted)}
-    bounds = {metric.bound: runs[metric.bound].to_numpy(dtype=float) for metric in described}
+    named = {name for metric in described for name in (metric.bound, metric.least) if isinstance(name, str)}
+    bounds = {name: runs[name].to_numpy(dtype=float) for name in named}
+    feasible, claimed = runs["feasible"].to_numpy(), runs["claimed_feasible"].to_numpy()
     asked = [runs.index.isin(select(runs, entry.get("where", {})).index) for entry in entries]
     units = runs[spec["within"]].to_numpy() if "within" in spec else None
     rows = []
     for key, group in runs[keys].groupby(keys, dropna=False):
         place = group.index.to_numpy()
-        feasible, claimed = (runs[name].to_numpy()[place].mean() for name in ("feasible", "claimed_feasible"))
-        same = {**dict(zip(keys, key)), "runs": len(place), "share_claimed": claimed, "share_feasible": feasible}
+        shares = {"share_claimed": claimed[place].mean(), "share_feasible": feasible[place].mean()}
+        same = {**dict(zip(keys, key)), "runs": len(place), **shares}
         for value, (entry, metric) in enumerate(zip(entries, described)):
             of_group = {
                 "bound": _median(bounds[metric.bound][place]),
                 "gap": _median(measured[metric.gap][place]),
-                "least": np.fmin.reduce(runs[metric.least].to_numpy()[place]) if isinstance(metric.least, str) else metric.least,
+                "least": np.fmin.reduce(bounds[metric.least][place]) if isinstance(metric.least, str) else metric.least,
                 "most": metric.most,
             }
             own = place[asked[value][place]]
             cell = {"value": value, "metric": entry["metric"], "decimals": entry.get("decimals"), "asked": len(own)}
-            own = own[~np.isnan(measured[entry["metric"]][own])]
+            own = own[~np.isnan(measured[entry["metric"]][own])]  # a run without a value counts nowhere
             numbers = measured[entry["metric"]][own]
             # Tuples, because pandas would expand lists of arrays.
             groups = None if units is None else tuple(np.sort(numbers[units[own] == unit]) for unit in np.unique(units[own]))

@@ -213,7 +213,7 @@ def _note(check: dict, rows: pd.DataFrame, column: str | None, cells: list) -> s
     values = [rows.loc[rows[column] == cell, "value"] for cell in cells]
     counts = [[int(each.notna().sum()), int(each.isna().sum())] for each in values]
     if not any(failed for _, failed in counts):
-        return ""
+        return ""  # both always succeed
     from scipy import stats
 
     return "compared on successes alone, which are of different number" if stats.fisher_exact(counts).pvalue < effects.ALPHA else ""

@@ -86,7 +86,7 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end):
     """Arrival and length of the earliest schedule on the lattice."""
     columns, rows = counts
     begins = _safe_intervals(origin, columns, rows, centres, radii, pace, end)
-    # Filling the two others takes longer than the search, which reaches few intervals.
+    # `best` and `lengths` hold what is reached: to fill them before takes longer than the search, which reaches few intervals.
     reached = np.zeros(begins.shape, dtype=np.bool_)
     best, lengths = np.empty(begins.shape), np.empty(begins.shape)
     node = round((start[1] - origin[1]) / pace) * columns + round((start[0] - origin[0]) / pace)
@@ -108,6 +108,7 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end):
         x, y = origin[0] + node % columns * pace, origin[1] + node // columns * pace
         home = math.hypot(target[0] - x, target[1] - y)
         if home < 1.5 * pace:
+            # Here and below, an integer in the place of a float would compile the kernel a second time.
             depart = _departure(x, y, target[0], target[1], time, float(leave), home / pace, centres, radii)
             if depart < np.inf:
                 heapq.heappush(heap, (depart + home / pace, depart + home / pace, -1 - node, interval))
@@ -130,12 +131,13 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end):
                         until += 1
                     step = until
                     first = max(time, into - duration)
-                    if reached[other, into] and first + duration >= best[other, into]:
+                    known = best[other, into] if reached[other, into] else np.inf
+                    if first + duration >= known:
                         continue
                     other_x, other_y = origin[0] + column * pace, origin[1] + row * pace
                     last = min(leave, until - duration)
                     depart = _departure(x, y, other_x, other_y, first, last, duration, centres, radii)
-                    if depart + duration < (best[other, into] if reached[other, into] else np.inf):
+                    if depart + duration < known:
                         reached[other, into], best[other, into] = True, depart + duration
                         lengths[other, into] = lengths[node, interval] + duration * pace
                         rest = math.hypot(target[0] - other_x, target[1] - other_y) / pace
