@@ -110,6 +110,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     axes.set_ylim(len(groups) - 0.4, -0.6)
     axes.set_yticks(range(len(groups)), [style.printed(group, by, scene.labels) for group in groups])
     axes.tick_params(axis="y", length=0)
+    axes.locator_params(axis="x", nbins=4, steps=[1, 2, 5, 10])  # labels such as 0.0025 would touch each other
     axes.set_xlabel(axis_label(panel["metric"], scene))
     axes.grid(visible=True, axis="x")
     return runs_note(frame, "box", "method" if by == "method" else "row")
