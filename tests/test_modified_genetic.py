@@ -1,5 +1,8 @@
 """The modified genetic algorithm: its encoding, validation, operators and rules for diversity, by hand and by properties."""
 
+import itertools
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -167,7 +170,7 @@ def test_points_can_be_joined_in_the_order_of_the_genes():
 
 def validated(ones, found, rules):
     """`validate` with a scratch of its own."""
-    return gene_curves.validate(ones, found, rules, gene_curves.scratch_for(found))
+    return gene_curves.validate(ones, found, rules, np.inf, gene_curves.scratch_for(found))
 
 
 def test_constraints_in_their_order():
@@ -193,7 +196,7 @@ def test_the_longest_curve_has_room(curve):
     rank = np.zeros(len(found.points), dtype=np.int64)
     rank[corners] = np.arange(59)
     scratch = gene_curves.scratch_for(found)._replace(x=np.full(len(gene_curves.scratch_for(found).x), -1.0))
-    assert gene_curves.validate(np.sort(corners), found._replace(rank=rank), rules(curve=curve, least_distance=0.0), scratch)[1]
+    assert gene_curves.validate(np.sort(corners), found._replace(rank=rank), rules(curve=curve, least_distance=0.0), np.inf, scratch)[1]
     assert 0.5 * len(scratch.x) < np.count_nonzero(scratch.x != -1.0) < len(scratch.x)
 
 
@@ -222,21 +225,34 @@ def test_a_colliding_curve_may_be_punished_for_each_cell():
     assert cost == cell_length.polyline_length(x, y) + 20.0 * bad
 
 
-def test_first_sights_never_change_a_verdict():
+def walked(ones, found, composite):
+    """x and y of all samples of a curve, and the number of occupied cells that a walk over all its cells finds."""
+    points = planner.polygon(ones, found)
+    pieces = [points]
+    if composite:
+        halves = np.concatenate([points[:1], 0.5 * (points[1:-2] + points[2:-1]), points[-1:]])
+        pieces = np.stack([halves[:-1], points[1:-1], halves[1:]], axis=1)
+    x, y = map(np.concatenate, zip(*(cell_length.sample(piece, cell_length.parts(piece)) for piece in pieces)))
+    return x, y, cell_length.occupied_cells(*cell_length.touched_cells(x, y), found.occupied)
+
+
+@pytest.mark.parametrize("curve", ["single", "composite"])
+@pytest.mark.parametrize("lattice", ["coarse", "cell"])
+@pytest.mark.parametrize("radius", [0.02, 0.06])
+def test_first_sights_never_change_a_verdict(radius, lattice, curve):
     """Curves that the walk over all cells calls free or colliding are called the same by the shortcuts before it."""
     rng = np.random.default_rng(3)
     free = colliding = 0
     for number in range(20):
-        task = problem(number)
-        found = planner.field_of(
-            task.workspace, task.workspace.in_cells(np.array([task.start, task.target])), "coarse", "columns", "projection"
-        )
+        task = problem(number, side=(100, 32)[number % 2], radius=radius)
+        ends = task.workspace.in_cells(np.array([task.start, task.target]))
+        if number % 3 == 0:
+            ends = np.floor(ends)  # on grid lines
+        found = planner.field_of(task.workspace, ends, lattice, "columns", "projection")
         for _ in range(100):
             ones = np.sort(rng.choice(found.choices, rng.integers(1, 6), replace=False))
-            points = planner.polygon(ones, found)
-            x, y = cell_length.sample(points, cell_length.parts(points))
-            bad = cell_length.occupied_cells(*cell_length.touched_cells(x, y), found.occupied)
-            cost, verdict = validated(ones, found, rules(least_distance=0.0))
+            x, y, bad = walked(ones, found, curve == "composite")
+            cost, verdict = validated(ones, found, rules(least_distance=0.0, curve=curve))
             assert verdict == (bad == 0)
             if verdict:
                 assert cost == cell_length.polyline_length(x, y)
@@ -245,26 +261,78 @@ def test_first_sights_never_change_a_verdict():
     assert min(free, colliding) > 50
 
 
+def test_first_sights_among_single_cells_never_change_a_verdict():
+    """Where most curves pass within a cell of occupied ones, cut their corners, and have samples on their sides."""
+    rng = np.random.default_rng(4)
+    seen = np.zeros(3, dtype=int)
+    for number in range(40):
+        occupied = rng.random((24, 24)) < (0.02, 0.06, 0.12)[number % 3]
+        occupied[0, 0] = occupied[-1, -1] = False
+        grid = Grid(occupied, 1.0, "cell")
+        start, target = (((0.5, 0.5), (23.5, 23.5)), ((0.0, 0.0), (23.0, 23.25)))[number % 2]
+        found = planner.field_of(grid, np.array([start, target]), "cell", "columns", "projection")
+        scratch = gene_curves.scratch_for(found)
+        for _ in range(200):
+            ones = np.sort(rng.choice(found.choices, rng.integers(1, 5), replace=False))
+            composite = rng.random() < 0.5
+            *_, bad = walked(ones, found, composite)
+            sight, _ = gene_curves._at_first_sight(planner.polygon(ones, found), composite, found.room, scratch)
+            assert sight == gene_curves._UNKNOWN or (sight == gene_curves._OCCUPIED) == (bad > 0)
+            seen[sight] += 1
+    assert seen.min() > 100
+
+
+@pytest.mark.parametrize("curve", ["single", "composite"])
+def test_a_length_above_the_limit_need_not_be_exact(curve):
+    """It is above the limit all the same; and verdicts, and lengths that do not exceed it, are those without a limit."""
+    rng = np.random.default_rng(5)
+    found, above = field(100, (50, 50, 3), (20, 70, 8)), 0
+    for _ in range(300):
+        ones = np.sort(rng.choice(found.choices, rng.integers(1, 6), replace=False))
+        length, free = validated(ones, found, rules(curve=curve, least_distance=0.0))
+        for limit in (0.9 * length, length, 1.1 * length):
+            cost, verdict = gene_curves.validate(ones, found, rules(curve=curve, least_distance=0.0), limit, gene_curves.scratch_for(found))
+            assert verdict == free
+            assert cost == length or limit < cost < length
+            above += cost != length
+    assert above > 100
+
+
+@pytest.mark.parametrize("diversity_rule", ["none", "more_offspring", "relaxing", "unique"])
+@pytest.mark.parametrize("survival", ["best_of_all", "generational"])
+def test_no_search_depends_on_by_how_much_a_child_costs_more_than_its_parents(diversity_rule, survival, monkeypatch):
+    task = problem(3)
+    found = planner.field_of(
+        task.workspace, task.workspace.in_cells(np.array([task.start, task.target])), "coarse", "columns", "projection"
+    )
+    given = found, rules(diversity=diversity_rule, survival=survival), np.zeros((0, 119), dtype=np.int64), np.zeros(0, dtype=np.int64)
+    pruned = planner.search(np.random.default_rng(1), *given, gene_curves.scratch_for(found))
+    monkeypatch.setattr(planner, "_highest_cost_that_counts", lambda *_: np.inf)
+    exact = planner.search.py_func(np.random.default_rng(1), *given, gene_curves.scratch_for(found))
+    assert np.isfinite(exact.cost)
+    for one, other in zip(pruned, exact, strict=True):
+        np.testing.assert_array_equal(one, other)
+
+
 def test_a_target_on_the_border_is_looked_at_within_the_grid():
     """Where no cell lies beyond, the first sight reads none: uncompiled it raises IndexError if it does."""
-    room = np.full((20, 20), 1)
-    for start, target in (((0.5, 0.5), (20.0, 20.0)), ((0.5, 10.5), (20.0, 10.5)), ((10.5, 0.5), (10.5, 20.0)), ((20.0, 20.0), (0.5, 0.5))):
-        points = np.array([start, target])
-        x, y = cell_length.sample(points, cell_length.parts(points))
-        # A sample on a grid line is left to the walk over the cells.
-        assert gene_curves._at_first_sight.py_func(x, y, room) == gene_curves._UNKNOWN
-        assert gene_curves._at_first_sight(x, y, room) == gene_curves._UNKNOWN
-    x, y = np.linspace(0.513, 19.417, 50), np.linspace(0.619, 19.731, 50)
-    assert gene_curves._at_first_sight.py_func(x, y, room) == gene_curves._FREE
+    room = np.full((20, 20), 3)
+    for x, y in ((20.0, 20.0), (20.0, 10.5), (10.5, 20.0)):
+        # A sample on the border is left to the walk over the cells.
+        assert gene_curves._reach.py_func(x, y, room) == gene_curves._reach(x, y, room) == -1
+    # One on another grid line has free cells on both sides.
+    assert gene_curves._reach(10.0, 10.5, room) == 2
+    assert gene_curves._reach(10.0, 10.5, np.full((20, 20), 2)) == -1
+    assert gene_curves._reach(10.3, 10.5, np.zeros((20, 20), dtype=np.int64)) == 0
 
 
-@pytest.mark.parametrize("target", [(20.0, 20.0), (20.0, 9.3), (9.3, 20.0)])
-def test_a_target_on_the_border_is_reached(target):
-    task = Problem("border", Grid(np.zeros((20, 20), dtype=bool), 1.0, "cell", (0.0, 0.0)), (0.5, 0.5), target)
+@pytest.mark.parametrize("ends", list(itertools.permutations([(0.5, 0.5), (20.0, 20.0), (20.0, 9.3), (9.3, 20.0)], 2)))
+def test_ends_on_the_border_are_joined(ends):
+    task = Problem("border", Grid(np.zeros((20, 20), dtype=bool), 1.0, "cell", (0.0, 0.0)), *ends)
     found = run(task, **FEW)
     assert found.claimed_feasible
-    assert np.array_equal(found.path.points[-1], target)
-    assert found.objective == pytest.approx(np.hypot(target[0] - 0.5, target[1] - 0.5), rel=0.02)
+    assert np.array_equal(found.path.points[[0, -1]], ends)
+    assert found.objective == pytest.approx(math.dist(*ends), rel=0.02)
 
 
 # The search.
@@ -437,7 +505,7 @@ def batch(seed, pool, field_, **changed):
         gene_lists.put(np.array(ones), len(ones), 100.0, True, filled_pool, place)
     child, memory = np.empty(planner._ROOM, dtype=np.int64), gene_lists.empty_memory(planner._ROOM)
     wheel, scratch = np.cumsum(np.ones(len(pool))), gene_curves.scratch_for(field_)
-    arguments = (filled_pool, len(pool), wheel, 0.8, child, memory, field_, rules(population=20, **changed), scratch)
+    arguments = (filled_pool, len(pool), wheel, 0.8, np.inf, child, memory, field_, rules(population=20, **changed), scratch)
     filled, tried, invalid = planner._add_offspring(np.random.default_rng(seed), *arguments)
     return [filled_pool.ones[place, : filled_pool.count[place]].tolist() for place in range(len(pool), filled)], tried, invalid
 

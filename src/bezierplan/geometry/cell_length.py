@@ -54,22 +54,24 @@ def parts(points: np.ndarray) -> int:
 def sample(points: np.ndarray, last: int) -> tuple[np.ndarray, np.ndarray]:
     """x and y of a Bezier piece (degree + 1, 2) at the parameters 0, 1 / last, 2 / last, ..., 1."""
     x, y, t, power = np.empty((4, last + 1))
-    write_samples(points, last, 1, x, y, t, power)
+    write_samples(points, last, 0, 1, last + 1, x, y, t, power)
     return x, y
 
 
 @allocation_free
-def write_samples(points: np.ndarray, last: int, stride: int, x: np.ndarray, y: np.ndarray, t: np.ndarray, power: np.ndarray) -> int:
-    """Write x and y of a Bezier piece (degree + 1, 2) at the parameters 0, stride / last, 2 stride / last, ...; returns their number. With
-    stride 1 the last parameter is 1. t, power: scratch, as long as x and y.
+def write_samples(
+    points: np.ndarray, last: int, first: int, stride: int, count: int, x: np.ndarray, y: np.ndarray, t: np.ndarray, power: np.ndarray
+) -> None:
+    """Write x and y of a Bezier piece (degree + 1, 2) at `count` parameters: first / last, (first + stride) / last, ..., at most 1.
+
+    t, power: (count,) or more, scratch.
 
     Horner's rule in Bernstein form, all weights positive, for all samples at once; two control points at a time, so that each sample is
-    read and written fewer times.
+    read and written fewer times. A sample is the same to the last bit, whichever others are written with it.
     """
     degree = len(points) - 1
-    count = last // stride + 1
     for s in range(count):
-        t[s] = s * stride / last
+        t[s] = (first + s * stride) / last
         power[s] = 1.0
         x[s], y[s] = points[0, 0], points[0, 1]
     binomial = 1.0
@@ -91,9 +93,8 @@ def write_samples(points: np.ndarray, last: int, stride: int, x: np.ndarray, y: 
             power[s] = here * t[s]
             x[s] = (x[s] * rest + here * weight_x) * rest + power[s] * next_x
             y[s] = (y[s] * rest + here * weight_y) * rest + power[s] * next_y
-    if stride == 1:
-        x[last], y[last] = points[degree, 0], points[degree, 1]
-    return count
+    if first + (count - 1) * stride == last:
+        x[count - 1], y[count - 1] = points[degree, 0], points[degree, 1]
 
 
 @allocation_free

@@ -162,6 +162,8 @@ def plan(
     if problem.start == problem.target:
         nothing = {"distinct_chromosomes": 0.0, "mean_q": math.nan, "extra_batches": 0, "valid_share": math.nan}
         return Plan(Path("polyline", grid.in_units(ends)), 0.0, True, 1, np.zeros(1), "start is target", nothing)
+    # A start on the upper or right border lies in the last cell, not beyond it.
+    ends = np.minimum(ends, np.nextafter(np.array(grid.occupied.shape[::-1], dtype=float), 0.0))
     field = field_of(grid, ends, gene_lattice, gene_order, point_order)
     rules = Rules(
         population=population,
@@ -265,7 +267,7 @@ def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarr
                     child[k] = first[place, k]
             else:
                 count = _random_chromosome(rng, child, field, rules)
-            cost, free = validate(child[:count], field, rules, scratch)
+            cost, free = validate(child[:count], field, rules, np.inf, scratch)
             evaluations += 1
             if cost < np.inf or place < len(first):
                 break
@@ -281,10 +283,11 @@ def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarr
             break
 
         wheel = np.cumsum(1.0 / pool.cost[:size])
+        limit = _highest_cost_that_counts(pool, rules)
         filled, pairs = size, 0.0
         for batch in range(batches):
             before = filled
-            filled, tried, invalid = _add_offspring(rng, pool, before, wheel, eta, child, memory, field, rules, scratch)
+            filled, tried, invalid = _add_offspring(rng, pool, before, wheel, eta, limit, child, memory, field, rules, scratch)
             evaluations += tried
             bred += children
             lost += invalid
@@ -301,11 +304,22 @@ def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarr
 
 
 @allocation_free
-def _add_offspring(rng, pool, filled, wheel, eta, child, memory, field, rules, scratch):
+def _highest_cost_that_counts(pool, rules):
+    """A child that costs more than any parent does not survive, so nobody needs to know by how much; unless no parent survives, or equal
+    chromosomes are told by their costs.
+    """
+    highest = 0.0
+    for place in range(rules.population):
+        highest = max(highest, pool.cost[place])
+    return np.inf if rules.generational or rules.diversity == _UNIQUE else highest
+
+
+@allocation_free
+def _add_offspring(rng, pool, filled, wheel, eta, limit, child, memory, field, rules, scratch):
     """Add a batch of offspring of the pool's first chromosomes (Algorithm 2, lines 6 and 7) after those already in it.
 
-    wheel: (population,) running sum of the parents' fitness. memory: of validated chromosomes, changed in place. Returns the number of
-    chromosomes now in the pool, of chromosomes validated, and of invalid children.
+    wheel: (population,) running sum of the parents' fitness. limit: of `validate`. memory: of validated chromosomes, changed in place.
+    Returns the number of chromosomes now in the pool, of chromosomes validated, and of invalid children.
     """
     tried = invalid = 0
     for _ in range(rules.pairs):
@@ -320,7 +334,7 @@ def _add_offspring(rng, pool, filled, wheel, eta, child, memory, field, rules, s
                 for replaced in range(rules.replacements + 1):
                     if replaced > 0:
                         count = _random_chromosome(rng, child, field, rules)
-                    cost, free = _validated(child[:count], memory, field, rules, scratch)
+                    cost, free = _validated(child[:count], memory, field, rules, limit, scratch)
                     tried += 1
                     invalid += replaced == 0 and cost == np.inf
                     if cost < np.inf:
@@ -338,11 +352,13 @@ def _add_offspring(rng, pool, filled, wheel, eta, child, memory, field, rules, s
 
 
 @allocation_free
-def _validated(ones, memory, field, rules, scratch):
-    """`validate`, without the work for a chromosome that has been there before, as most children have once the population is alike."""
+def _validated(ones, memory, field, rules, limit, scratch):
+    """`validate`, without the work for a chromosome that has been there before, as most children have once the population is alike; limits
+    never rise.
+    """
     place, known = gene_lists.entry(ones, memory)
     if not known:
-        cost, free = validate(ones, field, rules, scratch)
+        cost, free = validate(ones, field, rules, limit, scratch)
         gene_lists.put(ones, len(ones), cost, free, memory, place)
     return memory.cost[place], memory.free[place]
 
@@ -369,11 +385,12 @@ def _mutate(rng, child, count, field, rules):
     genes = len(field.points)
     if rules.mutation == _EACH_GENE:
         # From one gene that changes to the next: the gaps of independent trials of equal probability.
-        gene = gene_lists.gap(rng, rules.mutation_rate)
+        unchanged = math.log1p(-rules.mutation_rate) if rules.mutation_rate < 1.0 else -np.inf
+        gene = gene_lists.gap(rng, unchanged)
         while gene < genes:
             if field.settable[gene]:
                 count = gene_lists.flip(child, count, gene)
-            gene += 1 + gene_lists.gap(rng, rules.mutation_rate)
+            gene += 1 + gene_lists.gap(rng, unchanged)
     elif rules.mutation == _SHIFT:
         if rng.random() < rules.mutation_rate:
             count = _change_point(rng, child, count, field)

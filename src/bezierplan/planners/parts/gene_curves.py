@@ -12,9 +12,13 @@ from bezierplan.planners.parts.gene_lattice import Field, write_polygon
 # More control points make a chromosome invalid: the curve's degree is at most 60.
 MOST_POINTS = 59
 
-# Points of a curve that are examined first: most collisions show up there, which saves the walk over all cells.
-_FIRST_SAMPLES = 30
+# Equal parts of a curve, and fewest of a piece of it, whose ends are examined first: most collisions show up there.
+_FIRST_PARTS = 30
+_FEWEST_PARTS = 4
 _ON_LINE = 1e-9
+
+# A sum of lengths is exact to this share.
+_ROUNDING = 1e-9
 
 FitnessLength = Literal["length", "cells4", "cells8"]
 _LENGTH, _CELLS4, _CELLS8 = range(3)
@@ -41,17 +45,20 @@ class Scratch(NamedTuple):
 
 def scratch_for(field: Field) -> Scratch:
     """Room for any curve on a field."""
-    # `parts` of a curve: at most 2.04 for each cell of its polygon, whose legs are no longer than the diagonal, and 3 more for each piece.
-    samples = math.ceil(2.04 * (MOST_POINTS + 1) * math.hypot(*field.occupied.shape)) + 4 * (MOST_POINTS + 1)
+    # `parts` of a curve: at most 2.04 for each cell of its polygon, whose legs are no longer than the diagonal, and 3 more for each piece;
+    # before them the samples of the first look.
+    samples = math.ceil(2.04 * (MOST_POINTS + 1) * math.hypot(*field.occupied.shape)) + 4 * (MOST_POINTS + 1) + 2 * (_FIRST_PARTS + 1)
     numbers, cells = np.empty((4, samples)), np.empty((2, 2 * samples), dtype=np.int64)
     return Scratch(np.empty(MOST_POINTS, dtype=np.int64), np.empty((MOST_POINTS + 2, 2)), np.empty((3, 2)), *numbers, *cells)
 
 
 @allocation_free
-def validate(ones: np.ndarray, field: Field, rules: NamedTuple, scratch: Scratch) -> tuple[float, bool]:
+def validate(ones: np.ndarray, field: Field, rules: NamedTuple, limit: float, scratch: Scratch) -> tuple[float, bool]:
     """Apply the constraints of equation 6 and Section 3.2.2: the cost (length) of a chromosome, infinite if it is to be deleted, and
     whether its curve is collision-free. `Obstacles` needs no test, as genes of occupied cells are never set. rules:
     `modified_genetic.Rules`. scratch: `scratch_for` the field.
+
+    limit: nobody needs to know by how much a length exceeds it, so a cost above it may be less than the length.
     """
     if not 0 < len(ones) <= MOST_POINTS:
         return np.inf, False
@@ -61,16 +68,15 @@ def validate(ones: np.ndarray, field: Field, rules: NamedTuple, scratch: Scratch
             width, height = abs(points[i, 0] - points[j, 0]), abs(points[i, 1] - points[j, 1])
             if max(width, height) < rules.least_distance and math.hypot(width, height) < rules.least_distance:
                 return np.inf, False
-    if not rules.composite and not rules.punished:
-        last = parts(points)
-        count = write_samples(points, last, max(1, last // _FIRST_SAMPLES), scratch.x, scratch.y, scratch.t, scratch.power)
-        if _collides(scratch.x[:count], scratch.y[:count], field.room):
+    sight = _UNKNOWN
+    if not rules.punished:
+        sight, least = _at_first_sight(points, rules.composite, field.room, scratch)
+        if sight == _OCCUPIED:
             return np.inf, False
+        if sight == _FREE and rules.fitness_length == _LENGTH and least > limit:
+            return least, True
     count = _write_curve(points, rules.composite, scratch)
     x, y = scratch.x[:count], scratch.y[:count]
-    sight = _at_first_sight(x, y, field.room)
-    if sight == _OCCUPIED and not rules.punished:
-        return np.inf, False
     if sight == _FREE and rules.fitness_length == _LENGTH:
         return sum_of_steps(x, y, scratch.t), True
     count = write_touched_cells(x, y, scratch.columns, scratch.rows)
@@ -88,64 +94,146 @@ def validate(ones: np.ndarray, field: Field, rules: NamedTuple, scratch: Scratch
 
 
 @allocation_free
-def _collides(x, y, room):
-    """Whether any of some samples of a curve lie in occupied cells; those on grid lines are left to the walk over the cells."""
-    rows, columns = room.shape
-    for s in range(len(x)):
-        column, row = min(int(x[s]), columns - 1), min(int(y[s]), rows - 1)
-        if room[row, column] == 0 and _is_within(x[s] - column, y[s] - row):
-            return True
-    return False
-
-
-@allocation_free
-def _is_within(right, above):
-    """Whether a sample is not on a grid line, by its distances from those to the left and below."""
-    return _ON_LINE < right < 1.0 - _ON_LINE and _ON_LINE < above < 1.0 - _ON_LINE
-
-
-@allocation_free
-def _at_first_sight(x, y, room):
-    """What a walk over the cells of a curve would find, if a look at its samples tells: `_OCCUPIED` if a sample is in an occupied cell;
-    `_FREE` if the cells of all samples are free, as well as those whose corner a step between two samples may cut. `_UNKNOWN` where neither
-    holds, and for free curves with a sample on a grid line.
-
-    Samples are less than a cell apart, so after one with free cells all around it the next ones need no look.
+def _at_first_sight(points, composite, room, scratch):
+    """What a walk over the cells of a curve would find, if a look at some of its samples tells: `_OCCUPIED` or `_FREE`, otherwise
+    `_UNKNOWN`; and a length that the polyline through its samples has at least.
     """
-    rows, columns = room.shape
-    cut = False
+    sight, least = _FREE, 0.0
+    pieces = _pieces(points, composite)
+    for k in range(pieces):
+        piece = points
+        if composite:
+            piece = scratch.piece
+            _write_piece(points, k, piece)
+        seen, chords = _sight_of_piece(piece, max(_FEWEST_PARTS, _FIRST_PARTS // pieces), room, scratch)
+        if seen == _OCCUPIED:
+            return _OCCUPIED, 0.0
+        if seen == _UNKNOWN:
+            sight = _UNKNOWN
+        least += chords
+    return sight, least * (1.0 - _ROUNDING)
+
+
+@allocation_free
+def _sight_of_piece(piece, least_parts, room, scratch):
+    """`_at_first_sight` of a piece: first of the ends of at least so many equal parts (fewer only if there are fewer samples), then of all
+    samples of those parts that come too close to obstacles to tell.
+    """
+    last = parts(piece)
+    stride = max(1, last // least_parts)
+    ends = -(-last // stride) + 1
+    x, y, reach = scratch.x, scratch.y, scratch.columns
+    write_samples(piece, last, 0, stride, last // stride + 1, x, y, scratch.t, scratch.power)
+    x[ends - 1], y[ends - 1] = piece[-1, 0], piece[-1, 1]
+    for i in range(ends):
+        reach[i] = _reach(x[i], y[i], room)
+        if reach[i] == 0:
+            return _OCCUPIED, 0.0
+    sight = _FREE
+    away = _from_chords(piece, last / stride)
+    first = 0
+    while first < ends - 1:
+        after = first
+        while after < ends - 1 and not _is_free_part(x, y, reach, after, away):
+            after += 1
+        if after > first:
+            begin, count = first * stride, min(after * stride, last) - first * stride + 1
+            write_samples(piece, last, begin, 1, count, x[ends:], y[ends:], scratch.t, scratch.power)
+            seen = _sight_of_samples(x[ends : ends + count], y[ends : ends + count], room)
+            if seen == _OCCUPIED:
+                return _OCCUPIED, 0.0
+            if seen == _UNKNOWN:
+                sight = _UNKNOWN
+        first = after + 1
+    return sight, sum_of_steps(x[:ends], y[:ends], scratch.t)
+
+
+@allocation_free
+def _from_chords(piece, count):
+    """How far a piece, cut into `count` parts of equal length in the parameter, gets at most from points at the same parameters on their
+    chords, along x or y: an eighth of the second derivative at most, times the square of a part's length.
+    """
+    degree = len(piece) - 1
+    most = 0.0
+    for i in range(1, degree):
+        for axis in range(2):
+            most = max(most, abs(piece[i - 1, axis] - 2.0 * piece[i, axis] + piece[i + 1, axis]))
+    return degree * (degree - 1) * most / (8.0 * count * count)
+
+
+@allocation_free
+def _is_free_part(x, y, reach, i, away):
+    """Whether the free cells around both ends of a part hold all its samples: a step, which is less than a cell, lies in both."""
+    between = max(abs(x[i + 1] - x[i]), abs(y[i + 1] - y[i]))
+    return between + 2.0 * away + 1.0 <= reach[i] - 1 + reach[i + 1] - 1
+
+
+@allocation_free
+def _sight_of_samples(x, y, room):
+    """`_at_first_sight` of consecutive samples: `_OCCUPIED` if one is in an occupied cell; `_FREE` if the cells of all are free, as well as
+    those whose corner a step between two samples may cut. After one with free cells all around it the next ones need no look.
+    """
+    sight = _FREE
     s = 0
     while s < len(x):
-        # There is no cell beyond the upper and right borders, on which start and target may lie.
-        before = max(s - 1, 0)
-        before_column, before_row = min(int(x[before]), columns - 1), min(int(y[before]), rows - 1)
-        column, row = min(int(x[s]), columns - 1), min(int(y[s]), rows - 1)
-        if room[row, column] == 0 and _is_within(x[s] - column, y[s] - row):
+        reach = _reach(x[s], y[s], room)
+        if reach == 0:
             return _OCCUPIED
-        cut |= room[row, column] == 0 or room[before_row, column] == 0 or room[row, before_column] == 0
-        s += max(room[row, column], 1)
-    if cut:
-        return _UNKNOWN
-    on_line = False
-    for s in range(len(x)):
-        # `np.floor` returns a float, unlike `math.floor`, whose integer would keep this loop from being vectorised.
-        right, above = x[s] - np.floor(x[s]), y[s] - np.floor(y[s])
-        on_line |= (right <= _ON_LINE) | (right >= 1.0 - _ON_LINE) | (above <= _ON_LINE) | (above >= 1.0 - _ON_LINE)
-    return _UNKNOWN if on_line else _FREE
+        if reach < 0 or (reach == 1 and s > 0 and _may_cut(x[s - 1], y[s - 1], x[s], y[s], room)):
+            sight = _UNKNOWN
+        s += max(reach, 1)
+    return sight
+
+
+@allocation_free
+def _reach(x, y, room):
+    """How many samples from one on, itself included, touch free cells only, whichever way they lead: 0 if its cell is occupied, -1 if that
+    cannot be told. A sample on a grid line may count to the cell on either side.
+    """
+    rows, columns = room.shape
+    # There is no cell beyond the upper and right borders, on which start and target may lie.
+    column, row = min(int(x), columns - 1), min(int(y), rows - 1)
+    right, above = x - column, y - row
+    if _ON_LINE < right < 1.0 - _ON_LINE and _ON_LINE < above < 1.0 - _ON_LINE:
+        return room[row, column]
+    return room[row, column] - 1 if room[row, column] > 2 and right < 1.0 and above < 1.0 else -1
+
+
+@allocation_free
+def _may_cut(x0, y0, x, y, room):
+    """Whether the step between two samples, the second of which is within a free cell, may cut the corner of an occupied cell."""
+    rows, columns = room.shape
+    before_column, before_row = min(int(x0), columns - 1), min(int(y0), rows - 1)
+    if room[before_row, before_column] > 1:
+        return False
+    return _reach(x0, y0, room) < 0 or room[before_row, int(x)] == 0 or room[int(y), before_column] == 0
+
+
+@allocation_free
+def _pieces(points, composite):
+    """Number of Bezier pieces of a curve: one (equation 2), or if composite one for each control point between its ends."""
+    return len(points) - 2 if composite else 1
+
+
+@allocation_free
+def _write_piece(points, k, piece):
+    """Write the control points (3, 2) of a composite curve's quadratic piece k: they meet half-way between those of the curve."""
+    for axis in range(2):
+        piece[0, axis] = 0.5 * (points[k, axis] + points[k + 1, axis]) if k > 0 else points[0, axis]
+        piece[1, axis] = points[k + 1, axis]
+        piece[2, axis] = 0.5 * (points[k + 1, axis] + points[k + 2, axis]) if k < len(points) - 3 else points[-1, axis]
 
 
 @allocation_free
 def _write_curve(points, composite, scratch):
-    """Write x and y of samples of the curve less than a cell apart (equation 2); returns their number."""
-    x, y, t, power, piece = scratch.x, scratch.y, scratch.t, scratch.power, scratch.piece
-    if not composite:
-        return write_samples(points, parts(points), 1, x, y, t, power)
-    pieces = len(points) - 2
+    """Write x and y of samples of the curve less than a cell apart; returns their number."""
     count = 0
-    for k in range(pieces):
-        for axis in range(2):
-            piece[0, axis] = 0.5 * (points[k, axis] + points[k + 1, axis]) if k > 0 else points[0, axis]
-            piece[1, axis] = points[k + 1, axis]
-            piece[2, axis] = 0.5 * (points[k + 1, axis] + points[k + 2, axis]) if k < pieces - 1 else points[-1, axis]
-        count += write_samples(piece, parts(piece), 1, x[count:], y[count:], t, power)
+    for k in range(_pieces(points, composite)):
+        piece = points
+        if composite:
+            piece = scratch.piece
+            _write_piece(points, k, piece)
+        last = parts(piece)
+        write_samples(piece, last, 0, 1, last + 1, scratch.x[count:], scratch.y[count:], scratch.t, scratch.power)
+        count += last + 1
     return count

@@ -10,7 +10,7 @@ import numpy as np
 
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.planners.parts.diversity import q_statistic, shared
-from bezierplan.planners.parts.sorting import ascending
+from bezierplan.planners.parts.sorting import sort
 
 
 class Pool(NamedTuple):
@@ -44,11 +44,20 @@ def select(pool: Pool, first: int, filled: int, spare: Pool) -> None:
 
     spare: a pool with as many places as survive, overwritten.
     """
-    order = ascending(pool.cost[first:filled])
-    for place in range(len(spare.cost)):
-        i = first + order[place]
+    survivors = len(spare.cost)
+    highest = 0.0
+    for i in range(first, first + survivors):
+        highest = max(highest, pool.cost[i])
+    # Some that cost no more are enough, so the others need no sorting.
+    order, count = np.empty(filled - first, dtype=np.int64), 0
+    for i in range(first, filled):
+        order[count] = i
+        count += pool.cost[i] <= highest
+    sort(order[:count], pool.cost)
+    for place in range(survivors):
+        i = order[place]
         put(pool.ones[i], pool.count[i], pool.cost[i], pool.free[i], spare, place)
-    for place in range(len(spare.cost)):
+    for place in range(survivors):
         put(spare.ones[place], spare.count[place], spare.cost[place], spare.free[place], pool, place)
 
 
@@ -80,13 +89,13 @@ def flip(genes: np.ndarray, count: int, gene: int) -> int:
 
 
 @allocation_free
-def gap(rng: np.random.Generator, rate: float) -> int:
-    """Number of genes left unchanged before the next change, if each changes with the probability `rate`; 2**31 stands for more than there
-    are genes.
+def gap(rng: np.random.Generator, unchanged: float) -> int:
+    """Number of genes left unchanged before the next change; 2**31 stands for more than there are genes. unchanged: the logarithm of the
+    probability that a gene does not change.
     """
-    if rate == 0.0:
+    if unchanged == 0.0:
         return 2**31
-    return int(min(math.log(1.0 - rng.random()) / math.log1p(-rate), 2.0**31)) if rate < 1.0 else 0
+    return int(min(math.log(1.0 - rng.random()) / unchanged, 2.0**31)) if unchanged > -np.inf else 0
 
 
 @allocation_free
@@ -120,7 +129,7 @@ def distinct(pool: Pool, size: int) -> int:
     """Number of distinct chromosomes among the first `size` of the pool; equal ones have equal costs."""
     found = size
     for i in range(size):
-        for j in range(i):
+        for j in range(i - 1, -1, -1):  # in a sorted pool equal ones are neighbours
             if pool.cost[i] == pool.cost[j] and same(pool.ones[i, : pool.count[i]], pool.ones[j, : pool.count[j]]):
                 found -= 1
                 break
@@ -142,13 +151,14 @@ def sum_of_q(pool: Pool, first: int, filled: int, genes: int) -> float:
     """
     kind, heads, kinds = np.empty(filled, dtype=np.int64), np.empty(filled, dtype=np.int64), 0
     for i in range(filled):
-        k = 0
-        while k < kinds:
+        k = kinds - 1
+        while k >= 0:
             head = heads[k]  # equal chromosomes have equal costs
             if pool.cost[i] == pool.cost[head] and same(pool.ones[i, : pool.count[i]], pool.ones[head, : pool.count[head]]):
                 break
-            k += 1
-        if k == kinds:
+            k -= 1
+        if k < 0:
+            k = kinds
             heads[kinds] = i
             kinds += 1
         kind[i] = k
@@ -174,7 +184,7 @@ def sum_of_q(pool: Pool, first: int, filled: int, genes: int) -> float:
 
 
 # Entries of a memory of chromosomes.
-_REMEMBERED = 1024
+_REMEMBERED = 4096
 
 
 @compiled
