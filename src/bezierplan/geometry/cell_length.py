@@ -43,7 +43,7 @@ def parts(points: np.ndarray) -> int:
     degree = len(points) - 1
     total = longest = 0.0
     for i in range(degree):
-        leg = math.hypot(points[i + 1, 0] - points[i, 0], points[i + 1, 1] - points[i, 1])
+        leg = math.sqrt((points[i + 1, 0] - points[i, 0]) ** 2 + (points[i + 1, 1] - points[i, 1]) ** 2)
         total += leg
         longest = max(longest, leg)
     if degree == 1:

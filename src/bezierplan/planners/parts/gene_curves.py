@@ -98,20 +98,19 @@ def _at_first_sight(points, composite, room, scratch):
     """What a walk over the cells of a curve would find, if a look at some of its samples tells: `_OCCUPIED` or `_FREE`, otherwise
     `_UNKNOWN`; and a length that the polyline through its samples has at least.
     """
+    if not composite:
+        return _sight_of_piece(points, _FIRST_PARTS, room, scratch)
     sight, least = _FREE, 0.0
-    pieces = _pieces(points, composite)
+    pieces = len(points) - 2
     for k in range(pieces):
-        piece = points
-        if composite:
-            piece = scratch.piece
-            _write_piece(points, k, piece)
-        seen, chords = _sight_of_piece(piece, max(_FEWEST_PARTS, _FIRST_PARTS // pieces), room, scratch)
+        _write_piece(points, k, scratch.piece)
+        seen, chords = _sight_of_piece(scratch.piece, max(_FEWEST_PARTS, _FIRST_PARTS // pieces), room, scratch)
         if seen == _OCCUPIED:
             return _OCCUPIED, 0.0
         if seen == _UNKNOWN:
             sight = _UNKNOWN
         least += chords
-    return sight, least * (1.0 - _ROUNDING)
+    return sight, least
 
 
 @allocation_free
@@ -145,7 +144,7 @@ def _sight_of_piece(piece, least_parts, room, scratch):
             if seen == _UNKNOWN:
                 sight = _UNKNOWN
         first = after + 1
-    return sight, sum_of_steps(x[:ends], y[:ends], scratch.t)
+    return sight, (1.0 - _ROUNDING) * sum_of_steps(x[:ends], y[:ends], scratch.t)
 
 
 @allocation_free
@@ -210,12 +209,6 @@ def _may_cut(x0, y0, x, y, room):
 
 
 @allocation_free
-def _pieces(points, composite):
-    """Number of Bezier pieces of a curve: one (equation 2), or if composite one for each control point between its ends."""
-    return len(points) - 2 if composite else 1
-
-
-@allocation_free
 def _write_piece(points, k, piece):
     """Write the control points (3, 2) of a composite curve's quadratic piece k: they meet half-way between those of the curve."""
     for axis in range(2):
@@ -226,14 +219,19 @@ def _write_piece(points, k, piece):
 
 @allocation_free
 def _write_curve(points, composite, scratch):
-    """Write x and y of samples of the curve less than a cell apart; returns their number."""
+    """Write x and y of samples of the curve less than a cell apart (equation 2, or the pieces of a composite curve); returns their number."""
+    if not composite:
+        return _write_samples_of_piece(points, 0, scratch)
     count = 0
-    for k in range(_pieces(points, composite)):
-        piece = points
-        if composite:
-            piece = scratch.piece
-            _write_piece(points, k, piece)
-        last = parts(piece)
-        write_samples(piece, last, 0, 1, last + 1, scratch.x[count:], scratch.y[count:], scratch.t, scratch.power)
-        count += last + 1
+    for k in range(len(points) - 2):
+        _write_piece(points, k, scratch.piece)
+        count += _write_samples_of_piece(scratch.piece, count, scratch)
     return count
+
+
+@allocation_free
+def _write_samples_of_piece(piece, place, scratch):
+    """Write x and y of a piece's samples from a place on; returns their number."""
+    last = parts(piece)
+    write_samples(piece, last, 0, 1, last + 1, scratch.x[place:], scratch.y[place:], scratch.t, scratch.power)
+    return last + 1

@@ -184,7 +184,7 @@ def sum_of_q(pool: Pool, first: int, filled: int, genes: int) -> float:
 
 
 # Entries of a memory of chromosomes.
-_REMEMBERED = 4096
+_REMEMBERED = 1024
 
 
 @compiled
