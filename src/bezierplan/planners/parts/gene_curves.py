@@ -219,7 +219,7 @@ def _write_piece(points, k, piece):
 
 @allocation_free
 def _write_curve(points, composite, scratch):
-    """Write x and y of samples of the curve less than a cell apart (equation 2, or the pieces of a composite curve); returns their number."""
+    """Write x and y of samples of the curve (equation 2, or composite) less than a cell apart; returns their number."""
     if not composite:
         return _write_samples_of_piece(points, 0, scratch)
     count = 0
