@@ -5,7 +5,10 @@ PYTHON = python3.13 python3.12 python3.11 python3
 # Programs run as `python -m`, for the scripts in .venv/bin hold absolute paths and would run the original's files in a copy of the tree.
 RUN       = .venv/bin/python
 SNAKEMAKE = $(RUN) -m snakemake
-PIP       = $(RUN) -m pip install --quiet --disable-pip-version-check --require-hashes --only-binary :all:
+LOCKED    = --quiet --require-hashes --only-binary :all:
+PIP       = $(RUN) -m pip install --disable-pip-version-check $(LOCKED)
+# uv takes a third of pip's time, but does not read pip's settings, which may name another index than PyPI.
+install   = $(RUN) -m uv pip install --python $(RUN) --compile-bytecode $(LOCKED) $1 2>/dev/null || $(PIP) $1
 LOCK      = $(RUN) -m uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest --generate-hashes
 
 # A killed run leaves its lock behind. A clone has one user, so these targets may break it; plain `snakemake` keeps it.
@@ -52,7 +55,7 @@ compare: .cache/comparison/ready ## our swarm beside other libraries, and all st
 	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare_planners.py'
 
 cluster: .venv/ready ## add Snakemake's plugins for Slurm and other schedulers, for profiles/slurm and profiles/cluster
-	@$(PIP) -r environment-cluster.txt
+	@$(call install,-r environment-cluster.txt)
 
 archive: .cache/archive/ready ## results/full with code and environment as an RO-Crate, checked and zipped, into archive (ARGS: another scale)
 	$(<D)/bin/python workflow/archive/archive.py $(ARGS)
@@ -71,8 +74,8 @@ verify-outcome: .venv/ready ## is this installation sound? minutes of runs, test
 	$(RUN) -m bezierplan verify-outcome
 
 lock: .venv/ready ## renew environment.txt from pyproject.toml (newest versions: ARGS=--upgrade)
-	$(LOCK) $(ARGS) --group build -o environment-build.txt
 	$(LOCK) $(ARGS) --group dev pyproject.toml -o environment.txt
+	$(LOCK) $(ARGS) --group build -c environment.txt -o environment-build.txt
 	$(LOCK) $(ARGS) --group archive -o workflow/archive/requirements.txt
 	$(LOCK) $(ARGS) --group cluster -c environment.txt -o environment-cluster.txt
 	$(LOCK) $(ARGS) --group comparison -c environment.txt -o tests/benchmark/requirements.txt
@@ -102,7 +105,7 @@ found = $(firstword $(foreach p,$(PYTHON),$(shell $(p) -c '$(fits)' >/dev/null 2
 	@rm -rf .venv
 	@$(found) -m venv .venv
 	@$(PIP) -r environment-build.txt
-	@$(PIP) --no-binary connection-pool --no-build-isolation -r environment.txt
+	@$(call install,--no-binary connection-pool --no-build-isolation -r environment.txt)
 	@$(RUN) -c 'import sysconfig; open(sysconfig.get_path("purelib") + "/bezierplan.pth", "w").write("../../../../src\n")'
 	@touch $@
 
