@@ -14,6 +14,7 @@ rule claims:
         checks=f"{RESULTS}/claim_checks.csv",
     log:
         f"{RESULTS}/logs/claims.log",
+    priority: CLAIMS
     params:
         **params(targets.claims_params, "job", "published", "code"),
     script:

@@ -31,6 +31,10 @@ gc.freeze()
 FORKS = forks.Forks(INTERPRETER, script)
 script = FORKS.script
 
+# Priorities. Of the jobs that can start, the one with the highest does. Claims take longest of all that follows the runs; tables and figures, many
+# short jobs, come last, so that no core is left without work while another has a long job.
+RUNS, CLAIMS = 1, 2
+
 RESULTS = "results/{scale}/{study}"
 ALTERNATIVE = f"{RESULTS}/sensitivity/{{alternative}}"
 

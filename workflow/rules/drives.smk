@@ -10,6 +10,7 @@ rule worlds:
         f"{RESULTS}/logs/problems/{{experiment}}.log",
     wildcard_constraints:
         study=studies_of(MOVING),
+    priority: RUNS
     params:
         **params(targets.problems_params, "job", "folder", "maps", "code"),
     script:
@@ -25,6 +26,7 @@ rule clairvoyant:
         f"{RESULTS}/logs/bounds/{{experiment}}.log",
     wildcard_constraints:
         study=studies_of(MOVING),
+    priority: RUNS
     params:
         **targets.bounds_params("clairvoyant"),
     script:
@@ -42,6 +44,7 @@ rule drives:
         f"{RESULTS}/logs/runs/{{experiment}}/{{method}}/{{chunk}}.log",
     wildcard_constraints:
         study=studies_of(MOVING),
+    priority: RUNS
     params:
         **params(targets.run_params, "job", "code"),
     script:

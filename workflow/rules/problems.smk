@@ -10,6 +10,7 @@ rule problems:
         f"{RESULTS}/logs/problems/{{experiment}}.log",
     wildcard_constraints:
         study=studies_of(STILL),
+    priority: RUNS
     params:
         **params(targets.problems_params, "job", "folder", "maps", "code"),
     script:
@@ -25,6 +26,7 @@ rule bounds:
         f"{RESULTS}/logs/bounds/{{experiment}}.log",
     wildcard_constraints:
         study=studies_of(STILL),
+    priority: RUNS
     params:
         **targets.bounds_params("bounds"),
     script:
