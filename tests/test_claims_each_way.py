@@ -211,7 +211,7 @@ def made(key, claim, truth) -> dict[str, Results]:
             centre = 100 * STEP**rank * factor + offset
             rows[metric] = centre * (1 + NOISE * STEP ** (2 * spread) * rng.normal(size=len(rows)))
         others = [column for column in columns if column != "method"]
-        rows["condition"] = rows[others].astype(str).agg(",".join, axis=1) if others else "only"
+        rows["condition"] = [",".join(map(str, values)) for values in zip(*(rows[other] for other in others))] if others else "only"
         if "problem" not in rows:
             rows["problem"] = "only"
         rows["feasible"] = rows["feasible"].astype(bool)

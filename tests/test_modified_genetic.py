@@ -282,6 +282,28 @@ def test_first_sights_among_single_cells_never_change_a_verdict():
     assert seen.min() > 100
 
 
+@given(numpy.arrays(float, st.tuples(st.integers(3, 12), st.just(2)), elements=st.floats(0, 100)), st.integers(1, 40))
+def test_a_curve_keeps_close_to_the_chords_of_its_parts(points, count):
+    x, y = cell_length.sample(points, 16 * count)
+    share = np.tile(np.arange(16) / 16, count)
+    for values in (x, y):
+        ends = values[::16]
+        chord = np.repeat(ends[:-1], 16) * (1 - share) + np.repeat(ends[1:], 16) * share
+        assert np.abs(values[:-1] - chord).max() <= gene_curves._from_chords(points, count) + 1e-9
+
+
+def test_a_parabola_gets_as_far_from_its_chord_as_the_bound_says():
+    points = np.array([[0.0, 0.0], [5.0, 8.0], [10.0, 0.0]])
+    assert gene_curves._from_chords(points, 1) == 4.0
+    assert gene_curves._from_chords(points, 2) == 1.0
+
+
+@pytest.mark.parametrize(("reach", "away", "free"), [((4, 4), 0.0, True), ((4, 3), 0.0, False), ((4, 4), 0.1, False), ((6, 4), 1.0, True)])
+def test_a_part_is_free_if_the_room_around_its_ends_holds_its_chord_how_far_it_bends_and_a_step(reach, away, free):
+    x, y = np.array([10.0, 15.0]), np.array([10.0, 7.0])
+    assert gene_curves._is_free_part(x, y, np.array(reach), 0, away) == free
+
+
 @pytest.mark.parametrize("curve", ["single", "composite"])
 def test_a_length_above_the_limit_need_not_be_exact(curve):
     """It is above the limit all the same; and verdicts, and lengths that do not exceed it, are those without a limit."""
@@ -328,8 +350,9 @@ def test_a_target_on_the_border_is_looked_at_within_the_grid():
 
 @pytest.mark.parametrize("ends", list(itertools.permutations([(0.5, 0.5), (20.0, 20.0), (20.0, 9.3), (9.3, 20.0)], 2)))
 def test_ends_on_the_border_are_joined(ends):
-    task = Problem("border", Grid(np.zeros((20, 20), dtype=bool), 1.0, "cell", (0.0, 0.0)), *ends)
-    found = run(task, **FEW)
+    occupied = np.zeros((20, 20), dtype=bool)
+    occupied[[17, 7, 18], [18, 18, 7]] = True  # near the ends, so that the walk over the cells decides
+    found = run(Problem("border", Grid(occupied, 1.0, "cell", (0.0, 0.0)), *ends), **FEW)
     assert found.claimed_feasible
     assert np.array_equal(found.path.points[[0, -1]], ends)
     assert found.objective == pytest.approx(math.dist(*ends), rel=0.02)
@@ -556,6 +579,10 @@ def test_the_best_survive_and_of_equal_ones_the_first():
     gene_lists.select(pool, 0, 6, spare)
     assert pool.ones[:3, 0].tolist() == [1, 3, 2]
     assert pool.cost[:3].tolist() == [3.0, 3.0, 4.0]
+    for place, cost in enumerate([5.0, 5.0, 5.0, 9.0, 5.0, 4.0]):
+        gene_lists.put(np.array([place]), 1, cost, True, pool, place)
+    gene_lists.select(pool, 0, 6, spare)
+    assert pool.ones[:3, 0].tolist() == [5, 0, 1]
 
 
 def test_q_of_a_pool_is_the_mean_over_all_pairs():

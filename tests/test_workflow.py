@@ -296,10 +296,17 @@ def written(tree):
 # The kernel of Linux ends a job whose workflow dies (PR_SET_PDEATHSIG, `running.log`); macOS has no such call, and no /proc to look into.
 @pytest.mark.skipif(sys.platform != "linux", reason="only the kernel of Linux ends a job with its parent, and has /proc to look into")
 @pytest.mark.parametrize(
-    ("kill", "moment", "runs"), [(os.kill, "runs/*/*/*.parquet", 7), (os.killpg, "problems/*.parquet", 7), (os.killpg, "tables/*.csv", 16)]
+    ("kill", "moment", "runs", "target"),
+    [
+        (os.kill, "runs/*/*/*.parquet", 7, "song2016_feasibility"),
+        (os.killpg, "problems/*.parquet", 7, "song2016_feasibility"),
+        (os.killpg, "tables/*.csv", 16, "all"),
+    ],
 )
-def test_killed_workflow_leaves_no_job_and_make_goes_on_from_there(finished, tree, kill, moment, runs):
-    """Killed, alone or with its group, when the first such file is there; at most so many chunks of runs are done."""
+def test_killed_workflow_leaves_no_job_and_make_goes_on_from_there(finished, tree, kill, moment, runs, target):
+    """Killed, alone or with its group, when the first such file is there; at most so many chunks of runs are done. What is made then needs
+    all of them.
+    """
     shutil.rmtree(tree / "results")
     command = [sys.executable, "-m", "snakemake"]
     killed = subprocess.Popen(command, cwd=tree, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
@@ -320,25 +327,20 @@ def test_killed_workflow_leaves_no_job_and_make_goes_on_from_there(finished, tre
     assert written(tree) == left
     assert len(list(tree.glob("results/full/song2016/runs/*/*/?.parquet"))) <= runs
     assert not (tree / "results/full/index.html").exists()
-    subprocess.run(["make", "reproduce"], cwd=tree, check=True, capture_output=True)
+    subprocess.run(["make", "reproduce", f"ARGS={target}"], cwd=tree, check=True, capture_output=True)
     assert digests(tree) == digests(finished)
 
 
+# One kernel that calls another one of another module.
 RUN_ONCE = """
 import numba
 import numpy as np
-from bezierplan.planners import binary_genetic
-from bezierplan.planners import Problem
-from bezierplan.workspaces.grid import Grid
-grid = Grid(np.zeros((16, 16), dtype=bool), 10.0, "unit")
-settings = dict(curve="polyline", genes=6, samples=71, spacing="parameter", population=10, generations=20, crossover_probability=0.5,
-                cut="bit", mutation_probability=0.1, mutation="one_bit", elitism=1, penalty=10.0, penalty_for="each_sample",
-                occupied_point_penalty=0.0)
-print(binary_genetic.plan(Problem("p", grid, (5.0, 5.0), (155.0, 155.0)), np.random.default_rng(0), **settings).history.tolist())
+from bezierplan.planners.parts import gene_lists
+print(gene_lists.q(np.array([1, 2, 3]), np.array([2, 3, 5]), 10))
 """
 
 
-def test_edited_operator_is_never_served_from_an_old_cache(tree):
+def test_edited_kernel_is_never_served_from_an_old_cache(tree):
     """numba is imported first: a cache folder that is set later must count all the same."""
 
     def run_once():
@@ -350,7 +352,7 @@ def test_edited_operator_is_never_served_from_an_old_cache(tree):
 
     before = run_once()
     assert run_once() == before
-    edit(tree / "src/bezierplan/planners/parts/genetic.py", "gene = cut // bits", "gene = (cut // bits + 1) % len(one)")
+    edit(tree / "src/bezierplan/planners/parts/diversity.py", "return (agree - differ) / ", "return 2.0 * (agree - differ) / ")
     after = run_once()
     (tree / ".cache").unlink()
     assert run_once() == after != before
@@ -382,7 +384,9 @@ def test_report_shows_every_artefact_with_its_caption(tree):
 
 
 def test_snakemake_looks_for_jobs_no_more_often_than_jobs_end(tree):
-    shutil.rmtree(tree / "results/full/song2016/figures")
+    for number in range(2, 6):
+        (tree / f"results/full/song2016/figures/figure{number}.csv").unlink()
+    (tree / "results/full/song2016/audit.csv").unlink()
     counted = """
 import sys
 from snakemake import cli

@@ -4,6 +4,7 @@ Cells are numbered row by row from the bottom left, from 0: number = column + co
 number differently converts where it reads or prints numbers).
 """
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -53,11 +54,12 @@ class Grid:
 
     def cell_of(self, x: float, y: float) -> tuple[int, int] | None:
         """Row and column of a point in units (song2016, eq. 8), or None outside the grid."""
+        # Plain numbers: planners ask for one point after the other, and an array for each takes ten times as long.
+        x, y, (x_low, y_low) = float(x), float(y), self.origin
         rows, columns = self.occupied.shape
-        x_low, x_high, y_low, y_high = self.bounds
-        if not (x_low <= x <= x_high and y_low <= y <= y_high):
+        if not (x_low <= x <= x_low + columns * self.cell and y_low <= y <= y_low + rows * self.cell):
             return None
-        column, row = (int(value) for value in np.floor(self.in_cells(np.array([x, y])) + ON_LINE))
+        column, row = math.floor((x - x_low) / self.cell + ON_LINE), math.floor((y - y_low) / self.cell + ON_LINE)
         return min(row, rows - 1), min(column, columns - 1)
 
     def centre(self, number: int) -> tuple[float, float]:
