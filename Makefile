@@ -14,6 +14,9 @@ LOCK      = $(RUN) -m uv pip compile --quiet --universal --python-version 3.11 -
 # A killed run leaves its lock behind. A clone has one user, so these targets may break it; plain `snakemake` keeps it.
 UNLOCK = if [ -n "$$(ls .snakemake/locks 2>/dev/null)" ]; then $(SNAKEMAKE) --unlock >/dev/null 2>&1 || true; fi
 
+# Byte code is kept, whatever the environment says: many containers say no, and then each of many processes compiles all modules anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: help reproduce smoke extended test lint benchmark mutants compare archive cluster outcome verify-outcome lock newest clean distclean anew
 
 help: ## list these targets
