@@ -29,7 +29,7 @@ class Scratch(NamedTuple):
     """Room for a chromosome's curve, overwritten by each `validate`.
 
     order: (points,) its genes. points: (points, 2) its polygon. piece: (3, 2) one of its quadratic pieces. x, y: (samples,). t, power:
-    (samples,) of `write_samples`. columns, rows: (2 samples,) the cells that it touches.
+    (samples,) of `write_samples`. columns, rows: (2 samples,) the cells that it touches; before that, columns: the reach of some samples.
     """
 
     order: np.ndarray
