@@ -136,6 +136,26 @@ def test_the_first_fitting_python_is_taken(tree, tmp_path):
     assert f"{good} -m venv .venv" in answer.stdout.splitlines()
 
 
+# A Python that installs nothing, but writes down with what it was asked to.
+INSTALLER = """#!/bin/sh
+case "$*" in
+    "-m venv .venv") mkdir -p .venv/bin && cp "$0" .venv/bin/python ;;
+    *" install "*) echo "$2 $*" >> installed.txt; [ "$2" != uv ] || exit {code} ;;
+esac
+"""
+
+
+@pytest.mark.parametrize(("code", "asked"), [(0, ["pip", "uv"]), (2, ["pip", "uv", "pip"])], ids=["uv", "uv fails"])
+def test_uv_installs_what_is_locked_and_pip_where_uv_cannot(tree, tmp_path, code, asked):
+    answer = make(tree, ".venv/ready", f"PYTHON={executable(tmp_path / 'python', INSTALLER.format(code=code))}")
+    assert answer.returncode == 0, answer.stderr
+    lines = (tree / "installed.txt").read_text().splitlines()
+    assert [line.split()[0] for line in lines] == asked
+    assert [line.split()[-1] for line in lines] == ["environment-build.txt", *["environment.txt"] * (len(asked) - 1)]
+    assert all("--require-hashes --only-binary :all:" in line for line in lines)
+    assert (tree / ".venv" / "ready").exists()
+
+
 def test_a_finished_set_up_is_not_done_again(finished):
     assert make(finished, "-q", ".venv/ready").returncode == 0
 
