@@ -104,7 +104,7 @@ found = $(firstword $(foreach p,$(PYTHON),$(shell $(p) -c '$(fits)' >/dev/null 2
 	  move the folder))
 	$(if $(found),,$(error bezierplan needs Python 3.11 to 3.13 with venv. On Debian or Ubuntu: sudo apt install python3 python3-venv; \
 	  elsewhere, or for another Python: make PYTHON=/path/to/python3))
-	@echo "Setting up .venv with $(found): about 1 GB, one to a few minutes"
+	@echo "Setting up .venv with $(found): about 1 GB, up to a few minutes"
 	@rm -rf .venv
 	@$(found) -m venv .venv
 	@$(PIP) -r environment-build.txt
