@@ -16,8 +16,9 @@ import pytest
 from bezierplan.commands import effort as command
 from bezierplan.running import effort
 from bezierplan.running.effort import Session
+from bezierplan.running.forks import Forks
 
-SESSION = Session(started=1000.0, ended=1100.0, cores=2, snakemake=20.0, forked=5.0)
+SESSION = Session(started=1000.0, ended=1100.0, cores=2, snakemake=20.0, forked=5.0, forks=15.5)
 
 
 @pytest.fixture
@@ -87,11 +88,12 @@ def test_table_of_a_start(tmp_path):
     found, jobs, waited = command.spent(SESSION, tmp_path)
     expected = {"planning": 5.0, "importing": 2.0, "loading kernels": 0.5, "compiling": 2.0, "drawing figures": 3.0}
     expected |= {"checking paths, warm-up, files of runs": 1.5, "Snakemake itself": 20.0, "importing once for all jobs, forking": 5.0}
+    expected |= {"starting and ending processes of jobs": 1.5}
     assert (found, jobs, waited) == (expected, 2, 7.0)
     table = command.lines(SESSION, found, jobs, waited)
     assert table[0] == "2 jobs in 100 s on 2 cores; jobs waited 7 s for kernels that another job compiled"
     assert "| planning | 5.0 | 2.5% |" in table
-    assert table[-1] == "| cores idle, or busy with other programs | 161.0 | 80.5% |"
+    assert table[-1] == "| cores idle, or busy with other programs | 159.5 | 79.8% |"
 
 
 def test_every_rule_with_a_script_has_its_row():
@@ -119,6 +121,21 @@ def test_a_note_of_snakemake_counts_the_process_that_is_forked(tmp_path, monkeyp
     assert (noted.cores, noted.forked > 0.03, noted.snakemake > 0, noted.started < noted.ended) == (3, True, True, True)
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="jobs are forks on Linux only")
+def test_a_note_of_snakemake_counts_all_forks_to_their_end(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / ".snakemake").mkdir()
+    forks = Forks(sys.executable, lambda: None)
+    source = "import sys, time; from bezierplan.running import effort; sum(range(10_000_000)); snakemake.write_text(effort.line())"
+    noted = [tmp_path / str(number) for number in range(3)]
+    assert all(forks.succeeds("work.py", source, file) for file in noted)
+    effort.keep(2, forks.process)
+    by_themselves = [json.loads(file.read_text().partition(" ")[2])["cpu"] for file in noted]
+    assert min(by_themselves) > 0.03
+    # Linux counts it in hundredths of a second.
+    assert 0.8 * sum(by_themselves) < effort.last(tmp_path).forks < sum(by_themselves) + 5
+
+
 def test_a_note_that_cannot_be_made_is_left_out(tmp_path, monkeypatch):
     """The workflow has ended well: neither a killed process nor a missing folder may say otherwise."""
     monkeypatch.chdir(tmp_path)
@@ -128,3 +145,5 @@ def test_a_note_that_cannot_be_made_is_left_out(tmp_path, monkeypatch):
     (tmp_path / ".snakemake").mkdir()
     effort.keep(2, gone.pid)
     assert effort.last(tmp_path).forked == 0.0
+    effort.keep(2, None)
+    assert effort.last(tmp_path).forks == 0.0

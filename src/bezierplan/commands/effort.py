@@ -30,7 +30,8 @@ WORK = {
 }
 ROWS = [
     *("planning", *dict.fromkeys(WORK.values())),
-    *("importing", "loading kernels", "compiling", "importing once for all jobs, forking", "Snakemake itself"),
+    *("importing", "loading kernels", "compiling", "importing once for all jobs, forking"),
+    *("starting and ending processes of jobs", "Snakemake itself"),
 ]
 
 
@@ -52,10 +53,11 @@ def spent(session: Session, folder: Path) -> tuple[Counter[str], int, float]:
         content = json.loads(file.read_text(encoding="utf-8"))
         if content.get("log") and content["rule"] in WORK and session.started <= content["starttime"] <= session.ended:
             jobs.setdefault(content["log"][0], (content["rule"], []))[1].append(folder / records.output_of(file))
-    waited = 0.0
+    waited = by_themselves = 0.0
     for log, (rule, outputs) in jobs.items():
         noted = effort.of_job(folder / log) or {"cpu": 0.0}
         waited += noted.pop("waiting", 0.0)
+        by_themselves += noted["cpu"]
         rest = noted.pop("cpu") - sum(noted.values())
         if rule in ("runs", "drives"):
             planning, _ = records.planner_times(outputs) or (0.0, 0.0)
@@ -63,6 +65,7 @@ def spent(session: Session, folder: Path) -> tuple[Counter[str], int, float]:
             rest -= planning
         found.update(noted)
         found[WORK[rule]] += rest
+    found["starting and ending processes of jobs"] = max(session.forks - by_themselves, 0.0)
     return found, len(jobs), waited
 
 

@@ -17,6 +17,9 @@ WORD = "effort"
 """The word in a log before a job's note."""
 SESSION = Path(".snakemake/effort.json")
 
+# Seconds within which the last fork, which has told that it is done, has ended.
+_LAST_FORK = 2.0
+
 spent: Counter[str] = Counter()
 """CPU seconds of this process `importing`, `loading kernels` and `compiling`, and seconds of the clock `waiting` for kernels that another
 one compiles.
@@ -25,8 +28,8 @@ _busy: list[str] = []
 
 
 class Session(NamedTuple):
-    """A start of Snakemake: when it started and ended, on how many cores, and the CPU seconds of its own process and of the one that is
-    forked for jobs.
+    """A start of Snakemake: when it started and ended, on how many cores, and the CPU seconds of its own process, of the one that is forked
+    for jobs, and of these forks from their first to their last moment.
     """
 
     started: float
@@ -34,6 +37,7 @@ class Session(NamedTuple):
     cores: int
     snakemake: float
     forked: float
+    forks: float = 0.0
 
 
 @contextmanager
@@ -91,15 +95,17 @@ def keep(cores: int, forked: int | None) -> None:
     """
     import psutil
 
-    def cpu(process: psutil.Process) -> float:
-        times = process.cpu_times()
-        return times.user + times.system
-
-    own, forks = psutil.Process(), 0.0
+    own, parent, forks, ended = psutil.Process(), 0.0, 0.0, time.time()
     with suppress(psutil.Error):  # that process may have been killed
-        forks = cpu(psutil.Process(forked)) if forked else 0.0
+        if forked:
+            process = psutil.Process(forked)
+            while process.children() and time.time() < ended + _LAST_FORK:
+                time.sleep(0.01)
+            times = process.cpu_times()
+            parent, forks = times.user + times.system, times.children_user + times.children_system
+    times = own.cpu_times()
     with suppress(OSError):
-        SESSION.write_text(json.dumps(Session(own.create_time(), time.time(), cores, cpu(own), forks)._asdict()))
+        SESSION.write_text(json.dumps(Session(own.create_time(), ended, cores, times.user + times.system, parent, forks)._asdict()))
 
 
 def last(folder: Path) -> Session:

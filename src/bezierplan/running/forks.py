@@ -104,7 +104,7 @@ class Forks:
 def serve(control: socket.socket) -> None:
     """Fork a child for each socket that arrives; import what jobs need while none arrives; return when the other end has closed."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
-    signal.signal(signal.SIGCHLD, signal.SIG_IGN)  # nobody waits for children
+    signal.signal(signal.SIGCHLD, reap)
     steps = [*(partial(importlib.import_module, name) for name in MODULES), compile_first]
     while True:
         if steps and not select.select([control], [], [], 0)[0]:
@@ -119,6 +119,13 @@ def serve(control: socket.socket) -> None:
             control.close()
             run(socket.socket(fileno=sockets[0]))
         os.close(sockets[0])
+
+
+def reap(*_: Any) -> None:
+    """Take note of the children that have ended, so that their CPU time is added to that of this process's children."""
+    with contextlib.suppress(ChildProcessError):
+        while os.waitpid(-1, os.WNOHANG)[0]:
+            pass
 
 
 def compile_first() -> None:
