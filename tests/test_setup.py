@@ -156,6 +156,12 @@ def test_uv_installs_what_is_locked_and_pip_where_uv_cannot(tree, tmp_path, code
     assert (tree / ".venv" / "ready").exists()
 
 
+def test_byte_code_is_kept_whatever_the_environment_says(tree, monkeypatch):
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
+    (tree / "shown.mk").write_text('shown:\n\t@echo "<$$PYTHONDONTWRITEBYTECODE>"\n')
+    assert make(tree, "-f", "Makefile", "-f", "shown.mk", "shown").stdout == "<>\n"
+
+
 def test_a_finished_set_up_is_not_done_again(finished):
     assert make(finished, "-q", ".venv/ready").returncode == 0
 
