@@ -12,6 +12,7 @@ from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.claims import judge as judging
 from bezierplan.analysis.claims import variants, verdicts
 from bezierplan.analysis.claims.effects import Finding
+from bezierplan.analysis.claims.kinds import trend
 from bezierplan.analysis.claims.ranks import signed_rank_test
 from bezierplan.analysis.claims.verdicts import Marked
 from bezierplan.analysis.metrics import Metric
@@ -714,6 +715,16 @@ def test_printed_counts_are_shares():
         {"checks": [LOWER | {"metric": "claimed_feasible"}], "artefact": "table1"}, TRUTHS, published={"table1": counts}, artefacts=TABLE
     )
     assert details["effect_published"].to_list() == [pytest.approx(-0.6)]
+
+
+def test_slopes_that_should_be_equal_are_equal_on_every_processor():
+    """Their test ranks them: rounding would tell constants apart, and rises from falls by the same amount."""
+    x = np.array([5.0, 10.0, 15.0, 20.0, 25.0])
+    constant = np.repeat(np.arange(280, 320)[:, None] * 0.5, 5, axis=1)
+    assert not trend._slopes(x, constant).any()
+    changes = 0.5 * np.array([[0, 0, 1, 2, 2], [2, 2, 1, 0, 0], [0, 0, 0, 0, 0], [1, 0, 0, 0, 1]])
+    slopes = np.abs(trend._slopes(x, (constant[:, None] + changes).reshape(-1, 5)))
+    assert sorted(set(slopes.tolist())) == [0.0, pytest.approx(0.06)]
 
 
 def test_trend_over_printed_numbers():

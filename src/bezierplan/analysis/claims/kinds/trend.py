@@ -61,6 +61,10 @@ def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
     yield f"{check['x']} {check['direction']}", sorted(rows[check["x"]].dropna().unique())
 
 
+# Decimals of a slope as a share of the steepest.
+_DIGITS = 9
+
+
 def _weights(x: np.ndarray) -> np.ndarray:
     """Weights (k,) of values over x (k,) that give least-squares slope times range of x; NaN for a single x."""
     from_mean = x - x.mean()
@@ -127,6 +131,15 @@ def find(check: dict, comparison: Comparison, name: str) -> Finding:
 
 
 def _slopes(x: np.ndarray, stratum: np.ndarray) -> np.ndarray:
-    """Least-squares slopes over x of units that have a finite value at 3 of x or more."""
-    usable = stratum[np.isfinite(stratum).sum(axis=1) >= 3]
-    return np.array([_weights(x[there]) @ values[there] / np.ptp(x[there]) for values in usable for there in [np.isfinite(values)]])
+    """Least-squares slopes over x of units that have a finite value at 3 of x or more.
+
+    They are ranked, so those that should be equal, or zero, must not differ by the rounding of some processor: slopes are rounded to a share
+    of the steepest, and a constant has none.
+    """
+    slopes = []
+    for values in stratum[np.isfinite(stratum).sum(axis=1) >= 3]:
+        there = np.isfinite(values)
+        rises = values[there] - values[there][0]
+        slopes.append((_weights(x[there]) * rises).sum() / np.ptp(x[there]))
+    steepest = np.abs(slopes).max(initial=0.0)
+    return np.round(slopes / steepest, _DIGITS) * steepest if steepest > 0 else np.array(slopes)
