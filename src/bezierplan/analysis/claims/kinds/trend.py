@@ -62,7 +62,7 @@ def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
 
 
 # Decimals of a slope as a share of the steepest.
-_DIGITS = 9
+_DIGITS = 12
 
 
 def _weights(x: np.ndarray) -> np.ndarray:
@@ -133,8 +133,8 @@ def find(check: dict, comparison: Comparison, name: str) -> Finding:
 def _slopes(x: np.ndarray, stratum: np.ndarray) -> np.ndarray:
     """Least-squares slopes over x of units that have a finite value at 3 of x or more.
 
-    They are ranked, so those that should be equal, or zero, must not differ by the rounding of some processor: slopes are rounded to a share
-    of the steepest, and a constant has none.
+    They are ranked, so those that should be equal, or zero, must not differ by how a processor rounds: slopes are rounded to a share of the
+    steepest, and a constant has none.
     """
     slopes = []
     for values in stratum[np.isfinite(stratum).sum(axis=1) >= 3]:
