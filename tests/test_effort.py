@@ -121,7 +121,8 @@ def test_a_note_of_snakemake_counts_the_process_that_is_forked(tmp_path, monkeyp
     assert (noted.cores, noted.forked > 0.03, noted.snakemake > 0, noted.started < noted.ended) == (3, True, True, True)
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="jobs are forks on Linux only")
+# Elsewhere there is no fork to count: libraries may not survive one there, so Snakemake starts an interpreter for each job (test_forks.py).
+@pytest.mark.skipif(sys.platform != "linux", reason="jobs are forks on Linux only; elsewhere there are none to count")
 def test_a_note_of_snakemake_counts_all_forks_to_their_end(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / ".snakemake").mkdir()
