@@ -8,6 +8,7 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
+from studies import study
 
 from bezierplan.analysis import results
 from bezierplan.running import problems
@@ -31,6 +32,19 @@ def test_chunks_hold_all_repeats_and_no_chunk_more(repeats, chunk, count):
     empty = {field.name: {} for field in fields(definition.Study)} | {"key": "s", "folder": Path(), "title": "A study", "claims": []}
     own = definition.Study(**empty | {"experiments": {"first": experiment(repeats, chunk)}})
     assert list(jobs.chunks(own, "first", "full")) == list(range(count))
+
+
+@pytest.mark.parametrize("key", ["song2016", "elhoseny2017"])
+def test_chunks_of_a_planner_are_counted_over_methods_and_experiments(key):
+    own = study(key)
+    counted = {}
+    for (experiment, method, chunk), before in jobs.turns(own, "full").items():
+        assert method in own.methods_of(experiment)
+        assert chunk in jobs.chunks(own, experiment, "full")
+        counted.setdefault(own.methods[method].planner, []).append(before)
+    assert all(found == list(range(len(found))) for found in counted.values())
+    expected = sum(len(own.methods_of(name)) * len(jobs.chunks(own, name, "full")) for name in own.experiments)
+    assert sum(map(len, counted.values())) == expected
 
 
 @pytest.mark.parametrize(

@@ -39,6 +39,22 @@ def gone(process, seconds=20):
     return False
 
 
+def test_start_comes_before_the_first_job_and_once(forks, tmp_path):
+    told = tmp_path / "told"
+    forks.start()
+    started = forks.process
+    forks.start()
+    assert forks.succeeds("parent.py", "import os; open(snakemake, 'w').write(str(os.getppid()))", str(told))
+    assert int(told.read_text()) == started == forks.process
+
+
+def test_script_runs_in_the_folder_of_its_workflow(forks, tmp_path, monkeypatch):
+    forks.start()
+    monkeypatch.chdir(tmp_path)
+    assert forks.succeeds("folder.py", "import os; open('told', 'w').write(os.getcwd())", None)
+    assert (tmp_path / "told").read_text() == str(tmp_path)
+
+
 def test_script_gets_its_object_and_no_input(forks, tmp_path):
     told = tmp_path / "told"
     source = "import sys\nopen(snakemake.output, 'w').write(repr((__name__, __file__, snakemake.params, sys.stdin.read())))"

@@ -32,9 +32,11 @@ def checks(monkeypatch):
 
 
 def test_equal_content_is_checked_once(study, checks):
-    reading.load([study])
-    reading.load([study])
+    told = []
+    reading.load([study], lambda: told.append(list(checks)))
+    reading.load([study], lambda: told.append(list(checks)))
     assert checks == ["song2016"]
+    assert told == [[]], "to be told before the check, and of this one alone"
 
 
 # What jobs need and a start does not: to import it would take as long as all else that a start does.

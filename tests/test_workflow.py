@@ -114,6 +114,23 @@ def test_nothing_is_left_to_do(tree):
     assert planned(tree) == {}
 
 
+def test_planners_take_turns(tree):
+    """Two jobs of one planner at the same time need the same kernels. Claims wait for no figure, and runs only for problems."""
+    printed = snakemake(tree, "--dry-run", "--forceall")
+    given, of_planner = {}, {}
+    for job in re.findall(r"^rule \w+:\n(.*?)(?=^rule |\Z)", printed, flags=re.M | re.S):
+        told = dict(re.findall(r"^    (\w+): (.*)$", job, flags=re.M))
+        log = Path(told.get("log", "")).parts
+        if "priority" in told:
+            given.setdefault(log[4].removesuffix(".log"), []).append(float(told["priority"]))
+        if "runs" in log:
+            of_planner.setdefault("genetic" if log[-2] in GENETIC else log[-2], []).append(float(told["priority"]))
+    assert {planner: len(found) for planner, found in of_planner.items()} == dict.fromkeys(METHODS[-3:], 2) | {"genetic": 10}
+    assert all(len(set(found)) == len(found) and max(found) == max(given["runs"]) for found in of_planner.values())
+    assert given["claims"] > given["problems"] > [max(given["runs"])]
+    assert [min(given["runs"])] > given["bounds"] > [0]
+
+
 EDITS = {
     "code of a planner": (
         "src/bezierplan/planners/binary_genetic.py",
@@ -233,12 +250,12 @@ def test_single_figure_needs_only_its_own_methods(tree):
     assert {name: number for name, number in planned(tree, "song2016_figure4").items() if "song2016" not in name} == expected
 
 
-def test_figures_and_page_made_again_have_equal_bytes(tree):
+def test_figures_and_page_made_again_on_one_core_have_equal_bytes(tree):
     folder, page = tree / "results/full/song2016/figures", tree / "results/full/index.html"
     before = {file.name: file.read_bytes() for file in (page, *folder.iterdir())}
     shutil.rmtree(folder)
     page.unlink()
-    snakemake(tree)
+    snakemake(tree, "--cores", "1")
     assert {file.name: file.read_bytes() for file in (page, *folder.iterdir())} == before
 
 

@@ -56,5 +56,8 @@ PARTS = {
 }
 
 if __name__ == "__main__":
+    for part in sys.argv[1:]:
+        if part not in PARTS:
+            sys.exit(f"make benchmark: ARGS: {part}: unknown; expected some of {', '.join(PARTS)}")
     for part in sys.argv[1:] or PARTS:
         PARTS[part]()

@@ -4,7 +4,7 @@ import os
 import re
 import shlex
 import sys
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
 # The package of this tree, even if another is installed: for this process and for the scripts of jobs. Kernels use one thread; Snakemake
@@ -17,23 +17,52 @@ INTERPRETER = sys.executable
 sys.executable = shlex.quote(sys.executable)
 
 from bezierplan.running import effort, forks
-from bezierplan.study import alternatives, checked, experiments, page, reading, targets
+from bezierplan.study import alternatives, checked, experiments, jobs, page, reading, targets
+
+# What the directive `script` calls: a fork of one process with all libraries, instead of a new interpreter.
+FORKS = forks.Forks(INTERPRETER, script)
+script = FORKS.script
+
+
+def at_changes():
+    """Jobs are to come, so import for them beside the checks. If nothing has changed, there may be none."""
+    if sys.platform == "linux" and not workflow.output_settings.dryrun:
+        FORKS.start()
+
 
 try:
-    STUDIES = reading.load(reading.read_config(config, alone=workflow.modifier.namespace is not None))
+    STUDIES = reading.load(reading.read_config(config, alone=workflow.modifier.namespace is not None), at_changes)
     reading.check_folder()
 except checked.Fault as fault:
     sys.exit(str(fault))
 # All this stays until the end: to look for garbage in it takes a tenth of a start.
 gc.freeze()
 
-# What the directive `script` calls: a fork of one process with all libraries, instead of a new interpreter.
-FORKS = forks.Forks(INTERPRETER, script)
-script = FORKS.script
+# Priorities. Of the jobs that can start, the one with the highest does: one study after the other, its problems, its runs, its bounds. Claims take
+# longest of all that follows the runs; tables and figures, many short jobs, come last (0), so that no core is left without work while another has a
+# long job.
+CLAIMS = len(STUDIES) + 1
 
-# Priorities. Of the jobs that can start, the one with the highest does. Claims take longest of all that follows the runs; tables and figures, many
-# short jobs, come last, so that no core is left without work while another has a long job.
-RUNS, CLAIMS = 1, 2
+
+def of_study(wildcards):
+    """Priority of a study's bounds; its problems and runs add less than 1."""
+    return len(STUDIES) - list(STUDIES).index(wildcards.study)
+
+
+def of_problems(wildcards):
+    return of_study(wildcards) + 0.9
+
+
+def in_turn(wildcards):
+    """Priority of runs. Planners take turns, for two jobs of one planner need the same kernels: one compiles, and the other waits."""
+    before = turns(wildcards.study, wildcards.scale).get((wildcards.experiment, wildcards.method, int(wildcards.chunk)), 0)
+    return of_study(wildcards) + 1 / (2 + before)
+
+
+@cache
+def turns(study, scale):
+    return jobs.turns(STUDIES[study], scale)
+
 
 RESULTS = "results/{scale}/{study}"
 ALTERNATIVE = f"{RESULTS}/sensitivity/{{alternative}}"

@@ -10,7 +10,7 @@ rule worlds:
         f"{RESULTS}/logs/problems/{{experiment}}.log",
     wildcard_constraints:
         study=studies_of(MOVING),
-    priority: RUNS
+    priority: of_problems
     params:
         **params(targets.problems_params, "job", "folder", "maps", "code"),
     script:
@@ -26,7 +26,7 @@ rule clairvoyant:
         f"{RESULTS}/logs/bounds/{{experiment}}.log",
     wildcard_constraints:
         study=studies_of(MOVING),
-    priority: RUNS
+    priority: of_study
     params:
         **targets.bounds_params("clairvoyant"),
     script:
@@ -44,7 +44,7 @@ rule drives:
         f"{RESULTS}/logs/runs/{{experiment}}/{{method}}/{{chunk}}.log",
     wildcard_constraints:
         study=studies_of(MOVING),
-    priority: RUNS
+    priority: in_turn
     params:
         **params(targets.run_params, "job", "code"),
     script:

@@ -47,6 +47,8 @@ rule page:
         page="results/{scale}/index.html",
     log:
         "results/{scale}/page.log",
+    # The last job of a workflow, so the others leave it the cores.
+    threads: 2
     params:
         **params(page.params, "job", "tried", "look", "code"),
     script:

@@ -7,4 +7,5 @@ with log.job(snakemake) as output:
 
     from bezierplan.figures.page import job
 
-    job.write(snakemake.params.job, Path("results", snakemake.wildcards.scale), list(snakemake.input.summary), output.page)
+    folder = Path("results", snakemake.wildcards.scale)
+    job.write(snakemake.params.job, folder, list(snakemake.input.summary), output.page, snakemake.threads)

@@ -48,13 +48,21 @@ ONE_THREAD = {"JE_ARROW_MALLOC_CONF": "background_thread:false"}
 
 
 class Forks:
-    """The process that is forked, seen from Snakemake. It starts with the first job and ends with Snakemake, or when this object goes."""
+    """The process that is forked, seen from Snakemake. It starts with the first job, or before (`start`), and ends with Snakemake, or when
+    this object goes.
+    """
 
     def __init__(self, interpreter: str, script: Callable[..., None]) -> None:
         """Take the path of Python's interpreter, and Snakemake's function that runs a script in an interpreter of its own."""
         self._interpreter, self._script, self._names = interpreter, script, inspect.signature(script)
         self._starting, self._control = threading.Lock(), None
         self.process: int | None = None  # the number of the process that is forked
+
+    def start(self) -> None:
+        """Start the process that is forked, unless it is there: it imports what jobs need while Snakemake has other work."""
+        with self._starting:
+            if self._control is None:
+                self._begin()
 
     def script(self, *given: Any) -> None:
         """Run a script as Snakemake's function of the same name does, which is called with the same arguments.
@@ -84,7 +92,7 @@ class Forks:
                 self._hand_over(theirs)
             # A job that dies at once leaves nobody to read.
             with contextlib.suppress(ConnectionError):
-                ours.sendall(pickle.dumps((name, source, snakemake)))
+                ours.sendall(pickle.dumps((os.getcwd(), name, source, snakemake)))
                 ours.shutdown(socket.SHUT_WR)
                 return ours.recv(1) == DONE
             return False
@@ -95,10 +103,13 @@ class Forks:
             with contextlib.suppress(ConnectionError):
                 socket.send_fds(self._control, [DONE], [job.fileno()])
                 return
+        self._begin()
+        socket.send_fds(self._control, [DONE], [job.fileno()])
+
+    def _begin(self) -> None:
         self._control, theirs = socket.socketpair()
         with theirs:
             self.process = subprocess.Popen([self._interpreter, "-m", __name__], stdin=theirs, env=os.environ | ONE_THREAD).pid
-        socket.send_fds(self._control, [DONE], [job.fileno()])
 
 
 def serve(control: socket.socket) -> None:
@@ -144,7 +155,9 @@ def run(parent: socket.socket) -> None:
     # Held until the process ends: Python 3.13 drops an exception's frames, and sockets in them, before it says what sys.exit was given.
     os.dup(parent.fileno())
     with parent.makefile("rb") as stream:
-        name, source, snakemake = pickle.load(stream)
+        folder, name, source, snakemake = pickle.load(stream)
+    # A workflow may have changed its folder since this process's parent was started.
+    os.chdir(folder)
     exec(compile(source, name, "exec"), {"__name__": "__main__", "__file__": name, "snakemake": snakemake})
     logging.shutdown()
     sys.stdout.flush()

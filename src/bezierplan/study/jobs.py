@@ -4,6 +4,7 @@ A script receives a job: plain values only, so that Snakemake can detect changes
 """
 
 import itertools
+from collections import Counter
 from typing import Any
 
 from bezierplan.figures.panels import Panel
@@ -63,6 +64,18 @@ def chunks(study: Study, experiment: str, scale: str) -> range:
     """Numbers of the chunks that contain an experiment's repeats at a scale."""
     content = study.experiments[experiment]
     return range(-(-content.repeats[scale] // content.chunk[scale]))
+
+
+def turns(study: Study, scale: str) -> dict[tuple[str, str, int], int]:
+    """How many chunks of runs of the same planner come before each, by experiment, method and chunk."""
+    before: Counter[str] = Counter()
+    found = {}
+    for experiment in study.experiments:
+        for method, chunk in itertools.product(study.methods_of(experiment), chunks(study, experiment, scale)):
+            planner = study.methods[method].planner
+            found[experiment, method, chunk] = before[planner]
+            before[planner] += 1
+    return found
 
 
 def table_job(study: Study, table: str, scale: str) -> dict:

@@ -5,7 +5,7 @@ one line (`checked.Fault`).
 import json
 import os
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -49,8 +49,11 @@ def read_config(given: Mapping[str, Any], alone: bool = False) -> Folders:
     return folders
 
 
-def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
-    """The studies in folders, by name, read and checked, unless the same content was before. Raises Fault."""
+def load(folders: Iterable[Path] | Folders, at_changes: Callable[[], object] = lambda: None) -> dict[str, Study]:
+    """The studies in folders, by name, read and checked, unless the same content was before. Raises Fault.
+
+    at_changes: called before each check, which takes seconds.
+    """
     studies = {}
     for folder in folders:
         changed = folders[folder] if isinstance(folders, dict) else {}
@@ -62,6 +65,7 @@ def load(folders: Iterable[Path] | Folders) -> dict[str, Study]:
                 raise Fault(f"{relative(folder)}: a study of the name {study.key} is there already; rename the folder")
             if not before:
                 # What checks need takes long to import, and most starts find nothing that has changed.
+                at_changes()
                 from bezierplan.study.checks import check
 
                 check(study)

@@ -1,36 +1,56 @@
 """The page of a scale, from the files that the workflow made."""
 
 import json
+from collections.abc import Callable, Iterator
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
 from bezierplan.figures.page import answer, build, content, gather, runs
+from bezierplan.running.log import end_with_parent
 
 
-def page(job: dict[str, Any], folder: Path, summary: list[str] | None) -> content.Page:
+def page(job: dict[str, Any], folder: Path, summary: list[str] | None, processes: int = 1) -> content.Page:
     """The content of the page.
 
     job: `scale`, and `studies`: study -> what `gather.studies` takes, and `experiments` (name -> `methods`, `repeats` and the files `runs`,
     `problems`, `bounds` and, of drives, `traces`). folder: that of the scale. summary: files of all studies together,
-    numbers.csv, claims.csv and worth.csv, if the scale has them."""
-    tables: list[pd.DataFrame | None] = [gather.read(file) for file in summary] if summary else [None, None, None]
-    studies = gather.studies(job["studies"], folder, *tables)
+    numbers.csv, claims.csv and worth.csv, if the scale has them. processes: how many look for runs, if more than one beside this one.
+    """
+    experiments = [(key, *each) for key, own in job["studies"].items() for each in own["experiments"].items()]
+    shown: dict[str, list[content.Shown]] = {key: [] for key in job["studies"]}
     workspaces: dict[str, dict[str, Any]] = {}
     problems: dict[str, content.Problem] = {}
     kept: dict[str, content.Run] = {}
-    for key, own in job["studies"].items():
-        shown: list[content.Shown] = []
-        for experiment, described in own["experiments"].items():
-            chosen = runs.chosen(key, experiment, described)
-            shown += chosen.shown
+    with _mapping(processes) as mapped:
+        found = mapped(_chosen, experiments)
+        tables: list[pd.DataFrame | None] = [gather.read(file) for file in summary] if summary else [None, None, None]
+        studies = gather.studies(job["studies"], folder, *tables)
+        for (key, *_), chosen in zip(experiments, found, strict=True):
+            shown[key] += chosen.shown
             workspaces |= chosen.workspaces
             problems |= chosen.problems
             kept |= chosen.runs
-        studies[key] = studies[key].model_copy(update={"shown": shown})
+    studies = {key: study.model_copy(update={"shown": shown[key]}) for key, study in studies.items()}
     shared = {"workspaces": workspaces, "problems": problems}
     return content.Page(scale=job["scale"], answer=answer.answer(studies), studies=studies, runs=kept, **_once(**shared))
+
+
+@contextmanager
+def _mapping(processes: int) -> Iterator[Callable[..., Any]]:
+    """`map`, in processes beside this one if there are to be several."""
+    if processes == 1:
+        yield map
+        return
+    with ProcessPoolExecutor(processes, initializer=end_with_parent) as pool:
+        yield pool.map
+
+
+def _chosen(experiment: tuple[str, str, dict[str, Any]]) -> runs.Chosen:
+    return runs.chosen(*experiment)
 
 
 def _once(workspaces: dict[str, dict[str, Any]], problems: dict[str, content.Problem]) -> dict[str, dict[str, Any]]:
@@ -43,6 +63,6 @@ def _once(workspaces: dict[str, dict[str, Any]], problems: dict[str, content.Pro
     }
 
 
-def write(job: dict[str, Any], folder: Path, summary: list[str] | None, file: str) -> None:
+def write(job: dict[str, Any], folder: Path, summary: list[str] | None, file: str, processes: int = 1) -> None:
     """Write the page."""
-    Path(file).write_text(build.html(page(job, folder, summary), folder), encoding="utf-8")
+    Path(file).write_text(build.html(page(job, folder, summary, processes), folder), encoding="utf-8")
