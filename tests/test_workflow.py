@@ -11,6 +11,7 @@ import time
 from collections import Counter
 from pathlib import Path
 
+import psutil
 import pytest
 import starts
 import trees
@@ -312,32 +313,33 @@ def written(tree):
 
 # The kernel of Linux ends a job whose workflow dies (PR_SET_PDEATHSIG, `running.log`); macOS has no such call, and no /proc to look into.
 @pytest.mark.skipif(sys.platform != "linux", reason="only the kernel of Linux ends a job with its parent, and has /proc to look into")
-@pytest.mark.parametrize(
-    ("kill", "moment", "runs"),
-    [(os.kill, "runs/*/*/*.parquet", 7), (os.killpg, "problems/*.parquet", 7), (os.killpg, "tables/*.csv", 16)],
-)
-def test_killed_workflow_leaves_no_job_and_make_goes_on_from_there(finished, tree, kill, moment, runs):
-    """Killed, alone or with its group, when the first such file is there; at most so many chunks of runs are done."""
+def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_make_goes_on_from_there(finished, tree):
+    """Killed by itself or with its group, each time when a new file of a kind is there; at most so many chunks of runs are done by then."""
     shutil.rmtree(tree / "results")
-    command = [sys.executable, "-m", "snakemake"]
-    killed = subprocess.Popen(command, cwd=tree, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True)
-    deadline = time.monotonic() + 120
-    while not list(tree.glob(f"results/full/song2016/{moment}")):
-        assert time.monotonic() < deadline
-        assert killed.poll() is None
-        time.sleep(0.05)
-    kill(killed.pid, signal.SIGKILL)
-    killed.wait()
-    time.sleep(0.5)
-    left = written(tree)
-    # A busy machine takes longer to clear away what is dead; a job that lived on would write its files and its log.
-    deadline = time.monotonic() + 20
-    while processes_in(tree) and time.monotonic() < deadline:
-        time.sleep(0.05)
-    assert processes_in(tree) == []
-    assert written(tree) == left
-    assert len(list(tree.glob("results/full/song2016/runs/*/*/?.parquet"))) <= runs
-    assert not (tree / "results/full/index.html").exists()
+    for kill, moment, runs in (os.killpg, "problems/*.parquet", 7), (os.kill, "runs/*/*/*.parquet", 7), (os.killpg, "tables/*.csv", 16):
+        before = set(tree.glob(f"results/full/song2016/{moment}"))
+        make = subprocess.Popen(
+            ["make", "reproduce"], cwd=tree, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, start_new_session=True
+        )
+        deadline = time.monotonic() + 120
+        while set(tree.glob(f"results/full/song2016/{moment}")) <= before:
+            assert time.monotonic() < deadline
+            assert make.poll() is None
+            time.sleep(0.05)
+        (started,) = psutil.Process(make.pid).children()
+        assert started.cmdline()[1:] == ["-m", "snakemake"]
+        kill(make.pid if kill is os.killpg else started.pid, signal.SIGKILL)
+        assert make.wait() != 0
+        time.sleep(0.5)
+        left = written(tree)
+        # A busy machine takes longer to clear away what is dead; a job that lived on would write its files and its log.
+        deadline = time.monotonic() + 20
+        while processes_in(tree) and time.monotonic() < deadline:
+            time.sleep(0.05)
+        assert processes_in(tree) == []
+        assert written(tree) == left
+        assert len(list(tree.glob("results/full/song2016/runs/*/*/?.parquet"))) <= runs
+        assert not (tree / "results/full/index.html").exists()
     subprocess.run(["make", "reproduce"], cwd=tree, check=True, capture_output=True)
     assert digests(tree) == digests(finished)
 
