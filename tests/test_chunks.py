@@ -8,11 +8,11 @@ import pandas as pd
 import pyarrow as pa
 import pyarrow.parquet as parquet
 import pytest
-from studies import study
+from studies import studies
 
 from bezierplan.analysis import results
 from bezierplan.running import problems
-from bezierplan.study import definition, jobs
+from bezierplan.study import definition, jobs, targets
 from bezierplan.study.experiments import Experiment
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
@@ -34,17 +34,28 @@ def test_chunks_hold_all_repeats_and_no_chunk_more(repeats, chunk, count):
     assert list(jobs.chunks(own, "first", "full")) == list(range(count))
 
 
-@pytest.mark.parametrize("key", ["song2016", "elhoseny2017"])
-def test_chunks_of_a_planner_are_counted_over_methods_and_experiments(key):
-    own = study(key)
-    counted = {}
-    for (experiment, method, chunk), before in jobs.turns(own, "full").items():
-        assert method in own.methods_of(experiment)
-        assert chunk in jobs.chunks(own, experiment, "full")
-        counted.setdefault(own.methods[method].planner, []).append(before)
-    assert all(found == list(range(len(found))) for found in counted.values())
-    expected = sum(len(own.methods_of(name)) * len(jobs.chunks(own, name, "full")) for name in own.experiments)
-    assert sum(map(len, counted.values())) == expected
+def behind(given, scale):
+    """The runs behind the tables and figures of a scale and those that it names, as (study, experiment, method)."""
+    shown = (
+        jobs.smoke(given)[0] if scale == "smoke" else [(key, name) for key, own in given.items() for name in [*own.tables, *own.figures]]
+    )
+    files = targets.files_of_smoke(given) if scale == "smoke" else []
+    for key, name in shown:
+        kind = "table" if name in given[key].tables else "figure"
+        files += targets.artefact_inputs(given, scale, key, **{kind: name})["runs"]
+    return {(place[2], place[4], place[5]) for place in (Path(file).parts for file in files) if place[3] == "runs"}
+
+
+@pytest.mark.parametrize("scale", ["smoke", "full"])
+def test_each_planner_has_one_leader_among_the_runs_of_a_scale(scale):
+    given = studies()
+    leaders, made = jobs.leaders(given, scale), behind(given, scale)
+    planners = [given[key].planner(method) for key, _, method in leaders]
+    assert sorted(planners) == sorted({given[key].planner(method) for key, _, method in made})
+    assert leaders.keys() <= made
+    for key in given:
+        places = [place for (own, *_), place in leaders.items() if own == key]
+        assert places == list(range(len(places)))
 
 
 @pytest.mark.parametrize(

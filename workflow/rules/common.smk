@@ -38,30 +38,31 @@ except checked.Fault as fault:
 # All this stays until the end: to look for garbage in it takes a tenth of a start.
 gc.freeze()
 
-# Priorities. Of the jobs that can start, the one with the highest does: one study after the other, its problems, its runs, its bounds. Claims take
-# longest of all that follows the runs; tables and figures, many short jobs, come last (0), so that no core is left without work while another has a
-# long job.
+# Priorities. Of the jobs that can start, the one with the highest does: problems; a chunk of runs of each planner (`first_runs`); claims, which take
+# longest of all that follows the runs; one study after the other, its runs, then its bounds. Tables and figures, many short jobs, come last (0), so
+# that no core is left without work while another has a long job.
 CLAIMS = len(STUDIES) + 1
+PROBLEMS = CLAIMS + 2
 
 
-def of_study(wildcards):
-    """Priority of a study's bounds; its problems and runs add less than 1."""
-    return len(STUDIES) - list(STUDIES).index(wildcards.study)
+def of_runs(wildcards):
+    """Priority of a chunk of runs. Jobs of one planner need the same kernels, which one of them compiles while the others wait, so each planner has
+    a job that comes before all others; planners of one study share kernels as well, so in that the studies take turns.
+    """
+    place = first_runs(wildcards.scale).get((wildcards.study, wildcards.experiment, wildcards.method))
+    if place is None or wildcards.chunk != "0":
+        return len(STUDIES) - list(STUDIES).index(wildcards.study)
+    return CLAIMS + 1 / (1 + place)
 
 
-def of_problems(wildcards):
-    return of_study(wildcards) + 0.9
-
-
-def in_turn(wildcards):
-    """Priority of runs. Planners take turns, for two jobs of one planner need the same kernels: one compiles, and the other waits."""
-    before = turns(wildcards.study, wildcards.scale).get((wildcards.experiment, wildcards.method, int(wildcards.chunk)), 0)
-    return of_study(wildcards) + 1 / (2 + before)
+def of_bounds(wildcards):
+    """Priority of a study's bounds."""
+    return len(STUDIES) - list(STUDIES).index(wildcards.study) - 0.5
 
 
 @cache
-def turns(study, scale):
-    return jobs.turns(STUDIES[study], scale)
+def first_runs(scale):
+    return jobs.leaders(STUDIES, scale)
 
 
 RESULTS = "results/{scale}/{study}"

@@ -10,7 +10,7 @@ rule worlds:
         f"{RESULTS}/logs/problems/{{experiment}}.log",
     wildcard_constraints:
         study=studies_of(MOVING),
-    priority: of_problems
+    priority: PROBLEMS
     params:
         **params(targets.problems_params, "job", "folder", "maps", "code"),
     script:
@@ -26,7 +26,7 @@ rule clairvoyant:
         f"{RESULTS}/logs/bounds/{{experiment}}.log",
     wildcard_constraints:
         study=studies_of(MOVING),
-    priority: of_study
+    priority: of_bounds
     params:
         **targets.bounds_params("clairvoyant"),
     script:
@@ -44,7 +44,7 @@ rule drives:
         f"{RESULTS}/logs/runs/{{experiment}}/{{method}}/{{chunk}}.log",
     wildcard_constraints:
         study=studies_of(MOVING),
-    priority: in_turn
+    priority: of_runs
     params:
         **params(targets.run_params, "job", "code"),
     script:

@@ -10,7 +10,7 @@ rule problems:
         f"{RESULTS}/logs/problems/{{experiment}}.log",
     wildcard_constraints:
         study=studies_of(STILL),
-    priority: of_problems
+    priority: PROBLEMS
     params:
         **params(targets.problems_params, "job", "folder", "maps", "code"),
     script:
@@ -26,7 +26,7 @@ rule bounds:
         f"{RESULTS}/logs/bounds/{{experiment}}.log",
     wildcard_constraints:
         study=studies_of(STILL),
-    priority: of_study
+    priority: of_bounds
     params:
         **targets.bounds_params("bounds"),
     script:

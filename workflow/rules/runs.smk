@@ -11,7 +11,7 @@ rule runs:
         f"{RESULTS}/logs/runs/{{experiment}}/{{method}}/{{chunk}}.log",
     wildcard_constraints:
         study=studies_of(STILL),
-    priority: in_turn
+    priority: of_runs
     params:
         **params(targets.run_params, "job", "code"),
     script:

@@ -66,18 +66,6 @@ def chunks(study: Study, experiment: str, scale: str) -> range:
     return range(-(-content.repeats[scale] // content.chunk[scale]))
 
 
-def turns(study: Study, scale: str) -> dict[tuple[str, str, int], int]:
-    """How many chunks of runs of the same planner come before each, by experiment, method and chunk."""
-    before: Counter[str] = Counter()
-    found = {}
-    for experiment in study.experiments:
-        for method, chunk in itertools.product(study.methods_of(experiment), chunks(study, experiment, scale)):
-            planner = study.methods[method].planner
-            found[experiment, method, chunk] = before[planner]
-            before[planner] += 1
-    return found
-
-
 def table_job(study: Study, table: str, scale: str) -> dict:
     """What a table depends on in addition to runs, problems, bounds and the file of published numbers."""
     spec = study.compared()[table]
@@ -199,6 +187,29 @@ def smoke(studies: dict[str, Study]) -> tuple[list[tuple[str, str]], list[tuple[
                     planners.add(study.planner(method))
                     methods.append((key, experiment, method))
     return artefacts, methods
+
+
+def leaders(studies: dict[str, Study], scale: str) -> dict[tuple[str, str, str], int]:
+    """The first method of each planner among the runs of a scale, as (study, experiment, method), numbered within its study."""
+    made = []
+    if scale == "smoke":
+        artefacts, alone = smoke(studies)
+        for key, artefact in artefacts:
+            own = studies[key]
+            made += [(key, each, method) for each in experiments_of(own, artefact) for method in methods_of(own, artefact, each)]
+        made += alone
+    else:
+        for key, own in studies.items():
+            made += [(key, each, method) for each in own.experiments for method in own.methods_of(each)]
+    first: dict[str, tuple[str, str, str]] = {}
+    for key, experiment, method in made:
+        first.setdefault(studies[key].planner(method), (key, experiment, method))
+    numbers = Counter[str]()
+    found = {}
+    for each in first.values():
+        found[each] = numbers[each[0]]
+        numbers[each[0]] += 1
+    return found
 
 
 def caption(study: Study, artefact: str, scale: str) -> str:
