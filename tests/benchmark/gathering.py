@@ -44,6 +44,8 @@ figures:
     {kind: convergence, experiment: all, where: {problem: equal, method: [pso, ferguson]}, hue: method}]}
   paths: {title: Paths, columns: 1, panels: [{kind: paths, experiment: all, where: {method: pso, problem: equal}, pick: {lowest: length}}]}
 """
+THREADS = 2
+"""Processes that a job may start."""
 CLAIMS = """
 claims:
   - {id: C1, place: invented, statement: The plain swarm is shorter., artefact: lengths, checks: [
@@ -152,7 +154,7 @@ def peaks(repeats: int, chunk: int) -> dict[str, float]:
 
 
 def _peak(job: Job, folder: str) -> float:
-    """Run a job in this process, and return the most memory that the process ever had, in bytes."""
+    """Run a job in this process, and return the most memory that it ever had, in bytes, with that of each process that it starts."""
     from snakemake.iocontainers import InputFiles, OutputFiles, Params
 
     with contextlib.chdir(folder):
@@ -164,6 +166,8 @@ def _peak(job: Job, folder: str) -> float:
             params=Params(fromdict=job.params),
             wildcards=SimpleNamespace(scale=SCALE),
             log=["job.log"],
+            threads=THREADS,
         )
         runpy.run_path(str(SCRIPTS / f"{job.script}.py"), {"snakemake": given})
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+    own, largest = (resource.getrusage(whose).ru_maxrss for whose in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return (own + THREADS * largest) * (1 if sys.platform == "darwin" else 1024)

@@ -1,6 +1,8 @@
 """The page of a scale, from the files that the workflow made."""
 
 import json
+import multiprocessing
+import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
 from contextlib import contextmanager
@@ -41,11 +43,11 @@ def page(job: dict[str, Any], folder: Path, summary: list[str] | None, processes
 
 @contextmanager
 def _mapping(processes: int) -> Iterator[Callable[..., Any]]:
-    """`map`, in processes beside this one if there are to be several."""
-    if processes == 1:
+    """`map`, in processes beside this one if there are to be several, on Linux: elsewhere they would begin with a job's script anew."""
+    if processes == 1 or sys.platform != "linux":
         yield map
         return
-    with ProcessPoolExecutor(processes, initializer=end_with_parent) as pool:
+    with ProcessPoolExecutor(processes, multiprocessing.get_context("fork"), end_with_parent) as pool:
         yield pool.map
 
 
