@@ -223,7 +223,8 @@ def _sampled(problem: Problem, curve: str, control_points: int, samples: int) ->
 def _basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, np.ndarray]:
     """Weights of start and target (2, samples) and of the free control points (n, samples) at the samples of a curve."""
     basis = curves.sample_matrix(curve, control_points + 2, samples).T
-    return basis[[0, -1]], np.ascontiguousarray(basis[1:-1])
+    # A copy even where nothing is left, since numba would compile all kernels once more for an array that is read-only.
+    return basis[[0, -1]], basis[1:-1].copy()
 
 
 @compiled
