@@ -103,7 +103,7 @@ def test_a_copy_has_no_results_and_nothing_that_git_ignores(tmp_path, monkeypatc
     monkeypatch.setattr(run, "ROOT", tmp_path / "tree")
     run.copy(tmp_path / "copy")
     files = {str(file.relative_to(tmp_path / "copy")) for file in (tmp_path / "copy").rglob("*") if file.is_file()}
-    assert files == {"results/README.md", "workflow/archive/a"}
+    assert files == {".git/a", "results/README.md", "workflow/archive/a"}
     assert (tmp_path / "copy" / ".venv").readlink() == tmp_path / "tree" / ".venv"
 
 

@@ -25,8 +25,8 @@ SMOKE, KERNELS = "results/smoke", ".cache/kernels"
 COMPILERS = {"llvmlite", "numba", "numpy"}
 # What the workflow and its tests run on; the other locks are those of environments of their own.
 LOCKS = ("environment-build.txt", "environment.txt")
-# What a copy does without at the top of the tree.
-LEFT_OUT = {".git", ".venv", ".cache", ".snakemake", "archive"}
+# What a copy does without at the top of the tree. It has what git keeps, for the test of the archive asks git.
+LEFT_OUT = {".venv", ".cache", ".snakemake", "archive"}
 # Flags of the make that runs this are not meant for the makes that this starts.
 ENVIRONMENT = {name: value for name, value in os.environ.items() if name not in ("MAKEFLAGS", "MAKEOVERRIDES", "MFLAGS", "ARGS")}
 # Files that a line names.

@@ -18,6 +18,7 @@ LONGEST_FILE = 4_000_000
 """Bytes of the longest file that is read: a study's YAML, maps, published numbers."""
 DEEPEST = 20
 """Levels of the deepest nesting in YAML."""
+TOO_DEEP = f"nested more than {DEEPEST} levels deep"
 MOST_NODES = 200_000
 """Values in one YAML file, aliases counted as what they stand for."""
 
@@ -83,7 +84,9 @@ def parse(text: str, place: str) -> Any:
         _check_size(text, place)
         return yaml.load(text, _Loader)
     except yaml.MarkedYAMLError as error:
-        raise Fault(f"{_line(place, error.problem_mark)}: {error.problem}") from None
+        # Newer versions of libyaml have a limit of their own, and meet it where they read ahead.
+        problem = TOO_DEEP if error.problem == "exceeded maximum nesting depth" else error.problem
+        raise Fault(f"{_line(place, error.problem_mark)}: {problem}") from None
     except yaml.YAMLError as error:  # characters not allowed in YAML
         raise Fault(f"{place}: not YAML ({str(error).splitlines()[0]})") from None
 
@@ -103,7 +106,7 @@ def _check_size(text: str, place: str) -> None:
         if isinstance(event, yaml.CollectionStartEvent):
             opened.append((anchor, 1))
             if len(opened) > DEEPEST:
-                raise Fault(f"{_line(place, event.start_mark)}: nested more than {DEEPEST} levels deep")
+                raise Fault(f"{_line(place, event.start_mark)}: {TOO_DEEP}")
         elif isinstance(event, yaml.AliasEvent):
             if anchor not in sizes:
                 raise Fault(f"{_line(place, event.start_mark)}: *{anchor}: stands for nothing before it, or for itself")
