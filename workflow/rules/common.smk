@@ -41,6 +41,7 @@ gc.freeze()
 # Priorities. Of the jobs that can start, the one with the highest does: problems; a chunk of runs of each planner (`first_runs`); claims, which take
 # longest of all that follows the runs; one study after the other, its runs, then its bounds. Tables and figures, many short jobs, come last (0), so
 # that no core is left without work while another has a long job.
+OF_STUDY = dict(zip(STUDIES, range(len(STUDIES), 0, -1)))
 CLAIMS = len(STUDIES) + 1
 PROBLEMS = CLAIMS + 2
 
@@ -51,13 +52,13 @@ def of_runs(wildcards):
     """
     place = first_runs(wildcards.scale).get((wildcards.study, wildcards.experiment, wildcards.method))
     if place is None or wildcards.chunk != "0":
-        return len(STUDIES) - list(STUDIES).index(wildcards.study)
+        return OF_STUDY[wildcards.study]
     return CLAIMS + 1 / (1 + place)
 
 
 def of_bounds(wildcards):
     """Priority of a study's bounds."""
-    return len(STUDIES) - list(STUDIES).index(wildcards.study) - 0.5
+    return OF_STUDY[wildcards.study] - 0.5
 
 
 @cache
