@@ -85,7 +85,7 @@ class Forks:
             raise subprocess.CalledProcessError(1, name)
 
     def succeeds(self, name: str, source: str, snakemake: Any) -> bool:
-        """Run a script in a fork, in the folder of this process, with the object that scripts know as `snakemake`; did it come to its end?"""
+        """Run a script in a fork, in this process's folder and with the object that scripts know as `snakemake`; did it come to its end?"""
         ours, theirs = socket.socketpair()
         with ours:
             with theirs, self._starting:
