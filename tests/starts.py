@@ -2,39 +2,52 @@
 run. Modules of this package are not among them: each start takes those of its own tree.
 """
 
+import cProfile
 import multiprocessing
 import os
 import tempfile
+from functools import partial
 from pathlib import Path
 from subprocess import CompletedProcess
 
-# Without pandas and pyarrow, which starts a thread.
 _MODULES = [
     *("snakemake.cli", "snakemake.dag", "snakemake.executors.dryrun", "snakemake.scheduling.greedy", "snakemake_logger_plugin_rich"),
-    *("docutils.core", "jinja2", "numba", "pydantic", "requests", "rich.progress", "smart_open", "yaml"),
+    *("docutils.core", "jinja2", "numba", "pandas", "pydantic", "requests", "rich.progress", "smart_open", "yaml"),
 ]
 # On Linux and macOS; elsewhere each start imports anew, with the same result.
 _METHOD = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
 _STARTS = multiprocessing.get_context(_METHOD)
 if _METHOD == "forkserver":
     _STARTS.set_forkserver_preload(_MODULES)
+    # pyarrow, which pandas imports, would start a thread: see `bezierplan.running.forks`, which is not imported, for a tree has its own.
+    os.environ["JE_ARROW_MALLOC_CONF"] = "background_thread:false"
 
 
-def snakemake(folder: Path, *words: str) -> CompletedProcess:
-    """Run `python -m snakemake` with some words in a folder; its exit code and what it printed, as text."""
+def snakemake(folder: Path, *words: str, calls: Path | None = None) -> CompletedProcess:
+    """Run `python -m snakemake` with some words in a folder; its exit code and what it printed, as text. Its calls of functions are counted
+    in a file, if one is given, as cProfile writes it.
+    """
     with tempfile.TemporaryDirectory() as kept:
         printed = [Path(kept, name) for name in ("output", "errors")]
-        start = _STARTS.Process(target=_run, args=(folder, words, printed))
+        start = _STARTS.Process(target=_run, args=(folder, words, printed, calls))
         start.start()
         start.join()
         output, errors = (file.read_text() for file in printed)
     return CompletedProcess(words, start.exitcode, output, errors)
 
 
-def _run(folder: Path, words: tuple[str, ...], printed: list[Path]) -> None:
+def _run(folder: Path, words: tuple[str, ...], printed: list[Path], calls: Path | None) -> None:
     from snakemake.cli import main
 
     os.chdir(folder)
     for number, file in enumerate(printed, start=1):
         os.dup2(os.open(file, os.O_WRONLY | os.O_CREAT), number)
-    main(list(map(str, words)))
+    command = partial(main, list(map(str, words)))
+    if calls is None:
+        command()
+    else:
+        profile = cProfile.Profile()
+        try:
+            profile.runcall(command)
+        finally:
+            profile.dump_stats(calls)

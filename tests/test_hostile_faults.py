@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import starts
 
 from bezierplan.study import reading
 from bezierplan.study.checked import LONGEST_FILE, Fault
@@ -938,21 +939,10 @@ SPOILT = {
 }
 
 
-# Snakemake as it is started by its command, with its calls counted; cProfile's own command would swallow the exit code.
-COUNTED = """
-import cProfile, runpy, sys
-profile = cProfile.Profile()
-try:
-    profile.runcall(runpy.run_module, "snakemake", run_name="__main__", alter_sys=True)
-finally:
-    profile.dump_stats("calls")
-"""
-
-
 def started(place, study):
     """A dry run of a study from a folder: how it ended, and its calls of functions, which are its work on any machine, however busy."""
-    command = [sys.executable, "-c", COUNTED, "-s", str(ROOT / "Snakefile"), "--workflow-profile", "none", "-n", "--cores", "1"]
-    done = subprocess.run([*command, "--config", f"studies=[{study}]"], cwd=place, capture_output=True, text=True, check=False, timeout=120)
+    words = ("-s", ROOT / "Snakefile", "--workflow-profile", "none", "-n", "--cores", "1", "--config", f"studies=[{study}]")
+    done = starts.snakemake(place, *words, calls=place / "calls")
     return done, pstats.Stats(str(place / "calls")).total_calls
 
 

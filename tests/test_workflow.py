@@ -103,12 +103,16 @@ def finished(tmp_path_factory):
     return shutil.copytree(tree, tree.parent / "snapshot", symlinks=True)
 
 
-@pytest.fixture
-def tree(finished):
+def copied(finished):
     """The finished tree, to be edited. It lies in the same place for every test, so that compiled kernels are found again."""
     place = finished.parent / "tree"
     shutil.rmtree(place, ignore_errors=True)
     return Path(shutil.copytree(finished, place, symlinks=True))
+
+
+@pytest.fixture
+def tree(finished):
+    return copied(finished)
 
 
 def test_nothing_is_left_to_do(tree):
@@ -221,14 +225,14 @@ def test_touched_scripts_rerun_nothing(tree):
     assert planned(tree) == {}
 
 
-def test_cut_off_table_of_runs_is_named(tree):
+def test_cut_off_table_of_runs_is_named_and_made_again(finished, tree):
     file = tree / "results/full/song2016/runs/routes/smooth/0.parquet"
     file.write_bytes(file.read_bytes()[:100])
     printed = snakemake(tree, "song2016_figure4", "--forcerun", "figure", check=False)
     assert f"{file.relative_to(tree)}: not a whole Parquet file; delete it and start again: the workflow reproduces it" in printed
     file.unlink()
-    snakemake(tree, "song2016_figure4")
-    assert digests(tree)
+    snakemake(tree, file.relative_to(tree))
+    assert digests(tree) == digests(finished)
 
 
 def test_no_part_of_a_file_is_left(tree):
@@ -251,13 +255,12 @@ def test_single_figure_needs_only_its_own_methods(tree):
     assert {name: number for name, number in planned(tree, "song2016_figure4").items() if "song2016" not in name} == expected
 
 
-def test_figures_and_page_made_again_on_one_core_have_equal_bytes(tree):
-    folder, page = tree / "results/full/song2016/figures", tree / "results/full/index.html"
-    before = {file.name: file.read_bytes() for file in (page, *folder.iterdir())}
-    shutil.rmtree(folder)
-    page.unlink()
-    snakemake(tree, "--cores", "1")
-    assert {file.name: file.read_bytes() for file in (page, *folder.iterdir())} == before
+def test_one_core_another_order_and_larger_chunks_give_the_same_content(finished, tree):
+    shutil.rmtree(tree / "results")
+    edit(tree / EXPERIMENTS, "full: 2,", "full: 4,")
+    files = [f"results/full/song2016/runs/routes/{method}/0.parquet" for method in reversed(METHODS)]
+    snakemake(tree, "--cores", "1", *files)
+    assert digests(tree) == digests(finished)
 
 
 def untimed(text):
@@ -270,28 +273,6 @@ def untimed(text):
             times = [n for n, name in enumerate(table["columns"]) if "(s" in name]
             table["rows"] = [[None if n in times else value for n, value in enumerate(row)] for row in table["rows"]]
     return data, dict(re.findall(r'alt="(\w+): [^"]*" src="(data:image[^"]*)"', text))
-
-
-def test_two_runs_give_the_same_page_but_for_times(finished, tree):
-    shutil.rmtree(tree / "results/full")
-    snakemake(tree)
-    (data, pictures), (again, drawn) = (untimed((place / "results/full/index.html").read_text()) for place in (finished, tree))
-    assert again == data
-    assert {name for name, picture in pictures.items() if drawn[name] != picture} <= {"work"}
-
-
-def test_one_core_and_another_order_give_the_same_content(finished, tree):
-    shutil.rmtree(tree / "results")
-    files = [f"results/full/song2016/runs/routes/{method}/{chunk}.parquet" for method in reversed(METHODS) for chunk in (1, 0)]
-    snakemake(tree, "--cores", "1", *files)
-    assert digests(tree) == digests(finished)
-
-
-def test_another_chunk_size_gives_the_same_content(finished, tree):
-    shutil.rmtree(tree / "results")
-    edit(tree / EXPERIMENTS, "full: 2,", "full: 4,")
-    snakemake(tree, *(f"results/full/song2016/runs/routes/{method}/0.parquet" for method in METHODS))
-    assert digests(tree) == digests(finished)
 
 
 def processes_in(folder):
@@ -313,7 +294,7 @@ def written(tree):
 
 # The kernel of Linux ends a job whose workflow dies (PR_SET_PDEATHSIG, `running.log`); macOS has no such call, and no /proc to look into.
 @pytest.mark.skipif(sys.platform != "linux", reason="only the kernel of Linux ends a job with its parent, and has /proc to look into")
-def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_make_goes_on_from_there(finished, tree):
+def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_make_goes_on_to_the_same_page_but_for_times(finished, tree):
     """Killed by itself or with its group, each time when a new file of a kind is there; at most so many chunks of runs are done by then."""
     shutil.rmtree(tree / "results")
     for kill, moment, runs in (os.killpg, "problems/*.parquet", 7), (os.kill, "runs/*/*/*.parquet", 7), (os.killpg, "tables/*.csv", 16):
@@ -342,6 +323,9 @@ def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_make_goes_on_
         assert not (tree / "results/full/index.html").exists()
     subprocess.run(["make", "reproduce"], cwd=tree, check=True, capture_output=True)
     assert digests(tree) == digests(finished)
+    (data, pictures), (again, drawn) = (untimed((place / "results/full/index.html").read_text()) for place in (finished, tree))
+    assert again == data
+    assert {name for name, picture in pictures.items() if drawn[name] != picture} <= {"work"}
 
 
 # One kernel that calls another one of another module.
@@ -396,11 +380,8 @@ def test_report_shows_every_artefact_with_its_caption(tree):
     assert (tree / "report.zip").stat().st_size > 100_000
 
 
-def test_snakemake_looks_for_jobs_no_more_often_than_jobs_end(tree):
-    for number in range(2, 6):
-        (tree / f"results/full/song2016/figures/figure{number}.csv").unlink()
-    (tree / "results/full/song2016/audit.csv").unlink()
-    counted = """
+# Prints how often Snakemake looks for jobs that could start.
+COUNTED = """
 import sys
 from snakemake import cli
 from snakemake.scheduling.job_scheduler import JobScheduler
@@ -411,13 +392,33 @@ try:
 finally:
     print("looks:", len(looks))
 """
+
+
+@pytest.fixture(scope="module")
+def made_again(finished):
+    """All figures and the page made again on one core: their bytes before and after, the jobs that made them, and the looks for jobs."""
+    tree = copied(finished)
+    folder, page = tree / "results/full/song2016/figures", tree / "results/full/index.html"
+    before = {file.name: file.read_bytes() for file in (page, *folder.iterdir())}
+    shutil.rmtree(folder)
+    page.unlink()
     done = subprocess.run(
-        [sys.executable, "-c", counted, "--workflow-profile", "none", "--cores", "1", "--rerun-triggers", *TRIGGERS],
+        [sys.executable, "-c", COUNTED, "--workflow-profile", "none", "--cores", "1", "--rerun-triggers", *TRIGGERS],
         cwd=tree,
         capture_output=True,
         text=True,
         check=True,
     )
-    jobs = int(re.search(r"^total +(\d+)", done.stderr, flags=re.M)[1])
+    jobs, looks = re.search(r"^total +(\d+)", done.stderr, flags=re.M)[1], re.search(r"looks: (\d+)", done.stdout)[1]
+    return before, {file.name: file.read_bytes() for file in (page, *folder.iterdir())}, int(jobs), int(looks)
+
+
+def test_figures_and_page_made_again_on_one_core_have_equal_bytes(made_again):
+    before, after, *_ = made_again
+    assert after == before
+
+
+def test_snakemake_looks_for_jobs_no_more_often_than_jobs_end(made_again):
+    *_, jobs, looks = made_again
     assert jobs > 5
-    assert int(re.search(r"looks: (\d+)", done.stdout)[1]) <= jobs
+    assert looks <= jobs
