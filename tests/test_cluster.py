@@ -1,7 +1,6 @@
 """The profiles for clusters: the README's lines on a Slurm of one node, and the generic profile on a stand-in for qsub.
 
-Both must give the bits of a run without a cluster. The copy of the tree has an environment of its own, which sees this one's packages, so
-that `make cluster` can add to it.
+Both must give the bits of a run without a cluster. The copy of the tree has an environment of its own, to which `make cluster` can add.
 """
 
 import os
@@ -25,14 +24,22 @@ FIGURE = "results/smoke/song2016/figures/figure4.svg"
 RUN = "results/smoke/song2016/runs/routes/smooth/0.parquet"
 
 
+def linked(original, copied):
+    """A file under another name, or, on another disk, a copy."""
+    try:
+        os.link(original, copied)
+    except OSError:
+        shutil.copy2(original, copied)
+
+
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory):
     """A copy of the tree whose configuration names song2016 alone."""
     tree = trees.copy(tmp_path_factory.mktemp("cluster") / "tree")
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", tree / ".venv"], check=True)
     (site,) = (tree / ".venv").glob("lib/python*/site-packages")
-    (site / "original.pth").write_text(f"{sysconfig.get_path('purelib')}\n")
-    (site / "bezierplan.pth").write_text("../../../../src\n")
+    shutil.copytree(sysconfig.get_path("purelib"), site, dirs_exist_ok=True, copy_function=linked)
+    linked(Path(sysconfig.get_path("scripts")) / "uv", tree / ".venv" / "bin" / "uv")
     (tree / ".venv" / "ready").touch()
     # pytest may run with modules of its own; the tree's programs stand in its environment as in any other.
     (tree / ".venv" / "bin" / "snakemake").write_text(f'#!/bin/sh\nexec "{tree}/.venv/bin/python" -m snakemake "$@"\n')

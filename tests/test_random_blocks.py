@@ -80,13 +80,14 @@ def test_maps_without_a_block_are_empty():
         (
             {"lattice_length": 28.0},
             {},
-            "obstacles: 60: of 500 maps none has so many occupied cells and a shortest lattice path of lattice_length 28",
+            "obstacles: 60: of 50 maps none has so many occupied cells and a shortest lattice path of lattice_length 28",
         ),
-        ({}, {"obstacles": 300}, "obstacles: 300: of 500 maps none has so many occupied cells and a path from start to target"),
+        ({}, {"obstacles": 300}, "obstacles: 300: of 50 maps none has so many occupied cells and a path from start to target"),
         ({}, {"target": [21, 20]}, "target: \\[21, 20\\]: outside the map; expected x and y from 0 to 20"),
     ],
 )
-def test_what_no_map_can_be_is_told(description, problem, told):
+def test_what_no_map_can_be_is_told(description, problem, told, monkeypatch):
+    monkeypatch.setattr(random_blocks, "MOST_MAPS", 50)
     job = {"study": "study", "problems": {"blocks_0": PROBLEM | problem}, "workspaces": {"blocks": MAP | description}}
     with pytest.raises(ValueError, match=told):
         problems.build_all(job, None)

@@ -19,9 +19,15 @@ sys.executable = shlex.quote(sys.executable)
 from bezierplan.running import effort, forks
 from bezierplan.study import alternatives, checked, experiments, jobs, page, reading, targets
 
-# What the directive `script` calls: a fork of one process with all libraries, instead of a new interpreter.
-FORKS = forks.Forks(INTERPRETER, script)
-script = FORKS.script
+FORKS, in_an_interpreter = forks.Forks(INTERPRETER, script), script
+
+
+def script(*given):
+    """What the directive of this name calls: a fork of one process with all libraries, instead of a new interpreter. But a process that a cluster
+    starts for one job imports only what that job needs.
+    """
+    alone = len(workflow.dag_settings.target_jobs) == 1
+    (in_an_interpreter if alone else FORKS.script)(*given)
 
 
 def at_changes():
