@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import pytest
 from snakemake.script import script
 
-from bezierplan.running.forks import MODULES, Forks
+from bezierplan.running.forks import FIRST, LATER, Forks
 
 # Nothing to test elsewhere: a fork of a process that has loaded libraries of macOS may crash, so `Forks.script` makes none there.
 pytestmark = pytest.mark.skipif(
@@ -62,12 +62,15 @@ def test_script_gets_its_object_and_no_input(forks, tmp_path):
     assert told.read_text() == repr(("__main__", "one.py", {"a": 1}, ""))
 
 
-def test_what_jobs_need_is_imported_while_no_job_waits(forks, tmp_path):
+def test_what_the_first_jobs_need_is_imported_before_them_and_the_rest_while_no_job_waits(forks, tmp_path):
     told = tmp_path / "told"
     source = "import os, sys\nfile, names = snakemake\nprint(os.getppid(), set(names) <= set(sys.modules), file=open(file, 'a'))"
+    assert forks.succeeds("modules.py", source, (str(told), FIRST))
+    assert "True" in told.read_text()
+    told.unlink()
     until = time.monotonic() + 120
     while time.monotonic() < until and not (told.exists() and "True" in told.read_text()):
-        assert forks.succeeds("modules.py", source, (str(told), MODULES))
+        assert forks.succeeds("modules.py", source, (str(told), LATER))
         time.sleep(0.2)
     parents, imported = zip(*map(str.split, told.read_text().splitlines()), strict=True)
     assert imported[-1] == "True"

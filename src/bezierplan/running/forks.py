@@ -1,8 +1,8 @@
 """Run the scripts of jobs in forks of one process that has imported what they need.
 
 To start Python and to import numba, pandas and seaborn takes one to two seconds, longer than most jobs work. Snakemake starts an
-interpreter for each script; here one process imports these libraries once per workflow, while no job waits, and forks a child per job. A
-child inherits modules, never results: the parent reads no file of the workflow.
+interpreter for each script; here one process imports these libraries once per workflow, most of them while no job waits, and forks a child
+per job. A child inherits modules, never results: the parent reads no file of the workflow.
 """
 
 import contextlib
@@ -24,13 +24,16 @@ from typing import Any
 
 from bezierplan.running.log import end_with_parent
 
-# What jobs import, in the order in which the first jobs of a workflow need it.
-MODULES = (
+# What the first jobs of a workflow import, which wait for it: each on its own would take as long, and more time of all cores.
+FIRST = (
     "snakemake.iocontainers",
     "pyarrow.dataset",
     "bezierplan.running.problems",
     "bezierplan.running.execution",
     "scipy.sparse.csgraph",
+)
+# What later jobs import, in the order in which they need it.
+LATER = (
     "bezierplan.running.worlds",
     "bezierplan.running.rides",
     "bezierplan.analysis.results",
@@ -113,15 +116,18 @@ class Forks:
 
 
 def serve(control: socket.socket) -> None:
-    """Fork a child for each socket that arrives; import what jobs need while none arrives; return when the other end has closed."""
+    """Fork a child for each socket that arrives, after importing what the first jobs need; import what later ones need while none arrives;
+    return when the other end has closed.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     signal.signal(signal.SIGCHLD, reap)
-    steps = [*(partial(importlib.import_module, name) for name in MODULES), compile_first]
+    first, later = ([partial(importlib.import_module, name) for name in names] for names in (FIRST, LATER))
+    first.append(compile_first)
     while True:
-        if steps and not select.select([control], [], [], 0)[0]:
+        if first or (later and not select.select([control], [], [], 0)[0]):
             # The jobs that need a module report what is wrong with it.
             with contextlib.suppress(Exception):
-                steps.pop(0)()
+                (first or later).pop(0)()
             continue
         arrived, sockets, *_ = socket.recv_fds(control, 1, 1)
         if not arrived:
