@@ -27,15 +27,19 @@ settings.register_profile("bezierplan", deadline=None, derandomize=True, databas
 settings.load_profile("bezierplan")
 configuration.set_hypothesis_home_dir(ROOT / ".cache" / "hypothesis")
 
-# Files that take a minute or more, the longest first: at the end, no process has a long file to itself while the others have nothing left.
+# Files that take longest, in that order: at the end, no process has a long file to itself while the others have nothing left.
 LONGEST = (
     "test_workflow.py",
     "test_cluster.py",
-    "test_own_study.py",
     "test_readme.py",
-    "test_mutants.py",
-    "test_truth.py",
+    "test_page_browser.py",
     "test_bounds.py",
+    "test_own_study.py",
+    "test_hostile_faults.py",
+    "test_claims_each_way.py",
+    "test_archive.py",
+    "test_claims.py",
+    "test_figures.py",
 )
 
 
