@@ -6,9 +6,9 @@ PYTHON = python3.13 python3.12 python3.11 python3
 RUN       = .venv/bin/python
 SNAKEMAKE = $(RUN) -m snakemake
 LOCKED    = --quiet --require-hashes --only-binary :all:
-PIP       = $(RUN) -m pip install --disable-pip-version-check $(LOCKED)
 # uv takes a third of pip's time, but does not read pip's settings, which may name another index than PyPI.
-install   = $(RUN) -m uv pip install --python $(RUN) --compile-bytecode $(LOCKED) $1 2>/dev/null || $(PIP) $1
+pip       = $1 -m pip install --disable-pip-version-check $(LOCKED) $2
+install   = $(RUN) -m uv pip install --python $1 --compile-bytecode $(LOCKED) $2 2>/dev/null || $(pip)
 LOCK      = $(RUN) -m uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest --generate-hashes
 
 # A killed run leaves its lock behind. A clone has one user, so these targets may break it; plain `snakemake` keeps it.
@@ -58,7 +58,7 @@ compare: .cache/comparison/ready ## our swarm beside other libraries, and all st
 	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare_planners.py'
 
 cluster: .venv/ready ## add Snakemake's plugins for Slurm and other schedulers, for profiles/slurm and profiles/cluster
-	@$(call install,-r environment-cluster.txt)
+	@$(call install,$(RUN),-r environment-cluster.txt)
 
 archive: .cache/archive/ready ## results/full with code and environment as an RO-Crate, checked and zipped, into archive (ARGS: another scale)
 	$(<D)/bin/python workflow/archive/archive.py $(ARGS)
@@ -107,8 +107,8 @@ found = $(firstword $(foreach p,$(PYTHON),$(shell $(p) -c '$(fits)' >/dev/null 2
 	@echo "Setting up .venv with $(found): about 1 GB, up to a few minutes"
 	@rm -rf .venv
 	@$(found) -m venv .venv
-	@$(PIP) -r environment-build.txt
-	@$(call install,--no-binary connection-pool --no-build-isolation -r environment.txt)
+	@$(call pip,$(RUN),-r environment-build.txt)
+	@$(call install,$(RUN),--no-binary connection-pool --no-build-isolation -r environment.txt)
 	@$(RUN) -c 'import sysconfig; open(sysconfig.get_path("purelib") + "/bezierplan.pth", "w").write("../../../../src\n")'
 	@touch $@
 
@@ -118,6 +118,6 @@ found = $(firstword $(foreach p,$(PYTHON),$(shell $(p) -c '$(fits)' >/dev/null 2
 .cache/comparison/ready .cache/archive/ready: | .venv/ready
 	@rm -rf $(@D)
 	@$(RUN) -m venv $(@D)
-	@$(@D)/bin/python -m pip install --quiet --disable-pip-version-check --require-hashes --only-binary :all: -r $< || \
+	@$(call install,$(@D)/bin/python,-r $<) || \
 	  { echo "$(@D): not every library of $< has a wheel that could be had for this platform; pip names it above" >&2; exit 1; }
 	@touch $@
