@@ -26,9 +26,9 @@ FILE = Path(__file__).with_name("mutants.yaml")
 TIME_LIMIT = 300
 # Where a copy of the tree keeps what pytest says.
 WORDS = "pytest.txt"
-# Processes begin with what takes long to import.
 FORKS = multiprocessing.get_context("forkserver")
-FORKS.set_forkserver_preload(["numba", "pandas", "pyarrow.parquet", "scipy.stats", "scipy.interpolate", "matplotlib.figure", "shapely"])
+# What takes long to import: processes begin with it.
+MODULES = ["numba", "pandas", "pyarrow.parquet", "scipy.stats", "scipy.interpolate", "matplotlib.figure", "shapely"]
 # The status that multiprocessing gives a process whose true one another thread has read: a start polls the children of all threads.
 LOST = 255
 # What no test of a fault needs; compiled kernels are copied, because most of them do not change.
@@ -115,6 +115,7 @@ def main() -> int:
     parser.add_argument("words", nargs="*", metavar="WORD", help="only faults whose description, file or test contains a word")
     arguments = parser.parse_args()
     os.environ.update(dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS"), "1"))
+    FORKS.set_forkserver_preload(MODULES)
     wanted = [each for each in load() if not arguments.words or any(word in " ".join(each) for word in arguments.words)]
     with tempfile.TemporaryDirectory() as folder:
         trees: queue.Queue = queue.Queue()
