@@ -9,18 +9,19 @@ import tempfile
 from functools import partial
 from pathlib import Path
 from subprocess import CompletedProcess
+from unittest.mock import patch
 
 _MODULES = [
     *("snakemake.cli", "snakemake.dag", "snakemake.executors.dryrun", "snakemake.scheduling.greedy", "snakemake_logger_plugin_rich"),
     *("docutils.core", "jinja2", "numba", "pandas", "pydantic", "requests", "rich.progress", "smart_open", "yaml"),
 ]
+# pyarrow, which pandas imports, would start a thread: see `bezierplan.running.forks`, which is not imported, for a tree has its own.
+_ONE_THREAD = {"JE_ARROW_MALLOC_CONF": "background_thread:false"}
 # On Linux and macOS; elsewhere each start imports anew, with the same result.
 _METHOD = "forkserver" if "forkserver" in multiprocessing.get_all_start_methods() else "spawn"
 _STARTS = multiprocessing.get_context(_METHOD)
 if _METHOD == "forkserver":
     _STARTS.set_forkserver_preload(_MODULES)
-    # pyarrow, which pandas imports, would start a thread: see `bezierplan.running.forks`, which is not imported, for a tree has its own.
-    os.environ["JE_ARROW_MALLOC_CONF"] = "background_thread:false"
 
 
 def snakemake(folder: Path, *words: str, calls: Path | None = None) -> CompletedProcess:
@@ -30,7 +31,8 @@ def snakemake(folder: Path, *words: str, calls: Path | None = None) -> Completed
     with tempfile.TemporaryDirectory() as kept:
         printed = [Path(kept, name) for name in ("output", "errors")]
         start = _STARTS.Process(target=_run, args=(folder, words, printed, calls))
-        start.start()
+        with patch.dict(os.environ, _ONE_THREAD):
+            start.start()
         start.join()
         output, errors = (file.read_text() for file in printed)
     return CompletedProcess(words, start.exitcode, output, errors)
