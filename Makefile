@@ -6,7 +6,8 @@ PYTHON = python3.13 python3.12 python3.11 python3
 RUN       = .venv/bin/python
 SNAKEMAKE = $(RUN) -m snakemake
 LOCKED    = --quiet --require-hashes --only-binary :all:
-# uv takes a third of pip's time, but does not read pip's settings, which may name another index than PyPI.
+# Into the environment of an interpreter ($1), some packages ($2). uv takes a third of pip's time, but does not read pip's settings, which may name
+# another index than PyPI.
 pip       = $1 -m pip install --disable-pip-version-check $(LOCKED) $2
 install   = $(RUN) -m uv pip install --python $1 --compile-bytecode $(LOCKED) $2 2>/dev/null || $(pip)
 LOCK      = $(RUN) -m uv pip compile --quiet --universal --python-version 3.11 --fork-strategy fewest --generate-hashes

@@ -6,8 +6,6 @@ from pathlib import Path
 import pytest
 from faults import told
 
-from bezierplan.workspaces import random_blocks
-
 FOLDER = Path(__file__).parents[1] / "config" / "studies" / "ma2020"
 EXPERIMENTS, MAP = "experiments.yaml", "workspaces/environment1.txt"
 
@@ -62,7 +60,7 @@ FAULTS = {
         EXPERIMENTS,
         "obstacles: [60]",
         "obstacles: [390]",
-        "obstacles: 390: of 50 maps none has so many",
+        "obstacles: 390: of 500 maps none has so many",
     ),
     "blocks of no cell": (
         EXPERIMENTS,
@@ -80,7 +78,6 @@ FAULTS = {
 
 
 @pytest.mark.parametrize("fault", FAULTS, ids=str)
-def test_a_fault_is_told_in_one_line(fault, folder, monkeypatch):
-    monkeypatch.setattr(random_blocks, "MOST_MAPS", 50)
+def test_a_fault_is_told_in_one_line(fault, folder):
     name, old, new, expected = FAULTS[fault]
     assert expected in told(folder / name, old, new, folder)
