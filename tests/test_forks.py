@@ -22,7 +22,16 @@ pytestmark = pytest.mark.skipif(
 
 @pytest.fixture
 def forks():
+    """One that has not started."""
     return Forks(sys.executable, script)
+
+
+@pytest.fixture(scope="module")
+def started():
+    """One for all tests that leave it as it was."""
+    forks = Forks(sys.executable, script)
+    forks.start()
+    return forks
 
 
 def gone(process, seconds=20):
@@ -48,17 +57,16 @@ def test_start_comes_before_the_first_job_and_once(forks, tmp_path):
     assert int(told.read_text()) == started == forks.process
 
 
-def test_script_runs_in_the_folder_of_its_workflow(forks, tmp_path, monkeypatch):
-    forks.start()
+def test_script_runs_in_the_folder_of_its_workflow(started, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    assert forks.succeeds("folder.py", "import os; open('told', 'w').write(os.getcwd())", None)
+    assert started.succeeds("folder.py", "import os; open('told', 'w').write(os.getcwd())", None)
     assert (tmp_path / "told").read_text() == str(tmp_path)
 
 
-def test_script_gets_its_object_and_no_input(forks, tmp_path):
+def test_script_gets_its_object_and_no_input(started, tmp_path):
     told = tmp_path / "told"
     source = "import sys\nopen(snakemake.output, 'w').write(repr((__name__, __file__, snakemake.params, sys.stdin.read())))"
-    assert forks.succeeds("one.py", source, SimpleNamespace(output=str(told), params={"a": 1}))
+    assert started.succeeds("one.py", source, SimpleNamespace(output=str(told), params={"a": 1}))
     assert told.read_text() == repr(("__main__", "one.py", {"a": 1}, ""))
 
 
@@ -78,33 +86,30 @@ def test_what_the_first_jobs_need_is_imported_before_them_and_the_rest_while_no_
     assert len(os.listdir(f"/proc/{forks.process}/task")) == 1, "a process that is forked must have one thread"
 
 
-@pytest.mark.parametrize(
-    ("source", "told"),
-    [
+def test_script_that_does_not_come_to_its_end_fails_and_the_next_one_runs(forks, capfd):
+    for source, told in (
         ("import sys; sys.exit('song.yaml: wrong')", "song.yaml: wrong\n"),
         ("raise ValueError('wrong')", "ValueError: wrong\n"),
         ("def broken(", "SyntaxError"),
         ("import os, signal; os.kill(os.getpid(), signal.SIGKILL)", ""),
         ("import os; os._exit(0)", ""),
-    ],
-)
-def test_script_that_does_not_come_to_its_end_fails_and_the_next_one_runs(forks, capfd, source, told):
-    assert not forks.succeeds("bad.py", source, None)
-    assert told in capfd.readouterr().err
-    assert forks.succeeds("good.py", "pass", None)
+    ):
+        assert not forks.succeeds("bad.py", source, None), source
+        assert told in capfd.readouterr().err
+        assert forks.succeeds("good.py", "pass", None)
 
 
-def test_many_scripts_at_once(forks, tmp_path):
+def test_many_scripts_at_once(started, tmp_path):
     source = "import time; time.sleep(0.01 * snakemake[0]); open(snakemake[1], 'w').write('done'); assert snakemake[0] % 3"
     files = [tmp_path / str(k) for k in range(12)]
     with ThreadPoolExecutor(12) as threads:
-        ends = list(threads.map(lambda k: forks.succeeds("many.py", source, (k, str(files[k]))), range(12)))
+        ends = list(threads.map(lambda k: started.succeeds("many.py", source, (k, str(files[k]))), range(12)))
     assert ends == [k % 3 != 0 for k in range(12)]
     assert all(file.read_text() == "done" for file in files)
 
 
-def test_large_object_of_a_script_that_does_not_read_it(forks):
-    assert forks.succeeds("large.py", "assert len(snakemake) == 10**7", bytes(10**7))
+def test_large_object_of_a_script_that_does_not_read_it(started):
+    assert started.succeeds("large.py", "assert len(snakemake) == 10**7", bytes(10**7))
 
 
 def test_next_script_runs_after_the_process_that_is_forked_was_killed(forks, tmp_path):

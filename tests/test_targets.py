@@ -88,6 +88,17 @@ def test_files_appear_when_all_are_written(tmp_path):
     assert sorted(os.listdir(tmp_path)) == ["one.csv", "two.csv"]
 
 
+def test_what_a_killed_job_left_is_removed_when_it_runs_again(tmp_path):
+    for name in ("one.csv", "another_one.csv"):
+        left = tmp_path / f".part-{name}-killed"
+        left.mkdir()
+        (left / name).write_text("half")
+    names = OutputFiles(fromdict={"one": str(tmp_path / "one.csv")})
+    with log.whole_files(names) as parts, open(parts.one, "w") as file:
+        file.write("x")
+    assert sorted(os.listdir(tmp_path)) == [".part-another_one.csv-killed", "one.csv"]
+
+
 def test_failed_job_leaves_no_file_and_names_a_damaged_input(tmp_path, monkeypatch):
     monkeypatch.setattr(log, "end_with_parent", lambda: None)
     damaged = tmp_path / "cut.parquet"

@@ -2,6 +2,7 @@
 
 import json
 import os
+import pstats
 import re
 import shutil
 import signal
@@ -39,9 +40,9 @@ def edit(file, old, new):
 TRIGGERS = yaml.safe_load((ROOT / "profiles/default/profile.yaml").read_text())["rerun-triggers"]
 
 
-def snakemake(tree, *words, check=True):
+def snakemake(tree, *words, check=True, **options):
     """Run snakemake in a tree, with the triggers alone of the default profile; returns what it printed."""
-    done = starts.snakemake(tree, "--workflow-profile", "none", "--cores", "2", *words, "--rerun-triggers", *TRIGGERS)
+    done = starts.snakemake(tree, "--workflow-profile", "none", "--cores", "2", *words, "--rerun-triggers", *TRIGGERS, **options)
     if check:
         assert done.returncode == 0, done.stderr
     return done.stdout + done.stderr
@@ -117,6 +118,7 @@ def tree(finished):
 
 def test_nothing_is_left_to_do(tree):
     assert planned(tree) == {}
+    assert not list((tree / "results").rglob(".part-*"))
 
 
 def test_each_planner_has_a_job_before_all_others(tree):
@@ -235,10 +237,6 @@ def test_cut_off_table_of_runs_is_named_and_made_again(finished, tree):
     assert digests(tree) == digests(finished)
 
 
-def test_no_part_of_a_file_is_left(tree):
-    assert not list((tree / "results").rglob(".part-*"))
-
-
 def test_new_planner_reruns_nothing(tree):
     shutil.copy(tree / "src/bezierplan/planners/binary_genetic.py", tree / "src/bezierplan/planners/another.py")
     assert planned(tree) == {}
@@ -256,11 +254,25 @@ def test_single_figure_needs_only_its_own_methods(tree):
 
 
 def test_one_core_another_order_and_larger_chunks_give_the_same_content(finished, tree):
+    """And Snakemake looks for jobs that could start no more often than jobs end."""
     shutil.rmtree(tree / "results")
     edit(tree / EXPERIMENTS, "full: 2,", "full: 4,")
     files = [f"results/full/song2016/runs/routes/{method}/0.parquet" for method in reversed(METHODS)]
-    snakemake(tree, "--cores", "1", *files)
+    printed = snakemake(tree, "--cores", "1", *files, calls=tree / "calls")
     assert digests(tree) == digests(finished)
+    jobs = int(re.search(r"^total +(\d+)", printed, flags=re.M)[1])
+    (looks,) = (counts[0] for (*_, name), counts in pstats.Stats(str(tree / "calls")).stats.items() if name == "job_selector")
+    assert 0 < looks <= jobs == len(files) + 1
+
+
+def test_figure_and_page_made_again_have_equal_bytes(tree):
+    """Those of the same CPU times; all others are compared at the end of the workflow that is killed."""
+    files = [tree / f"results/full/{name}" for name in ("index.html", *(f"song2016/figures/work.{kind}" for kind in ("svg", "png", "csv")))]
+    before = [file.read_bytes() for file in files]
+    for file in files:
+        file.unlink()
+    snakemake(tree)
+    assert [file.read_bytes() for file in files] == before
 
 
 def untimed(text):
@@ -294,7 +306,7 @@ def written(tree):
 
 # The kernel of Linux ends a job whose workflow dies (PR_SET_PDEATHSIG, `running.log`); macOS has no such call, and no /proc to look into.
 @pytest.mark.skipif(sys.platform != "linux", reason="only the kernel of Linux ends a job with its parent, and has /proc to look into")
-def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_make_goes_on_to_the_same_page_but_for_times(finished, tree):
+def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_make_goes_on_to_the_same_end_but_for_times(finished, tree):
     """Killed by itself or with its group, each time when a new file of a kind is there; at most so many chunks of runs are done by then."""
     shutil.rmtree(tree / "results")
     for kill, moment, runs in (os.killpg, "problems/*.parquet", 7), (os.kill, "runs/*/*/*.parquet", 7), (os.killpg, "tables/*.csv", 16):
@@ -326,6 +338,10 @@ def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_make_goes_on_
     (data, pictures), (again, drawn) = (untimed((place / "results/full/index.html").read_text()) for place in (finished, tree))
     assert again == data
     assert {name for name, picture in pictures.items() if drawn[name] != picture} <= {"work"}
+    assert not list((tree / "results").rglob(".part-*"))
+    drawings, drawn_again = ({file.name: file.read_bytes() for file in place.glob("results/full/song2016/figures/*")} for place in (finished, tree))
+    assert drawings.keys() == drawn_again.keys()
+    assert {name for name, content in drawings.items() if drawn_again[name] != content} <= {"work.csv", "work.png", "work.svg"}
 
 
 # One kernel that calls another one of another module.
@@ -378,47 +394,3 @@ def test_every_artefact_is_a_named_target(tree):
 def test_report_shows_every_artefact_with_its_caption(tree):
     snakemake(tree, "--report", "report.zip")
     assert (tree / "report.zip").stat().st_size > 100_000
-
-
-# Prints how often Snakemake looks for jobs that could start.
-COUNTED = """
-import sys
-from snakemake import cli
-from snakemake.scheduling.job_scheduler import JobScheduler
-select, looks = JobScheduler.job_selector, []
-JobScheduler.job_selector = lambda self, jobs: looks.append(jobs) or select(self, jobs)
-try:
-    cli.main(sys.argv[1:])
-finally:
-    print("looks:", len(looks))
-"""
-
-
-@pytest.fixture(scope="module")
-def made_again(finished):
-    """All figures and the page made again on one core: their bytes before and after, the jobs that made them, and the looks for jobs."""
-    tree = copied(finished)
-    folder, page = tree / "results/full/song2016/figures", tree / "results/full/index.html"
-    before = {file.name: file.read_bytes() for file in (page, *folder.iterdir())}
-    shutil.rmtree(folder)
-    page.unlink()
-    done = subprocess.run(
-        [sys.executable, "-c", COUNTED, "--workflow-profile", "none", "--cores", "1", "--rerun-triggers", *TRIGGERS],
-        cwd=tree,
-        capture_output=True,
-        text=True,
-        check=True,
-    )
-    jobs, looks = re.search(r"^total +(\d+)", done.stderr, flags=re.M)[1], re.search(r"looks: (\d+)", done.stdout)[1]
-    return before, {file.name: file.read_bytes() for file in (page, *folder.iterdir())}, int(jobs), int(looks)
-
-
-def test_figures_and_page_made_again_on_one_core_have_equal_bytes(made_again):
-    before, after, *_ = made_again
-    assert after == before
-
-
-def test_snakemake_looks_for_jobs_no_more_often_than_jobs_end(made_again):
-    *_, jobs, looks = made_again
-    assert jobs > 5
-    assert looks <= jobs

@@ -2,8 +2,10 @@
 
 import ctypes
 import errno
+import glob
 import logging
 import os
+import shutil
 import signal
 import sys
 import tempfile
@@ -54,13 +56,16 @@ def job(given: Any) -> Iterator[Any]:
 def whole_files(files: Any) -> Iterator[Any]:
     """Temporary names in another folder for a job's files, all of one folder; they get their final names once the block succeeds.
 
-    So an existing file is always complete, even if its job was killed.
+    So an existing file is always complete, even if its job was killed. What a killed job left is removed when the job runs again.
     """
-    place = Path(files[0]).parent
-    with tempfile.TemporaryDirectory(prefix=".part-", dir=place) as folder:
-        parts = type(files)(toclone=files, custom_map=lambda file: str(Path(folder) / Path(file).name))
-        yield parts
-        for part, file in zip(parts, files, strict=True):
+    first = Path(files[0])
+    parts = f".part-{first.name}-"
+    for left in first.parent.glob(f"{glob.escape(parts)}*"):
+        shutil.rmtree(left, ignore_errors=True)
+    with tempfile.TemporaryDirectory(prefix=parts, dir=first.parent) as folder:
+        temporary = type(files)(toclone=files, custom_map=lambda file: str(Path(folder) / Path(file).name))
+        yield temporary
+        for part, file in zip(temporary, files, strict=True):
             os.replace(part, file)
 
 
