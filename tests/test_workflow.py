@@ -339,7 +339,9 @@ def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_make_goes_on_
     assert again == data
     assert {name for name, picture in pictures.items() if drawn[name] != picture} <= {"work"}
     assert not list((tree / "results").rglob(".part-*"))
-    drawings, drawn_again = ({file.name: file.read_bytes() for file in place.glob("results/full/song2016/figures/*")} for place in (finished, tree))
+    drawings, drawn_again = (
+        {file.name: file.read_bytes() for file in place.glob("results/full/song2016/figures/*")} for place in (finished, tree)
+    )
     assert drawings.keys() == drawn_again.keys()
     assert {name for name, content in drawings.items() if drawn_again[name] != content} <= {"work.csv", "work.png", "work.svg"}
 
