@@ -111,8 +111,8 @@ def test_syntax_that_was_kept_is_read_and_a_damaged_copy_is_made_anew(tree):
 KERNELS = """
 import numpy as np
 from bezierplan.planners.parts import genetic
-genetic.roulette(np.random.default_rng(0), np.ones(4), 3)
-print(sum(genetic.roulette.stats.cache_hits.values()), genetic.roulette.stats.cache_path)
+genetic.complement_bit(np.arange(4), 5, 3)
+print(sum(genetic.complement_bit.stats.cache_hits.values()), genetic.complement_bit.stats.cache_path)
 """
 
 

@@ -7,10 +7,12 @@ cluster.
 import functools
 import os
 import re
+import shlex
 import subprocess
 from pathlib import Path
 
 import pytest
+import starts
 import trees
 
 ROOT = Path(__file__).parents[1]
@@ -61,8 +63,12 @@ def tree(tmp_path_factory):
 
 @functools.cache
 def executed(tree, command):
-    """What a command prints, which must succeed; each is executed once."""
+    """What a command prints, which must succeed; each is executed once. A dry run needs no shell."""
     command = command.replace("/path/to/mystudy", str(tree.parent / "mystudy"))
+    if command.startswith("snakemake -n "):
+        done = starts.snakemake(tree, *shlex.split(command)[1:])
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout + done.stderr
     environment = os.environ | {"PYTHONPATH": str(tree / "src")}
     done = subprocess.run(
         ["bash", "-c", f". .venv/bin/activate && {command}"], cwd=tree, env=environment, capture_output=True, text=True, check=False
