@@ -169,7 +169,7 @@ METRICS: dict[str, Metric] = {
     ),
     "turning": Metric("rad", "changes of heading, all added", True, partial(measures.of_path, measures.turning)),
     "bending": Metric(
-        "rad^2/u",
+        "rad²/u",
         f"squared changes of heading between parts of {BENDING_PART:g} u over their length, all added: the integral of squared curvature",
         True,
         partial(measures.of_path, measures.bending),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 # Metrics that the exact shortest length bounds from below.
 _BOUNDED = ("length", "objective")
 
-# Group names with more characters in total than this are broken at spaces.
+# Group names with more characters in total than this are broken at spaces, and before numbers.
 _ONE_LINE = 40
 
 # The share of a group's room that its bars take.
@@ -83,7 +84,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     axes.set_xlim(-0.5, len(groups) - 0.5)
     names = [scene.labels.get(group, group) if isinstance(group, str) else f"{group:g}" for group in groups]
     if sum(map(len, names)) > _ONE_LINE:
-        names = [name.replace(" ", "\n") for name in names]
+        names = [re.sub(r" |(?<=[a-z])(?=\d)", "\n", name) for name in names]
     axes.set_xticks(range(len(groups)), names)
     axes.tick_params(axis="x", length=0, pad=8 + lines * height)
     axes.set_xlabel(style.column_name(x, scene.labels))

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 # Where lines do not join points, the groups at one x take this share of the distance to the next.
 _SPREAD = 0.7
 
+# At most so many values, evenly spaced, each get a tick.
+_FEW = 5
+
 # Above this many points, only the points are drawn: lines between jumping values would cover the panel.
 _MOST_JOINED = 100
 
@@ -177,8 +180,9 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
             _draw_repeats(axes, own[own["part"] == "repeat"], x, None if hue is None else look["color"])
         else:
             axes.plot(own[x], own["value"], label=label or None, **_joined(look, len(own)))
-    if not panel["joined"]:
-        axes.set_xticks(sorted(frame[x].unique()))
+    values = np.unique(frame[x])
+    if not panel["joined"] or (len(values) <= _FEW and len(set(np.diff(values))) <= 1):
+        axes.set_xticks(values)
     elif (frame[x] % 1 == 0).all():
         axes.xaxis.get_major_locator().set_params(integer=True)
     axes.set_xlabel(axis_label(x, scene))
