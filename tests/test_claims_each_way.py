@@ -39,6 +39,7 @@ def published(key):
     return {file.stem: pd.read_csv(file) for file in sorted((STUDIES / key / "published").glob("*.csv"))}
 
 
+@cache
 def artefacts(key):
     return {name: artefact.plain() for name, artefact in (study(key).tables | study(key).figures).items()}
 

@@ -2,6 +2,7 @@
 
 import itertools
 import math
+from functools import cache
 
 import numpy as np
 import pytest
@@ -70,6 +71,7 @@ def field(side=100, *circles, ends=None, gene_lattice="coarse", gene_order="colu
     return planner.field_of(grid, grid.in_cells(ends), gene_lattice, gene_order, point_order)
 
 
+@cache
 def rules(**changed):
     """The settings as `plan` hands them to the search."""
     seen = []
