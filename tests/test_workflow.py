@@ -265,13 +265,15 @@ def test_one_core_another_order_and_larger_chunks_give_the_same_content(finished
     assert 0 < looks <= jobs == len(files) + 1
 
 
-def test_figure_and_page_made_again_have_equal_bytes(tree):
-    """Those of the same CPU times; all others are compared at the end of the workflow that is killed."""
-    files = [tree / f"results/full/{name}" for name in ("index.html", *(f"song2016/figures/work.{kind}" for kind in ("svg", "png", "csv")))]
+def test_figures_and_page_made_again_on_one_core_have_equal_bytes(tree):
+    """On Linux the figure of the same CPU times: all others are compared at the end of the workflow that is killed."""
+    figures = (tree / "results/full/song2016/figures").glob("work.*" if sys.platform == "linux" else "*")
+    files = [tree / "results/full/index.html", *figures]
     before = [file.read_bytes() for file in files]
+    assert len(files) >= 4
     for file in files:
         file.unlink()
-    snakemake(tree)
+    snakemake(tree, "--cores", "1")
     assert [file.read_bytes() for file in files] == before
 
 

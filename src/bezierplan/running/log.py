@@ -59,13 +59,13 @@ def whole_files(files: Any) -> Iterator[Any]:
     So an existing file is always complete, even if its job was killed. What a killed job left is removed when the job runs again.
     """
     first = Path(files[0])
-    parts = f".part-{first.name}-"
-    for left in first.parent.glob(f"{glob.escape(parts)}*"):
+    prefix = f".part-{first.name}-"
+    for left in first.parent.glob(f"{glob.escape(prefix)}*"):
         shutil.rmtree(left, ignore_errors=True)
-    with tempfile.TemporaryDirectory(prefix=parts, dir=first.parent) as folder:
-        temporary = type(files)(toclone=files, custom_map=lambda file: str(Path(folder) / Path(file).name))
-        yield temporary
-        for part, file in zip(temporary, files, strict=True):
+    with tempfile.TemporaryDirectory(prefix=prefix, dir=first.parent) as folder:
+        parts = type(files)(toclone=files, custom_map=lambda file: str(Path(folder) / Path(file).name))
+        yield parts
+        for part, file in zip(parts, files, strict=True):
             os.replace(part, file)
 
 
