@@ -4,8 +4,8 @@ from pathlib import Path
 
 import pytest
 
+from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
-from bezierplan.study.checked import Fault
 
 
 def told(file: Path, old: str, new: str, study: Path) -> str:

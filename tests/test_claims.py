@@ -17,7 +17,7 @@ from bezierplan.analysis.claims.ranks import signed_rank_test
 from bezierplan.analysis.claims.verdicts import Marked
 from bezierplan.analysis.metrics import Metric
 from bezierplan.analysis.results import Results
-from bezierplan.study.checked import Fault
+from bezierplan.schema.checked import Fault
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator

@@ -11,9 +11,9 @@ import pytest
 
 from bezierplan.analysis.claims import kinds
 from bezierplan.analysis.metrics import METRICS
-from bezierplan.study import checked
+from bezierplan.schema import checked
+from bezierplan.schema.model import Model, keys, one_or_list, parsed
 from bezierplan.study import claims as study_claims
-from bezierplan.study.model import Model, keys, one_or_list, parsed
 
 STUDIES = Path(__file__).parents[1] / "config" / "studies"
 CLAIMS = {"song2016": 10, "tharwat2018": 42, "ma2020": 21, "meledje": 12, "elhoseny2017": 24}

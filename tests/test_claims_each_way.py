@@ -20,7 +20,7 @@ from bezierplan.analysis.claims.kinds import OfRuns, kinds
 from bezierplan.analysis.claims.material import Material
 from bezierplan.analysis.papers import elhoseny2017, ma2020, song2016, tharwat2018
 from bezierplan.analysis.results import Results
-from bezierplan.study.model import one_or_list
+from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator

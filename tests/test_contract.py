@@ -12,7 +12,7 @@ from bezierplan.geometry import checker, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.planners import known_planners
 from bezierplan.running import contract, execution, interface
-from bezierplan.study.checked import Fault
+from bezierplan.schema.checked import Fault
 from bezierplan.study.jobs import job
 
 ROOT = Path(__file__).parents[1]

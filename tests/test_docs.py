@@ -10,8 +10,8 @@ import pyarrow.parquet as parquet
 import pytest
 import starts
 
+from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
-from bezierplan.study.checked import Fault
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "python.md"

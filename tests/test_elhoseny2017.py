@@ -13,7 +13,8 @@ from bezierplan.analysis import audit
 from bezierplan.analysis.papers import elhoseny2017
 from bezierplan.analysis.results import Results
 from bezierplan.running import execution, problems
-from bezierplan.study import checked, reading, targets
+from bezierplan.schema import checked
+from bezierplan.study import reading, targets
 from bezierplan.study.jobs import job, problems_job
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "elhoseny2017"

@@ -15,7 +15,7 @@ from bezierplan.commands import forecast
 from bezierplan.commands.forecast import Step
 from bezierplan.running import records
 from bezierplan.running.records import Job, Record
-from bezierplan.study.checked import Fault
+from bezierplan.schema.checked import Fault
 
 ROOT = Path(__file__).parents[1]
 

@@ -13,8 +13,8 @@ from pathlib import Path
 import pytest
 import starts
 
+from bezierplan.schema.checked import LONGEST_FILE, Fault
 from bezierplan.study import reading
-from bezierplan.study.checked import LONGEST_FILE, Fault
 
 ROOT = Path(__file__).parents[1]
 SONG = ROOT / "config" / "studies" / "song2016"

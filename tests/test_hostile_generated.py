@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bezierplan.study import checked, model
+from bezierplan.schema import checked, model
+from bezierplan.schema.checked import Fault
 from bezierplan.study.artefacts import ArtefactsFile
-from bezierplan.study.checked import Fault
 from bezierplan.study.claims import AssumptionsFile, ClaimsFile
 from bezierplan.study.experiments import ExperimentsFile
 from bezierplan.workspaces import files

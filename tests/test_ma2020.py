@@ -15,7 +15,7 @@ from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.planners import bca, planner_module, planner_settings
 from bezierplan.running import problems
-from bezierplan.study import checked
+from bezierplan.schema import checked
 from bezierplan.workspaces import files
 from bezierplan.workspaces.problem import Path
 

@@ -18,8 +18,9 @@ from bezierplan.running.simulation import motion_check
 from bezierplan.running.simulation.motion_check import between
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.robot import drive
-from bezierplan.study import checked, reading
-from bezierplan.study.checked import Fault
+from bezierplan.schema import checked
+from bezierplan.schema.checked import Fault
+from bezierplan.study import reading
 from bezierplan.study.jobs import job, problems_job
 from bezierplan.workspaces import files, grid
 from bezierplan.workspaces.ground import centres, cheapest, edge_energy, ground_of, obstacles_met

@@ -13,8 +13,8 @@ from bezierplan.running import problems, rides, worlds
 from bezierplan.running.execution import Condition
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.robot import Planned, Ride
+from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
-from bezierplan.study.checked import Fault
 from bezierplan.study.jobs import job, problems_job
 
 PLANNER = """

@@ -8,7 +8,7 @@ import pytest
 
 from bezierplan.analysis import summary
 from bezierplan.commands import outcome
-from bezierplan.study.checked import Fault
+from bezierplan.schema.checked import Fault
 
 ROOT = Path(__file__).parents[1]
 

@@ -5,7 +5,7 @@ from studies import study
 
 from bezierplan.commands import replay
 from bezierplan.running import execution, problems
-from bezierplan.study.checked import Fault
+from bezierplan.schema.checked import Fault
 from bezierplan.study.jobs import job, problems_job
 
 STUDIES = {"song2016": study("song2016")}

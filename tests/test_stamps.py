@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
+from bezierplan.schema.checked import Fault
 from bezierplan.study import checks as study_checks
 from bezierplan.study import reading, stamps
-from bezierplan.study.checked import Fault
 
 SONG2016 = Path(__file__).parents[1] / "config" / "studies" / "song2016"
 

@@ -15,7 +15,8 @@ from bezierplan.analysis.results import Results
 from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import chaotic_maps
 from bezierplan.running import problems
-from bezierplan.study import checked, checks, reading, targets
+from bezierplan.schema import checked
+from bezierplan.study import checks, reading, targets
 from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
 

@@ -8,8 +8,9 @@ import pytest
 from faults import told
 
 from bezierplan.running import execution
-from bezierplan.study import artefacts, jobs, keys, model, reading
-from bezierplan.study.checked import Fault
+from bezierplan.schema import model
+from bezierplan.schema.checked import Fault
+from bezierplan.study import artefacts, jobs, keys, reading
 
 SONG = Path(__file__).parents[1] / "config" / "studies" / "song2016"
 

@@ -11,8 +11,8 @@ from snakemake.iocontainers import OutputFiles
 from studies import study
 
 from bezierplan.running import log
+from bezierplan.schema.checked import Fault
 from bezierplan.study import experiments, reading, targets
-from bezierplan.study.checked import Fault
 
 SONG = study("song2016")
 STUDIES = {"song2016": SONG}

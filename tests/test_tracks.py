@@ -12,7 +12,7 @@ from bezierplan.figures.panels import landscape, tracks
 from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import penalised
 from bezierplan.running import execution, problems
-from bezierplan.study import checked
+from bezierplan.schema import checked
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
 

@@ -7,7 +7,7 @@ from studies import studies
 
 from bezierplan.analysis import verification
 from bezierplan.commands import verify_outcome
-from bezierplan.study.checked import Fault
+from bezierplan.schema.checked import Fault
 
 
 def rows(values, unit="m", n=50, width=1.0):

@@ -17,7 +17,8 @@ INTERPRETER = sys.executable
 sys.executable = shlex.quote(sys.executable)
 
 from bezierplan.running import effort, forks
-from bezierplan.study import alternatives, checked, experiments, jobs, page, reading, targets
+from bezierplan.schema import checked
+from bezierplan.study import alternatives, experiments, jobs, page, reading, targets
 
 FORKS, in_an_interpreter = forks.Forks(INTERPRETER, script), script
 

@@ -9,7 +9,7 @@ import pyarrow.parquet as parquet
 
 from bezierplan.running import problems as problem_files
 from bezierplan.running import worlds
-from bezierplan.study.model import one_or_list
+from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import World
 

@@ -5,7 +5,8 @@ from argparse import ArgumentParser
 from typing import Any
 
 from bezierplan.running import contract
-from bezierplan.study import checked, reading
+from bezierplan.schema import checked
+from bezierplan.study import reading
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:

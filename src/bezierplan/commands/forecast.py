@@ -19,8 +19,8 @@ from bezierplan.planners import planner_module
 from bezierplan.running import records
 from bezierplan.running.digest import PACKAGE
 from bezierplan.running.records import Job, Record
+from bezierplan.schema.checked import Fault, closest
 from bezierplan.study import jobs, reading, targets
-from bezierplan.study.checked import Fault, closest
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import SCALES
 

@@ -12,8 +12,8 @@ import pandas as pd
 
 from bezierplan.analysis import summary
 from bezierplan.commands import forecast, replay
+from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
-from bezierplan.study.checked import Fault
 
 RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")

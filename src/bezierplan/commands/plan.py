@@ -13,8 +13,8 @@ from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.planners import Plan, known_planners, planner_module, planner_settings, setting_fault
 from bezierplan.running import problems
-from bezierplan.study import checked
-from bezierplan.study.checked import Fault, closest
+from bezierplan.schema import checked
+from bezierplan.schema.checked import Fault, closest
 from bezierplan.workspaces import files
 from bezierplan.workspaces.problem import Path, Problem, Workspace
 

@@ -12,8 +12,8 @@ from bezierplan.commands.digest import read_rows, row_text
 from bezierplan.figures import animation, sheet
 from bezierplan.geometry.region import region
 from bezierplan.running import execution, problems, rides, worlds
+from bezierplan.schema.checked import Fault, closest
 from bezierplan.study import reading
-from bezierplan.study.checked import Fault, closest
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import job, problems_job
 

@@ -11,8 +11,8 @@ import pandas as pd
 from bezierplan.analysis import verification
 from bezierplan.commands import outcome
 from bezierplan.running.digest import PACKAGE
+from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
-from bezierplan.study.checked import Fault
 from bezierplan.study.definition import Study
 
 KEPT = PACKAGE.parents[1] / outcome.KEPT / outcome.NUMBERS_FULL

@@ -20,7 +20,7 @@ from bezierplan.kernels import allocation_free
 from bezierplan.planners import Plan, Range, known_planners, planner_settings, setting_fault
 from bezierplan.running import answer, interface
 from bezierplan.running.execution import TAKEN
-from bezierplan.study.checked import Fault, closest
+from bezierplan.schema.checked import Fault, closest
 from bezierplan.workspaces import grid
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import to_json

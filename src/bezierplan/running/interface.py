@@ -6,7 +6,7 @@ from types import ModuleType
 from typing import Any
 
 from bezierplan.planners import planner_module, planner_settings, setting_fault
-from bezierplan.study.checked import Fault, closest
+from bezierplan.schema.checked import Fault, closest
 
 KINDS = ("grid", "circles", "polygons")
 """Kinds of workspace that planners meet."""

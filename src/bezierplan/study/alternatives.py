@@ -5,9 +5,9 @@ import itertools
 from typing import Any
 
 from bezierplan.analysis.claims.kinds import Check
+from bezierplan.schema.model import one_or_list
 from bezierplan.study.claims import Assumption, Claim
 from bezierplan.study.definition import Study
-from bezierplan.study.model import one_or_list
 
 
 def alternatives(study: Study) -> dict[str, tuple[str, Any]]:

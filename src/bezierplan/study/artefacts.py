@@ -5,8 +5,7 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import Field, PlainValidator, TypeAdapter, ValidationError
 
 from bezierplan.figures.panels import EACH, Panel, kinds
-from bezierplan.study.experiments import Settings
-from bezierplan.study.model import (
+from bezierplan.schema.model import (
     ARGUMENTS,
     Arguments,
     Column,
@@ -29,6 +28,7 @@ from bezierplan.study.model import (
     one_or_list,
     wrong,
 )
+from bezierplan.study.experiments import Settings
 from bezierplan.workspaces.kinds import File
 
 PublishedFile = Annotated[File, Names("published")]

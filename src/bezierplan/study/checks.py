@@ -16,16 +16,16 @@ from bezierplan.figures.panels import Panel, spheres
 from bezierplan.planners import planner_module
 from bezierplan.running import problems, worlds
 from bezierplan.running.execution import conditions, settings_in
+from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.model import Model, first_fault, named, one_or_list
 from bezierplan.study import published
 from bezierplan.study.alternatives import alternatives, concerned, methods_changed, with_alternative
 from bezierplan.study.artefacts import Comparison, Pivot, Table
-from bezierplan.study.checked import Fault, closest
 from bezierplan.study.claims import Assumption, Claim
 from bezierplan.study.definition import Study, files_of, relative
 from bezierplan.study.design import Design, in_first_variant
 from bezierplan.study.files import inside
 from bezierplan.study.jobs import job
-from bezierplan.study.model import Model, first_fault, named, one_or_list
 from bezierplan.study.planner_checks import asked, check_complete, check_settings, loaded
 from bezierplan.workspaces import files
 from bezierplan.workspaces.kinds import kinds

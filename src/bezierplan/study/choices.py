@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.analysis.metrics import METRICS
+from bezierplan.schema.model import one_or_list
 from bezierplan.study import alternatives, jobs
 from bezierplan.study.artefacts import Pivot
 from bezierplan.study.definition import Study
-from bezierplan.study.model import one_or_list
 
 
 def printed_tables(study: Study) -> dict[str, Pivot]:

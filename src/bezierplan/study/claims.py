@@ -9,7 +9,7 @@ from annotated_types import MinLen
 from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims.kinds import Check, kinds
-from bezierplan.study.model import (
+from bezierplan.schema.model import (
     Line,
     Model,
     Name,

@@ -7,11 +7,11 @@ from bezierplan.analysis.claims.kinds import Check
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.planners import PLACE
 from bezierplan.running.columns import OUTCOMES, RUN_COLUMNS
-from bezierplan.study.checked import Fault, closest
+from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.model import one_or_list
 from bezierplan.study.claims import Claim
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import job
-from bezierplan.study.model import one_or_list
 
 Row = dict[str, Any]
 

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
-from bezierplan.study.model import (
+from bezierplan.schema.model import (
     Count,
     Flag,
     Line,

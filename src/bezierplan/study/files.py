@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from bezierplan.study.checked import LONGEST_FILE, Fault
+from bezierplan.schema.checked import LONGEST_FILE, Fault
 
 
 def inside(folder: Path, name: str, place: str) -> Path:

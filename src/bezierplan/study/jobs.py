@@ -9,11 +9,11 @@ from typing import Any
 
 from bezierplan.figures.panels import Panel
 from bezierplan.planners import PLACE
+from bezierplan.schema.model import one_or_list
 from bezierplan.study.alternatives import experiments_of_claims
 from bezierplan.study.artefacts import Comparison
 from bezierplan.study.claims import Claim
 from bezierplan.study.definition import Study
-from bezierplan.study.model import one_or_list
 
 
 def problems_job(study: Study, experiment: str, scale: str) -> dict:

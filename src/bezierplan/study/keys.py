@@ -10,8 +10,8 @@ from pydantic.fields import FieldInfo
 from bezierplan.analysis.claims import kinds
 from bezierplan.figures import panels
 from bezierplan.running.digest import PACKAGE
+from bezierplan.schema.model import Model, keys
 from bezierplan.study import artefacts, claims, experiments
-from bezierplan.study.model import Model, keys
 from bezierplan.workspaces import kinds as workspace_kinds
 from bezierplan.workspaces.kinds import changing_cells
 

@@ -7,7 +7,7 @@ from typing import Any
 from bezierplan.planners import known_planners, planner_settings, setting_fault
 from bezierplan.running import interface
 from bezierplan.running.columns import RUN_COLUMNS
-from bezierplan.study.checked import Fault, closest
+from bezierplan.schema.checked import Fault, closest
 from bezierplan.study.definition import Study
 from bezierplan.study.files import inside
 

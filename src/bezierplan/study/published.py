@@ -4,8 +4,8 @@ import csv
 import io
 
 from bezierplan.analysis import metrics, statistics
+from bezierplan.schema.checked import Fault, closest, text_of
 from bezierplan.study.artefacts import Pivot
-from bezierplan.study.checked import Fault, closest, text_of
 from bezierplan.study.definition import relative
 from bezierplan.study.design import Design
 

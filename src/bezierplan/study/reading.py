@@ -10,14 +10,15 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from bezierplan.running.digest import PACKAGE
-from bezierplan.study import checked, stamps
+from bezierplan.schema import checked
+from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.model import Model, parsed
+from bezierplan.study import stamps
 from bezierplan.study.artefacts import ArtefactsFile, ConfigFile
-from bezierplan.study.checked import Fault, closest
 from bezierplan.study.claims import AssumptionsFile, ClaimsFile
 from bezierplan.study.definition import Study, relative
 from bezierplan.study.experiments import ExperimentsFile
 from bezierplan.study.files import inside
-from bezierplan.study.model import Model, parsed
 
 M = TypeVar("M", bound=Model)
 

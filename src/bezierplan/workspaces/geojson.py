@@ -61,7 +61,7 @@ def _shape(number: int, feature: Any) -> tuple[str, str, Rings] | None:
         raise ValueError(f"feature {number}: properties: role: missing; expected border or obstacle")
     role = properties["role"]
     if role not in ROLES:
-        from bezierplan.study.checked import closest
+        from bezierplan.schema.checked import closest
 
         raise ValueError(f"feature {number}: properties: role: {role!r}: unknown{closest(str(role), ROLES)}")
     if role in ("start", "target"):

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from bezierplan.study import checked
+from bezierplan.schema import checked
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.limits import check_numbers
 from bezierplan.workspaces.text_file import read_text

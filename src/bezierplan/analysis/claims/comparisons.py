@@ -13,8 +13,8 @@ from bezierplan.analysis.claims.kinds import cell_column, kind_of, named_groups,
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.analysis.claims.published import printed, printed_table, rows_of_cell
 from bezierplan.analysis.results import pick, select
-from bezierplan.study.checked import Fault
-from bezierplan.study.model import one_or_list
+from bezierplan.schema.checked import Fault
+from bezierplan.schema.model import one_or_list
 
 REST = "rest"
 # Columns with one value per unit of a comparison; several values would silently mix their runs.

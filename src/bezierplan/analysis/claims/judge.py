@@ -81,7 +81,7 @@ from bezierplan.analysis.claims.kinds import OfRuns, kind_of, option
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.analysis.claims.variants import in_variant, variants, with_work
 from bezierplan.analysis.results import Results
-from bezierplan.study.model import one_or_list
+from bezierplan.schema.model import one_or_list
 
 CLAIM_COLUMNS = [
     *("study", "id", "variant", "primary", "finding", "place", "statement", "verdict", "holds", "where_it_holds", "published"),

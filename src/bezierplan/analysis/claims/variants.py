@@ -4,7 +4,7 @@ import itertools
 from typing import Any
 
 from bezierplan.analysis.claims.kinds import GROUP_KEYS, option
-from bezierplan.study.model import one_or_list
+from bezierplan.schema.model import one_or_list
 
 
 def variants(claim: dict) -> list[dict[str, Any]]:

@@ -18,7 +18,7 @@ from bezierplan.analysis.results import Results, path_of, select
 from bezierplan.geometry.cell_length import DIAGONAL, samples
 from bezierplan.geometry.region import region
 from bezierplan.planners.parts.diversity import q_of_rows, q_statistic
-from bezierplan.study.model import one_or_list
+from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.seeds import generator

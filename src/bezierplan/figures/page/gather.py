@@ -11,7 +11,7 @@ from bezierplan.analysis import summary
 from bezierplan.figures import style
 from bezierplan.figures.page import content, other
 from bezierplan.figures.page.addresses import address, of_cells
-from bezierplan.study.model import one_or_list
+from bezierplan.schema.model import one_or_list
 
 # Columns of claims.csv that the page shows in places of their own, or that repeat the comparison that decides.
 _CLAIM_COLUMNS = {

@@ -13,7 +13,7 @@ from typing import Any, ClassVar
 
 from pydantic import Field, PrivateAttr, model_validator
 
-from bezierplan.study.model import (
+from bezierplan.schema.model import (
     ARGUMENTS,
     Arguments,
     Column,

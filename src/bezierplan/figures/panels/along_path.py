@@ -12,7 +12,7 @@ from bezierplan.figures import style
 from bezierplan.figures.panels import PICK, Pick, RunsPanel
 from bezierplan.figures.panels.paths import picked, run_note
 from bezierplan.geometry import curves
-from bezierplan.study.model import Number
+from bezierplan.schema.model import Number
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -11,7 +11,7 @@ from pydantic import Field
 from bezierplan.figures import style
 from bezierplan.figures.panels import RunsPanel
 from bezierplan.figures.panels.lines import axis_label, summary
-from bezierplan.study.model import Column, Metric
+from bezierplan.schema.model import Column, Metric
 
 if TYPE_CHECKING:
     import pandas as pd

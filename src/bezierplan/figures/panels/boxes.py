@@ -11,7 +11,7 @@ from bezierplan.analysis import metrics
 from bezierplan.figures import style
 from bezierplan.figures.panels import RunsPanel
 from bezierplan.figures.panels.lines import LIMITS, axis_label, constants, published, runs_note, shared_limits
-from bezierplan.study.model import Column, Flag, Metric, Number
+from bezierplan.schema.model import Column, Flag, Metric, Number
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from bezierplan.figures import style
 from bezierplan.figures.panels import RunsPanel
-from bezierplan.study.model import Whole
+from bezierplan.schema.model import Whole
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -15,7 +15,7 @@ from bezierplan.figures import style
 from bezierplan.figures.panels import PICK, Pick, RunsPanel, exactly_one
 from bezierplan.figures.panels.lines import LIMITS, constants, interval_band, published, runs_note, shared_limits
 from bezierplan.figures.panels.paths import feasible_note, picked, run_note
-from bezierplan.study.model import Column, Flag, Line, Whole, wrong
+from bezierplan.schema.model import Column, Flag, Line, Whole, wrong
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:

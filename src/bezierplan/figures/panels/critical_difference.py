@@ -11,7 +11,7 @@ from pydantic import Field
 from bezierplan.analysis import metrics, running_time
 from bezierplan.figures import style
 from bezierplan.figures.panels import RunsPanel
-from bezierplan.study.model import Line, Metric
+from bezierplan.schema.model import Line, Metric
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -11,7 +11,7 @@ from pydantic import Field
 from bezierplan.figures import style
 from bezierplan.figures.panels import TablePanel
 from bezierplan.figures.panels import workspace as workspaces
-from bezierplan.study.model import Line
+from bezierplan.schema.model import Line
 
 if TYPE_CHECKING:
     import pandas as pd

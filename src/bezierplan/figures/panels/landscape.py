@@ -10,7 +10,7 @@ from pydantic import Field
 from bezierplan.figures import style
 from bezierplan.figures.panels import RunsPanel
 from bezierplan.figures.panels import workspace as workspaces
-from bezierplan.study.model import Function
+from bezierplan.schema.model import Function
 
 if TYPE_CHECKING:
     import pandas as pd

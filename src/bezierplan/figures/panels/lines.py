@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from bezierplan.analysis import metrics, statistics
 from bezierplan.figures import style
 from bezierplan.figures.panels import TablePanel, exactly_one
-from bezierplan.study.model import Column, Experiment, Flag, Function, Metric, Where, Whole, listed
+from bezierplan.schema.model import Column, Experiment, Flag, Function, Metric, Where, Whole, listed
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:

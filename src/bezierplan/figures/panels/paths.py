@@ -17,8 +17,8 @@ from bezierplan.figures.panels import PICK, Pick, RunsPanel, exactly_one
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.figures.panels.lines import axis_label, published
 from bezierplan.geometry import curves
-from bezierplan.study.checked import closest
-from bezierplan.study.model import Column, Experiment, Flag, Line, Metric, Model, Number, wrong
+from bezierplan.schema.checked import closest
+from bezierplan.schema.model import Column, Experiment, Flag, Line, Metric, Model, Number, wrong
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path, Problem, Workspace
 

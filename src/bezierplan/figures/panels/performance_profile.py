@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from bezierplan.analysis import running_time
 from bezierplan.figures import style
 from bezierplan.figures.panels import RunsPanel
-from bezierplan.study.model import Positive, wrong
+from bezierplan.schema.model import Positive, wrong
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -10,7 +10,7 @@ from pydantic import Field
 from bezierplan.figures import style
 from bezierplan.figures.panels import PICK, Pick, RunsPanel
 from bezierplan.figures.panels import workspace as workspaces
-from bezierplan.study.model import is_number, value
+from bezierplan.schema.model import is_number, value
 
 if TYPE_CHECKING:
     import pandas as pd

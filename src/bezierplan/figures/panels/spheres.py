@@ -15,8 +15,8 @@ from bezierplan.figures.panels import Panel
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.geometry import curves
 from bezierplan.geometry import spheres as exact
-from bezierplan.study.model import Count, Name, Setting
-from bezierplan.study.model import Workspace as Described
+from bezierplan.schema.model import Count, Name, Setting
+from bezierplan.schema.model import Workspace as Described
 from bezierplan.workspaces.kinds import of_length
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator

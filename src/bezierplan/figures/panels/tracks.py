@@ -13,7 +13,7 @@ from bezierplan.figures.panels import RunsPanel, landscape
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.figures.panels.paths import steps
 from bezierplan.planners import planner_module
-from bezierplan.study.model import Function, Metric, Whole, value
+from bezierplan.schema.model import Function, Metric, Whole, value
 from bezierplan.workspaces.problem import Path, Problem
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from pydantic import Field
 
 from bezierplan.figures import style
 from bezierplan.figures.panels import Panel
-from bezierplan.study.model import Flag
-from bezierplan.study.model import Workspace as Described
+from bezierplan.schema.model import Flag
+from bezierplan.schema.model import Workspace as Described
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grid import embed as embed_cells

@@ -22,7 +22,7 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
-from bezierplan.study.model import Line, Model, NotNegative, Number, Positive, after, keys, value, wrong
+from bezierplan.schema.model import Line, Model, NotNegative, Number, Positive, after, keys, value, wrong
 from bezierplan.workspaces.text_file import read_text
 
 _IS_FILE = value(lambda given: isinstance(given, str) and given.isprintable() and 0 < len(given) <= 200, "the name of a file")

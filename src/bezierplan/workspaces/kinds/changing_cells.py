@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from pydantic import Field, model_validator
 
-from bezierplan.study.model import Model, Positive, wrong
+from bezierplan.schema.model import Model, Positive, wrong
 from bezierplan.workspaces.kinds import File, World
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from pydantic import Field
 
-from bezierplan.study.model import Positive
+from bezierplan.schema.model import Positive
 from bezierplan.workspaces import grid
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.kinds import File, Workspace, naming, text

@@ -4,7 +4,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from bezierplan.study.model import Count, Positive
+from bezierplan.schema.model import Count, Positive
 from bezierplan.workspaces import random_blocks
 from bezierplan.workspaces.kinds import Workspace
 

@@ -4,7 +4,7 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from bezierplan.study.model import Count, Positive
+from bezierplan.schema.model import Count, Positive
 from bezierplan.workspaces.kinds import File, World
 
 

@@ -4,7 +4,7 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from bezierplan.study.model import Positive
+from bezierplan.schema.model import Positive
 from bezierplan.workspaces import random_circles
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.kinds import CIRCLES, Bounds, CircleCount, Workspace

@@ -4,7 +4,7 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from bezierplan.study.model import NotNegative, Positive
+from bezierplan.schema.model import NotNegative, Positive
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.kinds import Workspace
 

@@ -4,7 +4,7 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from bezierplan.study.model import Positive
+from bezierplan.schema.model import Positive
 from bezierplan.workspaces.kinds import CIRCLES, REFLECTED, Bounds, CircleCount, RandomMoving
 
 

@@ -5,7 +5,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from bezierplan.study.model import Positive
+from bezierplan.schema.model import Positive
 from bezierplan.workspaces import raster
 from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid

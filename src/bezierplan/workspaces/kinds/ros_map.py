@@ -5,7 +5,7 @@ from typing import Annotated, ClassVar
 
 from pydantic import Field
 
-from bezierplan.study.model import NotNegative, value
+from bezierplan.schema.model import NotNegative, value
 from bezierplan.workspaces import ros
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.kinds import File, Workspace, naming

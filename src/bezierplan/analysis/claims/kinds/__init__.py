@@ -25,7 +25,7 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import Field
 
-from bezierplan.study.model import (
+from bezierplan.schema.model import (
     Column,
     Experiment,
     Line,

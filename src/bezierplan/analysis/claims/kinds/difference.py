@@ -29,7 +29,7 @@ from bezierplan.analysis.claims.effects import (
     units,
 )
 from bezierplan.analysis.claims.kinds import PAIRED, SECONDARY, Comparing, Group, lower, option
-from bezierplan.study.model import Flag, listed
+from bezierplan.schema.model import Flag, listed
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -32,7 +32,7 @@ from bezierplan.analysis.claims.effects import (
 )
 from bezierplan.analysis.claims.kinds import GROUPS, POOL, SECONDARY, THAN, Columns, Comparing, Groups, option
 from bezierplan.analysis.statistics import WITHOUT_INTERVAL
-from bezierplan.study.model import Number
+from bezierplan.schema.model import Number
 
 if TYPE_CHECKING:
     import pandas as pd

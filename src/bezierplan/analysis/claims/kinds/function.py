@@ -13,8 +13,8 @@ from pydantic import Field
 from bezierplan.analysis.claims.effects import Finding
 from bezierplan.analysis.claims.kinds import EXPERIMENT, Check, option
 from bezierplan.analysis.claims.material import Material, Untestable
-from bezierplan.study.checked import Fault, closest
-from bezierplan.study.model import ARGUMENTS, Arguments, Experiment, Function, Line, Metric, Where, listed, one_or_list
+from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.model import ARGUMENTS, Arguments, Experiment, Function, Line, Metric, Where, listed, one_or_list
 
 
 class Options(Check):

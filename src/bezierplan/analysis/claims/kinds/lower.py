@@ -62,7 +62,7 @@ from bezierplan.analysis.claims.kinds import (
 )
 from bezierplan.analysis.claims.ranks import rank_test, wins
 from bezierplan.analysis.statistics import WITHOUT_INTERVAL
-from bezierplan.study.model import Flag, Metric, Positive, listed, wrong
+from bezierplan.schema.model import Flag, Metric, Positive, listed, wrong
 
 if TYPE_CHECKING:
     import pandas as pd

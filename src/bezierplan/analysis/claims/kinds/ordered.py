@@ -10,7 +10,7 @@ from pydantic import Field
 
 from bezierplan.analysis.claims.effects import BETWEEN_GROUPS, pairs_in_words
 from bezierplan.analysis.claims.kinds import PAIRED, SECONDARY, SIDE, STATISTIC, Comparing, Group, lower
-from bezierplan.study.model import Flag, listed
+from bezierplan.schema.model import Flag, listed
 
 if TYPE_CHECKING:
     import pandas as pd

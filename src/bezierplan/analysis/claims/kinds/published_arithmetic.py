@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from bezierplan.analysis.claims.effects import Finding
 from bezierplan.analysis.claims.kinds import SECONDARY, Check
 from bezierplan.analysis.claims.material import Material, Untestable
-from bezierplan.study.model import Number, Values, mapping_or, one_or_list, wrong
+from bezierplan.schema.model import Number, Values, mapping_or, one_or_list, wrong
 
 if TYPE_CHECKING:
     import pandas as pd

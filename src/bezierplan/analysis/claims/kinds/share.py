@@ -16,7 +16,7 @@ from pydantic import Field, model_validator
 from bezierplan.analysis.claims.effects import LEAST_WITHOUT_EXAMPLE, SIDES, Comparison, Effect, Finding, counted
 from bezierplan.analysis.claims.kinds import FAILURES, POOL, SECONDARY, Columns, OfRuns
 from bezierplan.analysis.statistics import LEAST_RUNS
-from bezierplan.study.model import Metric, Model, Number, is_number, value, wrong
+from bezierplan.schema.model import Metric, Model, Number, is_number, value, wrong
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -35,7 +35,7 @@ from bezierplan.analysis.claims.effects import (
 from bezierplan.analysis.claims.kinds import MARGIN, PAIRED, SCALE, WORK, Margin, OfRuns, option
 from bezierplan.analysis.claims.ranks import signed_rank_test
 from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED
-from bezierplan.study.model import Column, Flag, Metric
+from bezierplan.schema.model import Column, Flag, Metric
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:

@@ -19,7 +19,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, PlainValidator, Type
 from pydantic.fields import FieldInfo
 from pydantic_core import PydanticCustomError
 
-from bezierplan.study.checked import Fault, closest
+from bezierplan.schema.checked import Fault, closest
 
 LONGEST_VALUE = 100
 """Characters of a value that a message shows."""
