@@ -138,3 +138,12 @@ def test_second_workflow_in_a_folder_ends_at_once_and_the_first_goes_on(tmp_path
     assert second.returncode == 1
     assert "LockException" in second.stderr
     assert (tmp_path / "results/a.txt").stat().st_size > 0
+
+
+def test_the_foreign_table_is_named_and_not_a_good_one_before_it(tmp_path):
+    runs = tmp_path / "runs"
+    runs.mkdir()
+    pd.DataFrame({"id": ["a"]}).to_parquet(runs / "0.parquet")
+    pd.DataFrame({"other": [1]}).to_parquet(runs / "1.parquet")
+    assert log.damaged([str(runs / "0.parquet")]) == ""
+    assert log.damaged([str(runs / name) for name in ("0.parquet", "1.parquet")]).startswith(f"{runs / '1.parquet'}: not a table of runs")

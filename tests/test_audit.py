@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from scipy import stats
 
 from bezierplan.analysis import audit, possible
+from bezierplan.analysis.metrics import METRICS
 
 ONE = Fraction(1)
 LAYOUT = {"columns": [], "selected": [], "monotone": []}
@@ -284,3 +285,18 @@ def test_numbers_printed_twice_count_once():
     numbers = table(*((str(k), "cpu_s", "mean", f"{k / 7 + 1:.2f}") for k in range(20)))
     both = audit.of_any_paper({"table1": numbers, "table2": numbers}, {"table1": LAYOUT, "table2": LAYOUT})
     assert marks(both, "last digits") == []
+
+
+def test_means_and_extremes_are_allowed_to_be_rounded(monkeypatch):
+    share = METRICS["feasible"]._replace(least=0.0, most=1.06, step=0.13)
+    monkeypatch.setitem(METRICS, "feasible", share)
+
+    def judged(find, name, text):
+        rows = find(audit.Cell("table1", "", "feasible", {name: text}, 10, True), {name: printed(text)})
+        return [row["consistent"] for row in rows]
+
+    # The end, 1.06, is printed as 1.1, and 0.13 as 0.1.
+    assert judged(audit._in_range, "mean", "1.08") == [False]
+    assert judged(audit._in_range, "mean", "1.1") == [True]
+    assert judged(audit._of_steps, "max", "0.1") == [True]
+    assert judged(audit._of_steps, "max", "0.16") == [False]

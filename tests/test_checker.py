@@ -383,3 +383,9 @@ def test_grids_and_circles_are_checked_without_heavy_libraries(blocked):
     ]
     done = subprocess.run([sys.executable, "-c", "\n".join(lines)], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == ""
+
+
+def test_the_error_of_a_depth_is_proven():
+    found = check(polyline("(1,5)(9,5)"), circles((5, 5, 2)))
+    assert found.depth == pytest.approx(2.0, rel=1e-6)
+    assert found.tolerance == 1e-6 * found.depth

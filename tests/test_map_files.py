@@ -199,3 +199,24 @@ def test_an_optimal_length_of_another_map_is_told(tmp_path):
     job = {"study": "s", "workspaces": {"w": described()}, "problems": {"p": {"workspace": "w", "scenario": 1}}}
     with pytest.raises(ValueError, match=r"room\.map\.scen: line 2: optimal length 9\.5; on room\.map it is 7"):
         problems.build_all(job, tmp_path)
+
+
+@pytest.mark.parametrize("off", [2e-3, -2e-3, 0.5, 1.0])
+def test_a_scenario_with_another_optimal_length_is_told(tmp_path, off):
+    moving_ai(tmp_path)
+    file = tmp_path / "room.map.scen"
+    *before, row = file.read_text().splitlines()[:2]
+    words = row.split()
+    words[-1] = str(float(words[-1]) + off)
+    file.write_text("\n".join([*before, "\t".join(words)]) + "\n")
+    job = {"study": "s", "workspaces": {"w": described()}, "problems": {"p": {"workspace": "w", "scenario": 1}}}
+    with pytest.raises(ValueError, match=r"room.map.scen: line 2: optimal length .*; on room.map it is"):
+        problems.build_all(job, tmp_path)
+
+
+def test_a_robots_radius_leaves_cells_free_whose_centres_are_as_far(tmp_path):
+    wide = np.full((9, 9), 254, dtype=np.uint8)
+    wide[4, 4] = 0
+    # The centres of the cells beside an occupied one are 0.5 m away.
+    assert ros_map(tmp_path, pixels=wide, robot_radius=0.5).occupied.sum() == 1
+    assert ros_map(tmp_path, pixels=wide, robot_radius=0.5 + 1e-9).occupied.sum() == 5

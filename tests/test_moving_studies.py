@@ -169,3 +169,17 @@ def test_a_robot_that_believes_to_have_arrived_elsewhere_is_not_feasible(tmp_pat
     described = job(study, "drives", "mine", "smoke", 0)
     row, _ = rides.row(described, Condition("across", {}), 0, ride, made["across"], found["across"])
     assert (row["claimed_feasible"], row["feasible"]) == (True, feasible)
+
+
+@pytest.mark.parametrize(
+    ("clearance", "least", "steps"), [([0.2, 0.0, -1e-10], 0.0, 0), ([0.2, -0.3, -0.1], 0.0, 2), ([0.2, 0.1, 0.4], 0.1, 0)]
+)
+def test_columns_of_a_drive_count_what_is_deeper_than_the_tolerance(tmp_path, monkeypatch, clearance, least, steps):
+    study = reading.load([written(tmp_path)])["mystudy"]
+    made, _, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
+    points = np.array([(0.5, 2.5), (0.5, 4.5), (6.5, 4.5), (6.5, 2.5)])
+    ride = Ride(Motion(points, np.arange(4.0)), True, 0.0, [Planned(0.0, None, 10.0, 0.0, 0.0, 1)])
+    verdict = rides.motion_check.Verdict(math.nan, np.array(clearance), 0.0, 1e-9)
+    monkeypatch.setattr(rides.motion_check, "check", lambda motion, world: verdict)
+    row, _ = rides.row(job(study, "drives", "mine", "smoke", 0), Condition("across", {}), 0, ride, made["across"], found["across"])
+    assert (row["clearance"], row["collision_steps"]) == (least, steps)

@@ -18,7 +18,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 sys.path.insert(0, str(Path(__file__).parent))
-from page_content import HOSTILE, comparison, number, page
+from page_content import HOSTILE, claim, comparison, number, page
 
 from bezierplan.figures.page import HERE, addresses, answer, build, content, gather, job, other, pictures, runs, search
 from bezierplan.geometry import curves
@@ -439,3 +439,13 @@ def test_drawn_path_stays_within_its_tolerance(points, kind):
     exact = curves.sample_matrix(kind, len(points), 301) @ path.points
     # The straight steps from which points are left out are themselves within 0.01 of the curve.
     assert shapely.distance(shapely.points(exact), shapely.LineString(drawn)).max() <= 0.05 + 0.01
+
+
+def test_the_answer_counts_claims_that_would_show_again_and_keep_their_verdict():
+    claims = [claim(f"C{n}", "supported", replication=share) for n, share in enumerate([0.9, 0.8, 0.79, 0.1, None])]
+    told = "".join(part.text for part in answer._replication(claims))
+    assert told.startswith("Of 4 supported claims that can be resampled, 2 would show again")
+    one, other = (content.Reading(variant="a", verdict=verdict, holds="1 of 1") for verdict in ("supported", "contradicted"))
+    read = [claim(f"C{n}", "supported", readings=readings) for n, readings in enumerate([[one], [one, other], [other], []])]
+    told = "".join(part.text for part in answer._readings(read))
+    assert told.startswith("Of 3 claims that can be read in more than one way, 1 keeps its verdict in every reading")

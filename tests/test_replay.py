@@ -1,5 +1,6 @@
 """One run again, from its name alone."""
 
+import pandas as pd
 import pytest
 from studies import study
 
@@ -47,3 +48,10 @@ def test_picture_shows_the_first_collision(tmp_path):
 def test_unknown_part_of_a_name_is_told(name, told):
     with pytest.raises(Fault, match=told):
         replay.replay(name, STUDIES)
+
+
+@pytest.mark.parametrize(("column", "other"), [("feasible", False), ("collision_at", 0.5), ("path_points", [0.0, 0.0, 3.0, 3.0])])
+def test_a_run_of_equal_length_but_another_verdict_or_path_is_not_equal(column, other):
+    stored = {"length": 3.0, "feasible": True, "collision_at": 1.0, "path_points": [0.0, 0.0, 1.0, 2.0]}
+    assert replay.equal(pd.Series(stored), stored)
+    assert not replay.equal(pd.Series(stored), stored | {column: other})

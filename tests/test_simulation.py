@@ -331,3 +331,10 @@ def test_crossings_are_where_a_segment_meets_a_grid_line(one, other):
     count = clairvoyant._write_crossings(np.array(one), np.array(other), cuts)
     lines = [(line - a) / (b - a) for a, b in zip(one, other) for line in range(13) if min(a, b) < line < max(a, b)]
     assert cuts[:count].tolist() == np.unique([0.0, 1.0, *lines]).tolist()
+
+
+@pytest.mark.parametrize(("beyond", "outside"), [(1e-4, True), (2e-9, True), (0.0, False)])
+def test_a_robot_that_leaves_the_field_by_little_collides(beyond, outside):
+    points = np.array([[1.0, 10.0], [20.0 + beyond, 10.0], [1.0, 10.0]])
+    verdict = motion_check.check(Motion(points, np.array([0.0, 19.0, 38.0])), circles())
+    assert math.isfinite(verdict.collision_at) == outside

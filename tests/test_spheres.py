@@ -259,7 +259,7 @@ def test_a_reader_declares_spheres_in_a_few_lines(folder):
     ("file", "old", "new", "expected"),
     [
         ("experiments", "[0, 0, 0, 2]", "[0, 0, 2]", "workspaces: ball: spheres: 0: [0, 0, 2]: expected [x, y, z, radius]"),
-        ("experiments", "[0, 0, 0, 2]", "[0, 0, 0, -2]", "workspaces: ball: spheres: sphere 0: radius -2; expected above 1e-07"),
+        ("experiments", "[0, 0, 0, 2]", "[0, 0, 0, -2]", "workspaces: ball: spheres: sphere 0: radius -2; expected at least 1e-06"),
         ("experiments", "[0, 0, 0, 2]", "[0, 0, 1e+7, 2]", "workspaces: ball: spheres: 1e+07 is not a coordinate"),
         ("experiments", "[-10.0, 10.0, -10.0, 10.0, -10.0, 10.0]", "[-10, 10, -10, 10]", "workspaces: ball: bounds: "),
         ("experiments", "10.0, -10.0, 10.0], kind: spheres", "10.0, 10.0, -10.0], kind: spheres", "with low below high"),

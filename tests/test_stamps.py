@@ -122,3 +122,7 @@ def test_a_damaged_stamp_counts_as_none(study, checks, length):
     stamp.write_bytes(stamp.read_bytes()[:length])
     assert reading.load([study]) == reading.load([study]) == first
     assert checks == ["song2016"] * 2
+
+
+def test_a_stamp_knows_what_a_configuration_changes(study):
+    assert stamps.stamp_of(study, "settings") not in (stamps.stamp_of(study), stamps.stamp_of(study, "other settings"))

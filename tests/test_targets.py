@@ -8,11 +8,11 @@ from types import SimpleNamespace
 import pytest
 from docutils.core import publish_parts
 from snakemake.iocontainers import OutputFiles
-from studies import study
+from studies import studies, study
 
 from bezierplan.running import log
 from bezierplan.schema.checked import Fault
-from bezierplan.study import experiments, reading, targets
+from bezierplan.study import design, experiments, jobs, reading, targets
 
 SONG = study("song2016")
 STUDIES = {"song2016": SONG}
@@ -138,3 +138,29 @@ def test_extended_leaves_out_what_would_be_as_at_full(once):
     assert set(targets.artefacts_of(SONG, "full")) - set(targets.artefacts_of(SONG, "extended")) == drawings
     assert targets.artefacts_of(once, "extended") == []
     assert targets.artefacts_of(once, "full") == [*SONG.tables, *SONG.figures]
+
+
+def test_a_table_and_its_caption_have_the_repeats_of_their_scale():
+    repeats = SONG.experiments[SONG.tables["table1"].experiment].repeats
+    assert repeats["smoke"] != repeats["full"]
+    for scale in ("smoke", "full"):
+        assert jobs.table_job(SONG, "table1", scale)["repeats"] == repeats[scale]
+        assert f"{repeats[scale]} runs of each method" in jobs.caption(SONG, "table1", scale)
+
+
+def test_a_figure_that_shows_published_numbers_depends_on_their_files(monkeypatch):
+    monkeypatch.setattr(targets, "content_digest", lambda *files: files)
+    drawn = 0
+    for key, own in studies().items():
+        for figure in own.figures:
+            if jobs.published_drawn(own, figure):
+                drawn += 1
+                assert set(own.published_files()) <= set(targets.figure_params({key: own}, "smoke", key, figure)["sources"])
+    assert drawn
+
+
+def test_two_layouts_stand_for_all():
+    own, found = studies()["meledje"], set()
+    for experiment in own.experiments:
+        found |= {row["layout"] for row in design.Design(own).rows(experiment) if "layout" in row}
+    assert found == {0, 1}

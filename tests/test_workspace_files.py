@@ -4,12 +4,17 @@ import json
 import os
 import time
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 import pytest
 from fields import BENCHMARK_MAPS
+from hypothesis import given
+from hypothesis import strategies as st
 
-from bezierplan.running import problems
+from bezierplan.geometry.checker import check
+from bezierplan.geometry.region import region
+from bezierplan.running import problems, worlds
 from bezierplan.workspaces import files, random_circles
 from bezierplan.workspaces.geojson import polygons_from_geojson
 
@@ -22,6 +27,10 @@ def geojson(*obstacles, border=BORDER):
     roles = [("border", [border]), *(("obstacle", rings) for rings in obstacles)]
     features = [{"properties": {"role": role}, "geometry": {"type": "Polygon", "coordinates": rings}} for role, rings in roles]
     return json.dumps({"type": "FeatureCollection", "features": features})
+
+
+def closed(*positions):
+    return [*map(list, positions), list(positions[0])]
 
 
 def moved(x, y):
@@ -82,6 +91,24 @@ POLYGON_FAULTS = {
     "too many": (polygon([[[1, 1], *[[2, 1]] * 100_000, [2, 2], [1, 1]]]), "more than 100,000 positions"),
     "gap between obstacles": (geojson([SQUARE], [moved(2 + 5e-8, 0)]), "a gap below 1e-07"),
     "gap to the border": (geojson([moved(4 - 5e-8, 0)]), "a gap below 1e-07"),
+    "gap in a notch": (geojson([closed((1, 1), (3, 1), (3, 3), (2, 3), (2, 2), (2 - 5e-8, 2), (2 - 5e-8, 3), (1, 3))]), "an edge at"),
+    "gap between arms": (
+        geojson([closed((1, 1), (4, 1), (4, 4), (2, 4), (2, 2), (1.5, 2.5), (2 - 5e-8, 3), (1, 3))]),
+        r"feature 1 \(obstacle\): a gap below 1e-07",
+    ),
+    "thin wall": (geojson([closed((5, 0), (5 + 2e-9, 0), (5 + 2e-9, 9), (5, 9))]), r"feature 1 \(obstacle\): an edge at .* length 2e-09; "),
+    "waist": (
+        geojson([closed((1, 1), (5, 1), (3, 3 - 2e-8), (5, 5), (1, 5), (3 - 2e-8, 3))]),
+        "at .* a wall of thickness 2.*e-08; expected",
+    ),
+    "thin wall beside a hole": (
+        geojson([SQUARE, closed((4 + 1e-7, 4.5), (5, 4.5), (5, 5), (4 + 1e-7, 5))]),
+        "a wall of thickness 1e-07; expected at least 1e-06",
+    ),
+    "needle": (geojson([closed((1, 1), (9, 1.001), (1, 1.002))]), r"an angle at \[9.0, 1.001\] of 0.00025 rad; expected at least 0.001"),
+    "sharp notch": (geojson([closed((1, 1), (9, 1), (9, 2.998), (2, 2), (9, 3), (1, 3))]), r"an angle at \[2.0, 2.0\] of"),
+    "sliver": (geojson([closed((1, 1), (9, 1), (5, 1 + 1e-9))]), "an angle at"),
+    "thin border": (geojson(border=closed((0, 0), (10, 0), (10, 1e-9), (0, 1e-9))), r"bounds: .*: side 1e-09; expected at least 1e-06"),
 }
 
 
@@ -158,7 +185,63 @@ def test_touching_polygons_and_holes_are_accepted(obstacles):
     assert len(polygons_from_geojson(geojson(*obstacles), "m").obstacles) == len(obstacles)
 
 
+@given(
+    st.floats(-9.5, -0.1), st.floats(0, np.pi), st.floats(1e-3, 3), st.sampled_from([0.0, 3e4]), st.sampled_from(["wall", "wedge", "cap"])
+)
+def test_the_checker_blocks_the_middle_of_every_polygon_that_is_accepted(exponent, turn, length, far, form):
+    thickness = 10**exponent
+    shapes = {
+        "wall": [(-length, -thickness), (length, -thickness), (length, thickness), (-length, thickness)],
+        "wedge": [(-length, -2 * thickness), (2 * length, 0), (-length, 2 * thickness)],
+        "cap": [(-length, -thickness), (length, -thickness), (0, 2 * thickness)],
+    }
+    middle = np.array([far + 5.0, 5.0])
+    along = np.array([[np.cos(turn), np.sin(turn)], [-np.sin(turn), np.cos(turn)]])
+    corners = (middle + np.array(shapes[form]) @ along).tolist()
+    border = closed((far, 0), (far + 10, 0), (far + 10, 10), (far, 10))
+    try:
+        found = polygons_from_geojson(geojson([closed(*corners)], border=border), "m")
+    except ValueError:
+        assert thickness < 1e-6 or thickness < length * 1e-3
+        return
+    across = np.stack([middle - along[1] * 1.5 * thickness, middle + along[1] * 4 * thickness])
+    assert not check(across[None], region(found)).feasible
+
+
+@given(st.floats(-12, 0), st.integers(0, 3), st.booleans())
+def test_the_checker_blocks_occupied_cells_of_every_side_that_is_accepted(exponent, row, falling):
+    cell = 10**exponent
+    with TemporaryDirectory() as folder:
+        (Path(folder) / "map").write_text("....\n.##.\n.##.\n....\n")
+        try:
+            found = files.load({"kind": "grid", "unit": "m", "file": "map", "cell": cell}, Path(folder))
+        except ValueError:
+            assert cell < 1e-6
+            return
+    line = np.array([[0.5, 0.5 + row], [3.5, 3.5 - row]]) if falling else np.array([[0.5, 1.5], [3.5, 2.5]])
+    assert not check(line[None] * cell, region(found)).feasible
+
+
+@pytest.mark.parametrize("cell", [1e-9, 3e-10, 1e-320])
+@pytest.mark.parametrize("kind", ["grid", "raster"])
+def test_cells_thinner_than_the_tolerance_are_told(cell, kind, tmp_path):
+    (tmp_path / "map").write_text(geojson() if kind == "raster" else "..\n")
+    with pytest.raises(ValueError, match=rf"cell: {cell:g}; expected at least 1e-06"):
+        files.load({"kind": kind, "unit": "m", "file": "map", "cell": cell, "rule": "overlap"}, tmp_path)
+
+
+@pytest.mark.parametrize("kind", ["moving_circles", "random_moving_circles", "random_moving_field"])
+def test_circles_that_move_and_are_too_small_are_told(kind):
+    given = {"kind": kind, "unit": "m", "bounds": [0, 10, 0, 10], "circles": [[5, 5, 1e-12, 0, 0]] if kind == "moving_circles" else 1}
+    given |= {"radius": 1e-12, "clear_ends": 0.0, "speed": 0.0, "pace": 1.0, "steps": 10}
+    problem = {"start": [1, 1], "target": [9, 9], "layout": 0, "obstacles": 1, "side": 10}
+    with pytest.raises(ValueError, match=r"circles: circle 0: radius 1e-1[12]; expected at least 1e-06"):
+        worlds.build(given, problem, "test", Path())
+
+
 CIRCLE_FAULTS = {
+    "radius below the tolerance": ([-5, 5, -5, 5], [[0, 0, 1e-12]], "circles: circle 0: radius 1e-12; expected at least 1e-06"),
+    "border below the tolerance": ([-5, 5, 0, 1e-9], [], "side 1e-09; expected at least 1e-06"),
     "radius of 0": ([-5, 5, -5, 5], [[0, 0, 0]], "circle 0: radius 0; expected above 0"),
     "bounds exchanged": ([5, -5, -5, 5], [], "low below high"),
     "not finite": ([-5, 5, -5, 5], [[0, float("inf"), 1]], "is not a coordinate"),

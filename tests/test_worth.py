@@ -142,3 +142,8 @@ def test_a_path_along_an_obstacle_has_no_length_that_counts_cells():
 
 def test_a_square_corner_is_one():
     assert measures.corners(Path(SQUARE_CORNER[0], np.reshape(SQUARE_CORNER[1], (-1, 2)))) == 1
+
+
+def test_equal_curvature_is_not_less():
+    own = pd.DataFrame([described(curvature=1.0), described(curvature=0.9995), described(curvature=0.9)])
+    assert "those of 1 of 3 methods curve less" in worth.sentence(own)

@@ -12,6 +12,7 @@ import pyarrow.parquet as parquet
 from bezierplan.running import problems as problem_files
 from bezierplan.workspaces import random_field, worlds
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.limits import check_bounds, check_thickness
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.random_circles import MOST_DRAWS
 from bezierplan.workspaces.seeds import generator
@@ -53,6 +54,7 @@ def _moving_circles(description: dict, problem: dict, name: str) -> MovingCircle
     on_field = kind == "random_moving_field"
     side = problem.get("side", 0)
     walls = (0.0, float(side), 0.0, float(side)) if on_field else tuple(map(float, description["bounds"]))
+    check_bounds(walls)
     if kind == "moving_circles":
         table = np.array(description["circles"], dtype=float).reshape(-1, 5)
         centres, radii, velocities = table[:, :2].copy(), table[:, 2].copy(), table[:, 3:].copy()
@@ -71,6 +73,8 @@ def _moving_circles(description: dict, problem: dict, name: str) -> MovingCircle
         # Of a layout in the plane, the first so many circles, as where nothing moves.
         centres, velocities = centres[: problem["obstacles"]], velocities[: problem["obstacles"]]
         radii = np.full(len(centres), float(radius))
+    for i, radius in enumerate(radii):
+        check_thickness(radius, f"circles: circle {i}: radius")
     bounds = tuple(value + (0.5 if n % 2 else -0.5) for n, value in enumerate(walls)) if on_field else walls
     pace, end, unit = float(description["pace"]), description["steps"], description["unit"]
     return MovingCircles(bounds, walls, centres, velocities, radii, "cells" if on_field else "circles", pace, end, unit)

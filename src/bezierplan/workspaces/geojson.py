@@ -9,7 +9,15 @@ from typing import Any
 
 import numpy as np
 
-from bezierplan.workspaces.limits import SMALLEST_GAP, check_bounds, check_gaps, check_numbers
+from bezierplan.workspaces.limits import (
+    SMALLEST_ANGLE,
+    SMALLEST_FEATURE,
+    SMALLEST_GAP,
+    check_bounds,
+    check_gaps,
+    check_numbers,
+    check_thickness,
+)
 from bezierplan.workspaces.polygons import Polygons
 
 ROLES = ("border", "obstacle", "start", "target")
@@ -25,7 +33,7 @@ def polygons_from_geojson(text: str, unit: str) -> Polygons:
 
     Raises ValueError, naming the feature, for text that is not a feature collection, an unknown role, a geometry other than Polygon, a ring
     that is not closed, positions that are not [x, y], coordinates out of range, a border that is not a rectangle, an obstacle that is
-    invalid or extends beyond the border, and gaps that are neither closed nor open.
+    invalid, extends beyond the border, or is too thin for the checker, and gaps that are neither closed nor open.
     """
     shapes = [shape for number, feature in enumerate(_features(text)) if (shape := _shape(number, feature))]
     borders = [rings for role, _, rings in shapes if role == "border"]
@@ -106,7 +114,42 @@ def _check_shapes(limits: tuple[float, float, float, float], border: Rings, obst
             raise ValueError(f"{name}: {shapely.is_valid_reason(shape)}; expected a simple polygon")
         if not frame.covers(shape):
             raise ValueError(f"{name}: reaches over the border")
+    for (name, rings), shape in zip(obstacles, shapes):
+        _check_thickness(name, rings, shape)
     near = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=SMALLEST_GAP)
     for i, ((name, _), shape) in enumerate(zip(obstacles, shapes)):
         beside = shapes[near[1][(near[0] == i) & (near[1] > i)]]
         check_gaps(np.append(shapely.distance(beside, shape), shape.distance(frame.exterior)), name)
+
+
+def _check_thickness(name: str, rings: Rings, shape: Any) -> None:
+    """Raise ValueError, naming the obstacle and a position, for edges, angles, walls and gaps of an obstacle that are too small.
+
+    Two edges that do not cross are nearest at an end of one of them. So with edges that are long enough and corners that are wide enough,
+    an obstacle is as thick as its corners are far from the edges that they do not belong to.
+    """
+    import shapely
+
+    # Repeated positions have no edge.
+    rings = tuple(ring[np.any(ring != np.roll(ring, 1, axis=0), axis=1)] for ring in rings)
+    corners, ends = np.concatenate(rings), np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
+    before = np.concatenate([np.roll(ring, 1, axis=0) for ring in rings])
+    sides = np.hypot(*(ends - corners).T)
+    k = int(sides.argmin())
+    check_thickness(float(sides[k]), f"{name}: an edge at {corners[k].tolist()} of length")
+    forward, back = ends - corners, before - corners
+    angles = np.abs(np.arctan2(forward[:, 0] * back[:, 1] - forward[:, 1] * back[:, 0], (forward * back).sum(axis=1)))
+    k = int(angles.argmin())
+    if angles[k] < SMALLEST_ANGLE:
+        raise ValueError(f"{name}: an angle at {corners[k].tolist()} of {angles[k]:.2g} rad; expected at least {SMALLEST_ANGLE:g}")
+    edges = shapely.linestrings(np.stack([corners, ends], axis=1))
+    corner, edge = shapely.STRtree(edges).query(shapely.points(corners), predicate="dwithin", distance=SMALLEST_FEATURE)
+    own = (corners[corner] == corners[edge]).all(axis=1) | (corners[corner] == ends[edge]).all(axis=1)
+    for k, e in zip(corner[~own], edge[~own]):
+        at, along = corners[k], ends[e] - corners[e]
+        nearest = corners[e] + np.clip((at - corners[e]) @ along / (along @ along), 0.0, 1.0) * along
+        apart = float(np.hypot(*(nearest - at)))
+        if apart > 0 and shape.contains(shapely.Point(0.5 * (at + nearest))):
+            check_thickness(apart, f"{name}: at {at.tolist()} a wall of thickness")
+        else:
+            check_gaps(np.array([apart]), name)

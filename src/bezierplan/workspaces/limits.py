@@ -8,6 +8,12 @@ LARGEST = 1e5
 SMALLEST_GAP = 1e-7
 """Between obstacles, or an obstacle and the border, a smaller gap, in units, is meant to be closed: the checker could not tell."""
 
+SMALLEST_FEATURE = 1e-6
+"""Least thickness of an obstacle, side of a cell and radius of a circle, in units: the checker's tolerance passes thinner ones."""
+
+SMALLEST_ANGLE = 1e-3
+"""Least angle at a corner of an obstacle, in radians: the tip of a sharper one is thinner than the checker's tolerance for long."""
+
 
 def check_numbers(values: np.ndarray, where: str) -> None:
     """Raise ValueError, beginning with the location, unless all values are finite and at most `LARGEST` in absolute value."""
@@ -17,9 +23,16 @@ def check_numbers(values: np.ndarray, where: str) -> None:
 
 
 def check_bounds(bounds: tuple[float, float, float, float]) -> None:
-    """Raise ValueError unless bounds are x low, x high, y low, y high in this order, with low below high."""
+    """Raise ValueError unless bounds are x low, x high, y low, y high in this order, with low below high by `SMALLEST_FEATURE`."""
     if not (bounds[0] < bounds[1] and bounds[2] < bounds[3]):
         raise ValueError(f"bounds: {list(bounds)}; expected [x low, x high, y low, y high] with low below high")
+    check_thickness(min(bounds[1] - bounds[0], bounds[3] - bounds[2]), f"bounds: {list(bounds)}: side")
+
+
+def check_thickness(size: float, where: str) -> None:
+    """Raise ValueError, beginning with the location, for a side, radius or thickness, in units, below `SMALLEST_FEATURE`."""
+    if size < SMALLEST_FEATURE:
+        raise ValueError(f"{where} {size:g}; expected at least {SMALLEST_FEATURE:g}")
 
 
 def check_gaps(gaps: np.ndarray, where: str) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 
 from bezierplan.schema import checked
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.limits import check_numbers
+from bezierplan.workspaces.limits import check_numbers, check_thickness
 from bezierplan.workspaces.text_file import read_text
 
 MOST_PIXELS = 16_000_000
@@ -34,6 +34,7 @@ def read(file: Path, unit: str, robot_radius: float = 0.0, most_pixels: int = MO
     """
     content = _content(file)
     resolution = content["resolution"]
+    check_thickness(resolution, "resolution:")
     occupied = _occupied(image_of(file, content), content, most_pixels)
     if robot_radius > 0 and occupied.any():
         from scipy.ndimage import distance_transform_edt

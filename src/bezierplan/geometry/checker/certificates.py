@@ -34,34 +34,30 @@ _BINOMIAL = np.array([[math.comb(n, k) for k in range(2 * LARGEST_DEGREE + 1)] f
 
 
 # ---------------------------------------------------------------------------------------------------------------------
-# The questions. numba attaches the overloads below to these four names, one for each kind of region, so compiled code never enters their
-# bodies. A call from plain Python would, and has no answer there.
-
-
-def _only_compiled() -> TypeError:
-    return TypeError("a question about a region that only compiled code can ask: call it from a function compiled by numba")
+# The questions. numba compiles the answer for a kind of region in their place, by the overloads below; without compilation
+# (NUMBA_DISABLE_JIT) their bodies find the same answers.
 
 
 def is_blocked(x, y, region):
     """Whether a point is certainly blocked: its depth is above the tolerance."""
-    raise _only_compiled()
+    return _IS_BLOCKED[type(region)](x, y, region)
 
 
 def is_free(points, region):
     """Whether the curve of some control points is certified free. May be false for a free curve, but not indefinitely as the curve is
     halved.
     """
-    raise _only_compiled()
+    return _IS_FREE[type(region)](points, region)
 
 
 def depth_at(x, y, region):
     """Depth of a point in the blocked region, 0 outside."""
-    raise _only_compiled()
+    return _DEPTH_AT[type(region)](x, y, region)
 
 
 def depth_bound(points, region):
     """Upper bound of the depth of the curve of some control points."""
-    raise _only_compiled()
+    return _DEPTH_BOUND[type(region)](points, region)
 
 
 # ---------------------------------------------------------------------------------------------------------------------
@@ -330,26 +326,27 @@ def _passes_chain(points, region, touched, first, along_x, along_y, across_low, 
 # ---------------------------------------------------------------------------------------------------------------------
 # The answers by kind of region
 
+_IS_BLOCKED = {GridRegion: _is_blocked_in_grid, CircleRegion: _is_blocked_in_circles, PolygonRegion: _is_blocked_in_polygons}
+_IS_FREE = {GridRegion: _is_free_in_grid, CircleRegion: _is_free_in_circles, PolygonRegion: _is_free_in_polygons}
+_DEPTH_AT = {GridRegion: _depth_in_grid, CircleRegion: _depth_in_circles, PolygonRegion: _depth_in_polygons}
+_DEPTH_BOUND = {GridRegion: _depth_bound_by_edges, CircleRegion: _depth_bound_in_circles, PolygonRegion: _depth_bound_by_edges}
+
 
 @overload(is_blocked)
 def _choose_is_blocked(x, y, region):
-    return {GridRegion: _is_blocked_in_grid, CircleRegion: _is_blocked_in_circles, PolygonRegion: _is_blocked_in_polygons}[
-        region.instance_class
-    ]
+    return _IS_BLOCKED[region.instance_class]
 
 
 @overload(is_free)
 def _choose_is_free(points, region):
-    return {GridRegion: _is_free_in_grid, CircleRegion: _is_free_in_circles, PolygonRegion: _is_free_in_polygons}[region.instance_class]
+    return _IS_FREE[region.instance_class]
 
 
 @overload(depth_at)
 def _choose_depth(x, y, region):
-    return {GridRegion: _depth_in_grid, CircleRegion: _depth_in_circles, PolygonRegion: _depth_in_polygons}[region.instance_class]
+    return _DEPTH_AT[region.instance_class]
 
 
 @overload(depth_bound)
 def _choose_depth_bound(points, region):
-    return {GridRegion: _depth_bound_by_edges, CircleRegion: _depth_bound_in_circles, PolygonRegion: _depth_bound_by_edges}[
-        region.instance_class
-    ]
+    return _DEPTH_BOUND[region.instance_class]

@@ -22,7 +22,8 @@ from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
-from bezierplan.schema.model import Line, Model, NotNegative, Number, Positive, after, keys, value, wrong
+from bezierplan.schema.model import Line, Model, NotNegative, Number, Positive, after, is_number, keys, value, wrong
+from bezierplan.workspaces.limits import SMALLEST_FEATURE
 from bezierplan.workspaces.text_file import read_text
 
 _IS_FILE = value(lambda given: isinstance(given, str) and given.isprintable() and 0 < len(given) <= 200, "the name of a file")
@@ -39,6 +40,9 @@ def of_length(length: int, expected: str) -> Any:
 
     return Annotated[list[Number], after(check)]
 
+
+Size = Annotated[float, value(lambda given: is_number(given) and given >= SMALLEST_FEATURE, f"a number of at least {SMALLEST_FEATURE:g}")]
+"""A side or a radius of something solid, in units."""
 
 Bounds = of_length(4, "[x low, x high, y low, y high]")
 CircleCount = Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")]

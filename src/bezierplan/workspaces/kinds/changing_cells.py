@@ -6,7 +6,7 @@ from typing import ClassVar
 from pydantic import Field, model_validator
 
 from bezierplan.schema.model import Model, Positive, wrong
-from bezierplan.workspaces.kinds import File, World
+from bezierplan.workspaces.kinds import File, Size, World
 
 
 class Change(Model):
@@ -31,7 +31,7 @@ class Options(World):
     made: ClassVar[str] = "grid"
 
     file: File = Field(description="a map file in the study's folder")
-    cell: Positive = Field(description="the side of a cell, a number above 0")
+    cell: Size = Field(description="the side of a cell, a number of at least 1e-6")
     changes: list[Change] = Field(description="a list of {file, after} or {file, at}, in order of time", min_length=1)
 
 

@@ -7,7 +7,7 @@ from pydantic import Field
 
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.kinds import Bounds, Workspace, of_length
-from bezierplan.workspaces.limits import check_bounds, check_gaps, check_numbers
+from bezierplan.workspaces.limits import check_bounds, check_gaps, check_numbers, check_thickness
 
 MOST_CIRCLES = 10_000
 """Most circles of a workspace: their gaps are looked at in pairs."""
@@ -34,6 +34,7 @@ def load(description: dict, folder: Path) -> Circles:
     for i, (x, y, radius) in enumerate(table):
         if radius <= 0:
             raise ValueError(f"circles: circle {i}: radius {radius:g}; expected above 0")
+        check_thickness(radius, f"circles: circle {i}: radius")
         gaps = np.hypot(*(centres[i + 1 :] - (x, y)).T) - radii[i + 1 :] - radius
         gaps = np.append(gaps, [x - radius - limits[0], limits[1] - x - radius, y - radius - limits[2], limits[3] - y - radius])
         check_gaps(gaps, f"circles: circle {i}")

@@ -6,23 +6,23 @@ from pathlib import Path
 import numpy as np
 from pydantic import Field
 
-from bezierplan.schema.model import Positive
 from bezierplan.workspaces import grid
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.kinds import File, Workspace, naming, text
-from bezierplan.workspaces.limits import check_numbers
+from bezierplan.workspaces.kinds import File, Size, Workspace, naming, text
+from bezierplan.workspaces.limits import check_numbers, check_thickness
 
 
 class Options(Workspace):
     """Keys of a workspace."""
 
     file: File = Field(description="a map file in the study's folder")
-    cell: Positive = Field(description="the side of a cell, a number above 0")
+    cell: Size = Field(description="the side of a cell, a number of at least 1e-6")
     heights: File = Field(description="a file of heights in the study's folder", default=None)
 
 
 def load(description: dict, folder: Path) -> Grid:
     """The cells of a file of . and #, the top row first; optionally with the heights of a file of numbers, likewise."""
+    check_thickness(description["cell"], "cell:")
     lines = text(description, "file", folder).splitlines()
     with naming(description["file"]):
         flat = grid.from_lines(lines, float(description["cell"]), description["unit"])

@@ -4,8 +4,8 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from bezierplan.schema.model import Count, Positive
-from bezierplan.workspaces.kinds import File, World
+from bezierplan.schema.model import Count
+from bezierplan.workspaces.kinds import File, Size, World
 
 
 class Options(World):
@@ -14,5 +14,5 @@ class Options(World):
     drawn: ClassVar[str] = "grid"
 
     file: File = Field(description="a map file in the study's folder")
-    cell: Positive = Field(description="the side of a cell, a number above 0")
+    cell: Size = Field(description="the side of a cell, a number of at least 1e-6")
     every: Count = Field(description="after how many steps as many cells change as a problem has obstacles, a whole number of at least 1")

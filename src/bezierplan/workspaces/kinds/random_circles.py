@@ -4,10 +4,10 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from bezierplan.schema.model import Positive
 from bezierplan.workspaces import random_circles
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.kinds import CIRCLES, Bounds, CircleCount, Workspace
+from bezierplan.workspaces.kinds import CIRCLES, Bounds, CircleCount, Size, Workspace
+from bezierplan.workspaces.limits import check_bounds
 
 
 class Options(Workspace):
@@ -16,11 +16,12 @@ class Options(Workspace):
     drawn: ClassVar[str] = "circles"
 
     bounds: Bounds = Field(description="[x low, x high, y low, y high]")
-    radius: Positive = Field(description="the radius of every circle, a number above 0")
+    radius: Size = Field(description="the radius of every circle, a number of at least 1e-6")
     circles: CircleCount = Field(description=CIRCLES)
 
 
 def draw(description: dict, problem: dict, name: str) -> Circles:
-    """The first so many circles of a layout. Raises ValueError if no free place is found."""
+    """The first so many circles of a layout. Raises ValueError for bounds without room, and if no free place is found."""
+    check_bounds(tuple(map(float, description["bounds"])))
     ends = [tuple(map(float, problem[end])) for end in ("start", "target")]
     return random_circles.first(random_circles.layout(description, name, problem["layout"], ends), problem["obstacles"])

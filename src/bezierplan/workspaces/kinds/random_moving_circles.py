@@ -4,8 +4,7 @@ from typing import ClassVar
 
 from pydantic import Field
 
-from bezierplan.schema.model import Positive
-from bezierplan.workspaces.kinds import CIRCLES, REFLECTED, Bounds, CircleCount, RandomMoving
+from bezierplan.workspaces.kinds import CIRCLES, REFLECTED, Bounds, CircleCount, RandomMoving, Size
 
 
 class Options(RandomMoving):
@@ -14,5 +13,5 @@ class Options(RandomMoving):
     drawn: ClassVar[str] = "circles"
 
     bounds: Bounds = Field(description=REFLECTED)
-    radius: Positive = Field(description="the radius of every circle, a number above 0")
+    radius: Size = Field(description="the radius of every circle, a number of at least 1e-6")
     circles: CircleCount = Field(description=CIRCLES)

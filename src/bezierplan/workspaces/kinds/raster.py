@@ -5,11 +5,11 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from bezierplan.schema.model import Positive
 from bezierplan.workspaces import raster
 from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.kinds import File, Workspace, naming, text
+from bezierplan.workspaces.kinds import File, Size, Workspace, naming, text
+from bezierplan.workspaces.limits import check_thickness
 
 
 class Options(Workspace):
@@ -18,7 +18,7 @@ class Options(Workspace):
     made: ClassVar[str] = "grid"
 
     file: File = Field(description="a GeoJSON file in the study's folder")
-    cell: Positive = Field(description="the side of a cell, a number above 0")
+    cell: Size = Field(description="the side of a cell, a number of at least 1e-6")
     rule: Literal["overlap", "centre"] = Field(
         description="which cells are occupied: those that overlap an obstacle, or whose centre lies in one"
     )
@@ -26,6 +26,7 @@ class Options(Workspace):
 
 def load(description: dict, folder: Path) -> Grid:
     """The cells that the polygons of a GeoJSON file occupy."""
+    check_thickness(description["cell"], "cell:")
     content = text(description, "file", folder)
     with naming(description["file"]):
         polygons = polygons_from_geojson(content, description["unit"])

@@ -6,7 +6,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.workspaces.kinds import Workspace, of_length
-from bezierplan.workspaces.limits import SMALLEST_GAP, check_numbers
+from bezierplan.workspaces.limits import check_numbers, check_thickness
 from bezierplan.workspaces.spheres import Spheres
 
 BOUNDS = "[x low, x high, y low, y high, z low, z high]"
@@ -28,6 +28,5 @@ def load(description: dict, folder: Path) -> Spheres:
     table = np.array(description["spheres"], dtype=float).reshape(-1, 4)
     check_numbers(table, "spheres")
     for i, radius in enumerate(table[:, 3]):
-        if radius <= SMALLEST_GAP:
-            raise ValueError(f"spheres: sphere {i}: radius {radius:g}; expected above {SMALLEST_GAP:g}")
+        check_thickness(radius, f"spheres: sphere {i}: radius")
     return Spheres(bounds, table[:, :3], table[:, 3], description["unit"])
