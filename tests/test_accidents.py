@@ -19,8 +19,9 @@ ROOT = Path(__file__).parents[1]
 
 @pytest.fixture
 def job(tmp_path, monkeypatch):
-    """A job of this process, which need not end with its parent, and its output."""
+    """A job of this process, which nobody watches and which need not end with its parent, and its output."""
     monkeypatch.setattr(log, "end_with_parent", lambda: None)
+    monkeypatch.setattr(log.watchdog, "supervise", lambda *_: None)
     folder = tmp_path / "results"
     folder.mkdir()
     output = OutputFiles(fromdict={"one": str(folder / "one.csv")})
@@ -147,3 +148,29 @@ def test_the_foreign_table_is_named_and_not_a_good_one_before_it(tmp_path):
     pd.DataFrame({"other": [1]}).to_parquet(runs / "1.parquet")
     assert log.damaged([str(runs / "0.parquet")]) == ""
     assert log.damaged([str(runs / name) for name in ("0.parquet", "1.parquet")]).startswith(f"{runs / '1.parquet'}: not a table of runs")
+
+
+FAILS = """
+rule one:
+    output: "results/a.txt"
+    log: "one.log"
+    script: "fails.py"
+"""
+
+
+def test_reason_of_a_failed_job_is_the_last_line_and_a_lock_is_explained_in_one(tmp_path):
+    (tmp_path / "Snakefile").write_text(FAILS)
+    reason = "run a: planner b: [red]wrong"
+    (tmp_path / "fails.py").write_text(f"open(snakemake.log[0], 'w').write('Traceback\\\\n2026 CRITICAL {reason}')\nraise SystemExit(1)\n")
+    command = [sys.executable, "-m", "snakemake", "--workflow-profile", ROOT / "profiles/default", "--cores", "1"]
+    failed = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert failed.returncode == 1
+    assert failed.stderr.strip().splitlines()[-1] == reason
+    assert "RuleException" not in failed.stderr
+    assert "Traceback" not in failed.stderr
+    locks = tmp_path / ".snakemake" / "locks"
+    locks.mkdir(exist_ok=True)
+    (locks / "0.output.lock").write_text("results/a.txt\n")
+    locked = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+    (line,) = [line for line in locked.stderr.splitlines() if "LockException" in line]
+    assert "`snakemake --unlock`" in line

@@ -56,6 +56,8 @@ def plan(problem, rng, *, evaluations: Annotated[int, Range(1)]):
 """
 DRAWN = "rng.uniform(0, 1, (evaluations, 2)) + start"
 RETURN = "    return Plan("
+RESET = "rng.bit_generator.state = np.random.default_rng(0).bit_generator.state"
+LEAVES = "import subprocess; subprocess.Popen(['sleep', '600'], start_new_session=True)"
 
 # A fault of a planner: what stands in WALK, what stands there instead, and the fact that fails.
 BAD = {
@@ -64,6 +66,10 @@ BAD = {
     "seeds numpy": ("    start, target", "    np.random.seed(5)\n    start, target", "global generators"),
     "draws from numba's generator": (DRAWN, f"{DRAWN} + njit(lambda: np.random.random())()", "global generators"),
     "draws from a generator of its own": (DRAWN, f"{DRAWN} + KEPT.random()", "same bits"),
+    "puts its generator back to the first state": ("    start, target", f"    {RESET}\n    start, target", "generators"),
+    "is not deterministic as it says": ("KEPT =", "deterministic = True\nKEPT =", "generators"),
+    "exits": (RETURN, f"    raise SystemExit\n{RETURN}", "plan"),
+    "leaves a process behind": (RETURN, f"    {LEAVES}\n{RETURN}", "plan"),
     "draws from entropy": ("rng.uniform", "np.random.default_rng().uniform", "same bits"),
     "changes an array of the problem": (
         "    start, target",
@@ -233,3 +239,15 @@ def test_fault_is_told_in_one_line_before_anything_runs(fault, tmp_path):
 def test_planner_that_is_not_there_is_told(planner, told):
     with pytest.raises(Fault, match=re.escape(told)):
         contract.check_planner(planner, {})
+
+
+def test_order_that_is_another_in_each_process_is_found(tmp_path):
+    """One of 64 words has the least hash: the two processes agree once in 64 times, and never in one with the hash seed of this test."""
+    words = [f"w{n}" for n in range(64)]
+    file = written(tmp_path, changed("    lengths =", f"    middles[0, 1] += 1e-3 * {words}.index(min({words}, key=hash))\n    lengths ="))
+    assert not failed(file, {"evaluations": 8})
+    found = list(contract.check_elsewhere(file, {"evaluations": 8}))
+    assert {each.fact for each in found if not each.passed} == {"another process"}
+    (tmp_path / "sound").mkdir()
+    file = written(tmp_path / "sound", WALK)
+    assert all(each.passed for each in contract.check_elsewhere(file, {"evaluations": 8}))

@@ -59,7 +59,7 @@ def test_fault_in_the_configuration_of_a_module_is_told_in_one_line(own):
     (own / "faulty").write_text(faulty)
     done = snakemake(own, "--snakefile", "faulty", "--dry-run")
     (line,) = [line for line in (done.stdout + done.stderr).splitlines() if line.strip()]
-    assert done.returncode == 1
+    assert done.returncode == 2
     assert "population: 21; parents are crossed in pairs, so an even number is needed (with the configuration's settings: {" in line
 
 

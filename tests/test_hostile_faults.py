@@ -957,12 +957,12 @@ def sound(tmp_path_factory):
 
 @pytest.mark.parametrize("fault", SPOILT)
 def test_snakemake_ends_in_one_line(fault, folder, sound):
-    """Exit code 1, and of the whole output one line: no traceback, whatever the file holds; after less work than a sound start takes."""
+    """Exit code 2, and of the whole output one line: no traceback, whatever the file holds; after less work than a sound start takes."""
     name, content = SPOILT[fault]
     (folder / name).unlink()
     os.mkfifo(folder / name) if content is None else write(folder / name, content)
     done, calls = started(folder.parent, folder)
-    assert done.returncode == 1
+    assert done.returncode == 2
     assert calls < sound
     assert "Traceback" not in done.stderr + done.stdout
     lines = [line for line in (done.stderr + done.stdout).splitlines() if line.strip()]

@@ -2,7 +2,7 @@
 
 import subprocess
 import sys
-import textwrap
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -99,37 +99,122 @@ def test_runs_are_thrown_away_until_times_are_stable(seconds, runs):
 
 
 WATCHED = """
-    import logging, time
-    logging.basicConfig(filename="log", level=logging.INFO)
-    from bezierplan.running import watchdog
-    with watchdog.watching({limit}) as watch:
-        for name in ("first", "second"):
-            watch("run " + name)
+import ctypes, os, signal, subprocess, sys, threading, time
+from bezierplan.running import log, watchdog
+watchdog.supervise("job", lambda line: log.report("log", line))
+with watchdog.watching({limit}) as watch:
+    for name in ("first", "second"):
+        watch("run " + name)
+        if name == "second":
             {work}
-            watch("")
-            time.sleep({pause})
-    print("end")
+        watch("")
+        time.sleep({pause})
+print("end")
+watchdog.settle()
 """
 
 
-def watched(folder, work, limit=1.0, pause=0.0):
-    source = textwrap.dedent(WATCHED).format(limit=limit, work=work, pause=pause)
+def watched(folder, work, limit=2.0, pause=0.0):
+    source = WATCHED.format(limit=limit, work=work, pause=pause)
     return subprocess.run([sys.executable, "-c", source], cwd=folder, capture_output=True, text=True, check=False, timeout=60)
 
 
-def test_what_keeps_the_interpreter_to_itself_is_ended_too(tmp_path):
-    """The sum holds Python's lock for minutes: neither a thread nor a signal handler of the process would come to its turn."""
-    done = watched(tmp_path, 'sum(range(10**11)) if name == "second" else None')
-    told = "run second: not done within the time limit of 1 s; the job is ended\n"
-    assert (done.returncode, done.stdout, done.stderr) == (-9, "", told)
-    assert (tmp_path / "log").read_text().endswith(told)
+@pytest.mark.parametrize(
+    ("work", "told"),
+    [
+        # The sum holds Python's lock for minutes: neither a thread nor a signal handler of the process would come to its turn.
+        ("sum(range(10**11))", "not done within the time limit of 2 s; it is ended"),
+        ("os._exit(0)", "its process ended itself with exit status 0, before it was done"),
+        ("os._exit(7)", "its process ended itself with exit status 7, before it was done"),
+        (
+            "os.kill(os.getpid(), signal.SIGKILL)",
+            "its process was ended by signal SIGKILL, by itself, by another program, or for want of memory",
+        ),
+        ("ctypes.string_at(0)", "its process was ended by signal SIGSEGV"),
+        ("os.abort()", "its process was ended by signal SIGABRT"),
+        # A child holds whatever a fork inherits.
+        ("os.fork() and os._exit(3) or time.sleep(600)", "its process ended itself with exit status 3, before it was done"),
+        ("os.closerange(3, 99); time.sleep(600)", "not done within the time limit of 2 s; it is ended"),
+    ],
+)
+def test_whatever_ends_a_run_is_told_in_one_line_that_names_it(work, told, tmp_path):
+    done = watched(tmp_path, work)
+    assert (done.returncode, done.stdout, done.stderr) == (1, "", f"run second: {told} (log: log)\n")
+    assert (tmp_path / "log").read_text() == f"CRITICAL run second: {told} (log: log)\n"
 
 
 def test_pauses_between_runs_and_short_runs_are_not_ended(tmp_path):
-    done = watched(tmp_path, "time.sleep(0.1)", pause=1.3)
+    done = watched(tmp_path, "time.sleep(0.1)", limit=1.0, pause=1.3)
     assert (done.returncode, done.stdout, done.stderr) == (0, "end\n", "")
 
 
-def test_without_a_limit_nothing_is_watched():
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux gives a process the children of its children")
+@pytest.mark.parametrize(
+    "work",
+    [
+        "subprocess.Popen(['sleep', '600'], start_new_session=True)",
+        # A daemon: its parent has ended, so nobody knows whose child it was.
+        "subprocess.run([sys.executable, '-c', 'import subprocess; subprocess.Popen([\"sleep\", \"600\"], start_new_session=True)'])",
+    ],
+)
+def test_processes_left_behind_end_with_the_job(work, tmp_path):
+    done = watched(tmp_path, f"{work}; print(*watchdog.children(), flush=True)")
+    (left,) = done.stdout.splitlines()[0].split()
+    assert not Path(f"/proc/{left}").exists()
+
+
+def test_without_supervision_nothing_is_told():
     with watchdog.watching(None) as watch:
         watch("run")
+    watchdog.settle()
+
+
+FAULTS = {
+    "import sys; sys.exit('bye')": "sys.exit: bye",
+    "raise KeyboardInterrupt": "KeyboardInterrupt",
+    "raise type('Own', (BaseException,), {})('no')": "Own: no",
+    "raise ValueError('a\\x1b[31m\\r\\0b' + 'c' * 10**6)": r"ValueError: a\x1b[31m\r\x00bccc",
+    "import subprocess; subprocess.Popen(['sleep', '600'], start_new_session=True)": watchdog.LEFT,
+    "import os, time; os.fork() or time.sleep(600)": watchdog.LEFT,
+    "import multiprocessing as m, time; m.get_context('fork').Process(target=time.sleep, args=(600,)).start()": watchdog.LEFT,
+}
+
+
+@pytest.mark.parametrize("fault", FAULTS)
+def test_run_that_goes_wrong_is_named_in_one_short_line(fault, tmp_path):
+    given = job(tmp_path)
+    file = tmp_path / "bend.py"
+    file.write_text(PLANNER.replace("    made.append", f"    {fault}\n    made.append"))
+    assert fault in file.read_text()
+    with pytest.raises(RuntimeError, match=r"^run ") as told:
+        execution.run_chunk({"disc": PROBLEM}, given)
+    line = str(told.value)
+    assert f": planner {file}: {FAULTS[fault]}" in line
+    assert line.isprintable()
+    assert len(line) < 1000
+    assert not watchdog.children()
+
+
+UNREPEATABLE = {
+    "an own generator": "rng = np.random.default_rng()",
+    "the global generator": "bend = bend + np.random.random()",
+    "the clock": "import time; bend = bend + time.time() % 1",
+    "an address": "global made; bend = bend + id(made := [*made, object()]) % 1009 / 1009",
+    "an earlier run": "bend = bend + len(made) / 100",
+}
+
+
+@pytest.mark.parametrize("fault", UNREPEATABLE)
+def test_run_that_cannot_be_repeated_is_refused(fault, tmp_path):
+    given = job(tmp_path)
+    file = tmp_path / "bend.py"
+    file.write_text(PLANNER.replace("    made.append", f"    {UNREPEATABLE[fault]}\n    made.append"))
+    with pytest.raises(RuntimeError, match=r"with the same generator its run has another (objective|length)"):
+        execution.run_chunk({"disc": PROBLEM}, given)
+
+
+def test_planner_that_is_not_deterministic_as_it_says_is_refused(tmp_path):
+    given = job(tmp_path)
+    (tmp_path / "bend.py").write_text(PLANNER.replace("made = []", "deterministic = True\nmade = []"))
+    with pytest.raises(RuntimeError, match="deterministic = True, but with another generator its run has another objective"):
+        execution.run_chunk({"disc": PROBLEM}, given)

@@ -101,6 +101,7 @@ def test_what_a_killed_job_left_is_removed_when_it_runs_again(tmp_path):
 
 def test_failed_job_leaves_no_file_and_names_a_damaged_input(tmp_path, monkeypatch):
     monkeypatch.setattr(log, "end_with_parent", lambda: None)
+    monkeypatch.setattr(log.watchdog, "supervise", lambda *_: None)
     damaged = tmp_path / "cut.parquet"
     damaged.write_bytes(b"PAR1")
     output = OutputFiles(fromdict={"one": str(tmp_path / "one.csv")})

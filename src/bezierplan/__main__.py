@@ -4,6 +4,10 @@ import argparse
 import importlib
 import os
 import sys
+from functools import partial
+
+from bezierplan.running import watchdog
+from bezierplan.schema import words
 
 COMMANDS = {
     "list": "studies, their artefacts, methods, workspaces and numbers of repeats",
@@ -18,24 +22,34 @@ COMMANDS = {
 }
 
 
-def main(words: list[str]) -> None:
-    """Do what the words of a command line say; a fault ends the process with one line."""
+def main(given: list[str]) -> None:
+    """Do what the words of a command line say; a fault ends the process with one line: of input with status 2, of a planner with 1."""
     listed = "\n".join(f"  {name:16}{text}" for name, text in COMMANDS.items())
     parser = argparse.ArgumentParser(
         prog="python -m bezierplan", epilog=f"commands:\n{listed}", formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("command", choices=COMMANDS, metavar="COMMAND", help="what to do; `COMMAND --help` tells its arguments")
-    name = parser.parse_args(words[:1]).command
+    name = parser.parse_args(given[:1]).command
     command = importlib.import_module(f"bezierplan.commands.{name.replace('-', '_')}")
     own = argparse.ArgumentParser(prog=f"python -m bezierplan {name}", description=COMMANDS[name])
     try:
-        command.main(own, words[1:])
+        command.main(own, given[1:])
         sys.stdout.flush()
     except BrokenPipeError:  # the reader, such as `head`, has enough; Python flushes once more when it exits
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    except watchdog.PlannerFailure as failure:
+        sys.exit(str(failure))
     except (ValueError, FileNotFoundError) as fault:
-        sys.exit(str(fault))
+        print(fault, file=sys.stderr)
+        sys.exit(2)
 
 
 if __name__ == "__main__":
-    main(sys.argv[1:])
+    # A command may execute planners, which can end a process in silence.
+    watchdog.supervise(
+        words.plain(f"python -m bezierplan {' '.join(sys.argv[1:])}", words.LONGEST), partial(print, file=sys.stderr, flush=True)
+    )
+    try:
+        main(sys.argv[1:])
+    finally:
+        watchdog.settle()

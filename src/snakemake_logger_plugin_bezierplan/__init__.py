@@ -1,5 +1,5 @@
 """What Snakemake shows while it works: in a terminal a bar a rule with jobs done, jobs in all, and time left; without one a line every 15
-seconds or less often; at the end where the results are.
+seconds or less often; at the end where the results are, or the one line in which each job that failed says why.
 
 Snakemake finds a logger by its package's name; `logger: bezierplan` in profiles/default names this one.
 It is the rich logger with other columns.
@@ -16,6 +16,12 @@ from snakemake_logger_plugin_rich import LogHandler as RichHandler
 
 __all__ = ["LogHandler"]
 
+REASON = "CRITICAL "
+"""What comes, in a job's log, before the line that says why the job failed (`bezierplan.running.log`)."""
+LOCKED = (
+    "LockException: {}: another Snakemake works in this folder, or was killed here; if none works, free it by `snakemake --unlock` and "
+    "start again (`make smoke`, `make reproduce` and `make extended` do so themselves)"
+)
 BETWEEN_LINES = 15.0
 """Least time between two lines of progress without a terminal, in seconds."""
 
@@ -36,10 +42,24 @@ class LogHandler(RichHandler):
         )
         self.started = self.last_line = time.monotonic()
         self.folders: set[str] = set()
+        self.reasons: list[str] = []
+        self.frames: LogRecord | None = None  # Snakemake's account of a failed job, until it is known whether the job's own is better
 
     def emit(self, record: LogRecord) -> None:
+        event, exception = getattr(record, "event", None), getattr(record, "exception", None)
+        if event == LogEvent.ERROR and exception == "RuleException":
+            self.show_frames()
+            self.frames = record
+            return
+        if event == LogEvent.JOB_ERROR and (reason := self.reason_of(record.jobid)):
+            self.reasons.append(reason)
+            self.frames = None
+            return
+        if event == LogEvent.ERROR and exception == "LockException":
+            self.reasons.append(LOCKED.format(Path.cwd()))
+            return
+        self.show_frames()
         super().emit(record)
-        event = getattr(record, "event", None)
         if event == LogEvent.JOB_INFO:
             self.folders.update(folder for file in record.output or [] if (folder := results_folder(file)))
         elif event == LogEvent.JOB_FINISHED and not self.console.is_terminal:
@@ -48,6 +68,29 @@ class LogHandler(RichHandler):
             done, total = self.event_handler.completed, self.event_handler.total_jobs
             if done == total and self.folders:
                 self.console.print(f"Results: {', '.join(sorted(self.folders))}", soft_wrap=True, highlight=False)
+
+    def reason_of(self, job: int) -> str:
+        """Why a job failed, as its log says in its last line; empty if it does not."""
+        for log in self.event_handler.jobs_info.get(job, {}).get("log") or []:
+            try:
+                lines = Path(log).read_text(encoding="utf-8", errors="replace").splitlines()
+            except OSError:
+                continue
+            if lines and REASON in lines[-1]:
+                return lines[-1].split(REASON, 1)[1]
+        return ""
+
+    def show_frames(self) -> None:
+        if self.frames:
+            frames, self.frames = self.frames, None
+            super().emit(frames)
+
+    def close(self) -> None:
+        """End, and repeat last what matters most: why jobs failed."""
+        self.show_frames()
+        super().close()
+        while self.reasons:
+            self.console.print(self.reasons.pop(0), soft_wrap=True, highlight=False, markup=False)
 
     def show_progress(self) -> None:
         """Print a line, unless the last one is too fresh: jobs done, jobs in all, time elapsed and left if all jobs take equally long."""

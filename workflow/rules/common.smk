@@ -41,7 +41,8 @@ try:
     STUDIES = reading.load(reading.read_config(config, alone=workflow.modifier.namespace is not None), at_changes)
     reading.check_folder()
 except checked.Fault as fault:
-    sys.exit(str(fault))
+    print(fault, file=sys.stderr)
+    sys.exit(2)
 # All this stays until the end: to look for garbage in it takes a tenth of a start.
 gc.freeze()
 

@@ -18,10 +18,13 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     words = parser.parse_args(words)
     planner, settings = of_study(words.study, words.planner) if words.study else (words.planner, of_text(words.settings))
     failed = total = 0
-    for finding in contract.check_planner(planner, settings):
-        print(finding, flush=True)
-        total += 1
-        failed += not finding.passed
+    for check in (contract.check_planner, contract.check_elsewhere):
+        for finding in check(planner, settings):
+            print(finding, flush=True)
+            total += 1
+            failed += not finding.passed
+        if failed:
+            break
     print(f"{total - failed} of {total} facts hold")
     if failed:
         sys.exit(1)

@@ -12,7 +12,7 @@ from bezierplan.analysis.measures import CURVATURE_SAMPLES
 from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.planners import Plan, known_planners, planner_module, planner_settings, setting_fault
-from bezierplan.running import problems
+from bezierplan.running import interface, problems, watchdog
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.workspaces import files
@@ -105,10 +105,11 @@ def _plan(given: Namespace) -> None:
     _check_settings(planner, settings)
     module = planner_module(planner)
     if hasattr(module, "serves"):
-        module.serves(problem)
+        interface.asked(module.serves, f"--planner: {planner}", problem)
     for _ in range(2):  # the first run also loads compiled code, so only the second is timed
         begin = time.process_time()
-        plan = module.plan(problem, np.random.default_rng(given.seed), **settings)
+        with watchdog.watching(None) as watch, watchdog.executing(f"planner {planner}", watch):
+            plan = module.plan(problem, np.random.default_rng(given.seed), **settings)
         seconds = time.process_time() - begin
     check = None if plan.path is None else checker.check(curves.bezier_pieces(plan.path), region(problem.workspace))
     for name, text in _told(problem, planner, settings, plan, check, bound.length, seconds):
@@ -160,6 +161,7 @@ def _planner(given: Namespace) -> tuple[str, dict[str, Any]]:
         planner = given.planner or "rounded_shortest_path"
         if not planner.endswith(".py") and planner not in known_planners():
             raise Fault(f"--planner: {planner}: unknown{closest(planner, known_planners())}")
+        interface.loaded(planner, f"--planner: {planner}")
         preset = {} if planner == "rounded_shortest_path" or planner.endswith(".py") else _preset(planner)
     for name in own:
         if name not in planner_settings(planner_module(planner)):
@@ -202,7 +204,7 @@ def _check_settings(planner: str, settings: dict[str, Any]) -> None:
         if wanted:
             raise Fault(f"--settings: {name}: {settings[name]!r}; expected {wanted}")
     if hasattr(module, "check"):
-        module.check(settings)
+        interface.asked(module.check, "--settings", settings)
 
 
 def _problem(given: Namespace, planner: str) -> Problem:

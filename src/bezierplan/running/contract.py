@@ -4,9 +4,14 @@ Every setting of a planner needs a value. The planner counts its own budget: the
 """
 
 import copy
+import hashlib
 import itertools
+import json
 import math
+import os
 import random
+import subprocess
+import sys
 import typing
 from collections.abc import Iterator
 from types import ModuleType
@@ -18,14 +23,18 @@ from bezierplan.geometry import checker, curves
 from bezierplan.geometry.region import Region, region
 from bezierplan.kernels import allocation_free
 from bezierplan.planners import Plan, Range, known_planners, planner_settings, setting_fault
-from bezierplan.running import answer, interface
+from bezierplan.running import answer, interface, watchdog
 from bezierplan.running.execution import TAKEN
 from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.words import told
 from bezierplan.workspaces import grid
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import to_json
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem, Workspace
+
+LIMIT = 600.0
+"""Seconds that one plan may take, compilation included."""
 
 # Number of generators, with one plan for each.
 _GENERATORS = 3
@@ -55,6 +64,31 @@ def check_planner(planner: str, settings: dict[str, Any]) -> Iterator[Finding]:
     return itertools.chain(first, _findings(module, settings))
 
 
+def check_elsewhere(planner: str, settings: dict[str, Any]) -> Iterator[Finding]:
+    """Findings, one a problem, on whether a planner that passes `check_planner` gives the same bits in another process, where `hash`, the
+    order of sets and the addresses of objects differ.
+    """
+    hashing = "2" if os.environ.get("PYTHONHASHSEED") == "1" else "1"
+    command = [sys.executable, "-m", __name__, planner, json.dumps(settings)]
+    there = subprocess.run(command, env=os.environ | {"PYTHONHASHSEED": hashing}, stdout=subprocess.PIPE, text=True, check=False)
+    elsewhere = dict(line.split("\t", 1) for line in there.stdout.splitlines() if "\t" in line)
+    for problem, bits in first_answers(planner, settings):
+        same = elsewhere.get(problem) == bits
+        yield Finding(problem, "another process", same, "" if same else "another plan there; hash(), id() and the order of a set differ")
+
+
+def first_answers(planner: str, settings: dict[str, Any]) -> Iterator[tuple[str, str]]:
+    """Each problem with a digest of a planner's plan from the first generator; of its exception, if it raises one."""
+    module = interface.loaded(planner, planner)
+    for problem in _problems(module):
+        try:
+            with watchdog.watching(LIMIT) as watch, watchdog.executing(f"{planner}: {problem.name}", watch):
+                found = repr(_bits(module.plan(problem, np.random.default_rng(0), **settings)))
+        except watchdog.PlannerFailure as failure:
+            found = type(failure.__cause__).__name__
+        yield problem.name, hashlib.sha256(found.encode()).hexdigest()
+
+
 # ---------------------------------------------------------------------------------------------------------------------
 # Before a planner is run: its module and its settings
 
@@ -81,11 +115,9 @@ def _check_settings(module: ModuleType, settings: dict[str, Any], planner: str) 
             raise Fault(f"{planner}: settings: {name}: {settings[name]!r}; expected {wanted}")
     if not hasattr(module, "check"):
         return []
+    interface.asked(module.check, f"{planner}: settings", settings)
     handed = dict(settings)
-    try:
-        module.check(handed)
-    except ValueError as error:
-        raise Fault(f"{planner}: settings: {error}") from None
+    module.check(handed)
     return [Finding("any problem", "settings unchanged", handed == settings, "" if handed == settings else "check(settings) changes them")]
 
 
@@ -93,11 +125,6 @@ def _wanted(annotation: Any) -> str:
     """The values that a setting accepts, in words."""
     limits = [str(part) for part in typing.get_args(annotation) if isinstance(part, Range)]
     return " ".join([setting_fault(annotation, object()), *limits])
-
-
-def _told(error: Exception) -> str:
-    """An error as one line."""
-    return " ".join(f"{type(error).__name__}: {error}".split())
 
 
 # ---------------------------------------------------------------------------------------------------------------------
@@ -200,11 +227,14 @@ PROBLEMS = {"grid": _grid_problems, "circles": _circle_problems, "polygons": _po
 
 
 class _Run(NamedTuple):
-    """plan: the answer. used: global generators whose state changed. changed: whether the planner altered the problem."""
+    """plan: the answer. used: global generators whose state changed. changed: whether the planner altered the problem. rng: the state of
+    its own generator afterwards; None if nothing was drawn.
+    """
 
     plan: Any
     used: list[str]
     changed: bool
+    rng: str | None
 
 
 class _Case(NamedTuple):
@@ -229,31 +259,59 @@ class _Case(NamedTuple):
 
 def _findings(module: ModuleType, settings: dict[str, Any]) -> Iterator[Finding]:
     columns = None
+    differ, drawn, sound = [], False, True
+    for problem in _problems(module):
+        blocked = region(problem.workspace)
+        runs, fault = _runs(module, problem, settings)
+        yield Finding(problem.name, "plan", not fault, fault)
+        if fault:
+            continue
+        plan, again, reseeded, *others = (run.plan for run in runs)
+        columns = set(plan.extra) if columns is None else columns
+        declared = getattr(module, "exact", False), getattr(module, "keeps_best", True)
+        case = _Case(problem, blocked, settings, [plan, *others], again, reseeded, runs, columns, *declared)
+        for name, fact in _FACTS.items():
+            finding = Finding(problem.name, name, *fact(case))
+            sound = sound and finding.passed
+            yield finding
+        if problem.name.endswith(_SEALED):
+            yield Finding(problem.name, "no way", *_finds_no_way(case))
+        differ.append(next((field for other in others if (field := _difference(plan, other))), ""))
+        left = [run.rng for run in (runs[0], *runs[3:])]
+        drawn = drawn or (None not in left and len({*left}) == len(left))
+    # One that has another fault, such as to draw from a global generator, is not blamed twice.
+    if differ and sound:
+        yield Finding("all problems", "generators", *_heeds_generators(differ, drawn, getattr(module, "deterministic", False)))
+
+
+def _problems(module: ModuleType) -> Iterator[Problem]:
     for kind in getattr(module, "workspaces", PROBLEMS):
-        for problem in PROBLEMS[kind]():
-            blocked = region(problem.workspace)
-            runs, fault = _runs(module, problem, settings)
-            yield Finding(problem.name, "plan", not fault, fault)
-            if fault:
-                continue
-            plan, again, reseeded, *others = (run.plan for run in runs)
-            columns = set(plan.extra) if columns is None else columns
-            declared = getattr(module, "exact", False), getattr(module, "keeps_best", True)
-            case = _Case(problem, blocked, settings, [plan, *others], again, reseeded, runs, columns, *declared)
-            for name, fact in _FACTS.items():
-                yield Finding(problem.name, name, *fact(case))
-            if problem.name.endswith(_SEALED):
-                yield Finding(problem.name, "no way", *_finds_no_way(case))
+        yield from PROBLEMS[kind]()
+
+
+def _heeds_generators(differ: list[str], drawn: bool, deterministic: bool) -> tuple[bool, str]:
+    """differ: for each problem the first field in which plans of different generators differ; empty if none does. drawn: whether on some
+    problem all generators were drawn from and left in different states: then the plans may be the same because the problems are easy.
+    """
+    field = next(filter(None, differ), "")
+    if deterministic:
+        return not field, f"{field}: another value from another generator, but deterministic = True" if field else ""
+    return drawn or bool(
+        field
+    ), "" if drawn or field else "the same plans from every generator; draw from rng as it comes, or say deterministic = True"
 
 
 def _runs(module: ModuleType, problem: Problem, settings: dict[str, Any]) -> tuple[list[_Run], str]:
     """Runs in the order that `_findings` expects, or the fault that left none to inspect."""
     runs = []
     for seed, surroundings in [(0, 0), (0, 0), (0, 1), *((seed, 0) for seed in range(1, _GENERATORS))]:
+        name = f"planner {module.__spec__.origin}: {problem.name}"
         try:
-            runs.append(_run(module, problem, settings, seed, surroundings))
-        except Exception as error:  # a planner can fail in any way
-            return [], f"raises {_told(error)}"
+            with watchdog.watching(LIMIT) as watch, watchdog.executing(name, watch):
+                runs.append(_run(module, problem, settings, seed, surroundings))
+        except watchdog.PlannerFailure as failure:
+            cause = failure.__cause__
+            return [], f"raises {told(cause)}" if cause else watchdog.LEFT
         fault = answer.plan_fault(runs[-1].plan)
         if fault:
             return [], fault
@@ -269,12 +327,20 @@ def _run(module: ModuleType, problem: Problem, settings: dict[str, Any], seed: i
         random.seed(surroundings)
         _seed_compiled(surroundings)
         before = _global_states()
-        plan = module.plan(given, np.random.default_rng(seed), **settings)
+        rng = np.random.default_rng(seed)
+        fresh = _state(rng)
+        plan = module.plan(given, rng, **settings)
         used = [name for name, state in _global_states().items() if state != before[name]]
     finally:
         np.random.set_state(kept[0])  # noqa: NPY002
         random.setstate(kept[1])
-    return _Run(plan, used, _content(given) != _content(problem))
+    left = _state(rng)
+    return _Run(plan, used, _content(given) != _content(problem), None if left == fresh else left)
+
+
+def _state(rng: np.random.Generator) -> str:
+    """What tells whether a generator was drawn from or split."""
+    return f"{rng.bit_generator.state} {rng.bit_generator.seed_seq.n_children_spawned}"
 
 
 def _global_states() -> dict[str, tuple]:
@@ -405,3 +471,8 @@ _FACTS = {
     "budget": _keeps_budget,
     "claims": _claims_hold,
 }
+
+
+if __name__ == "__main__":
+    for answered in first_answers(sys.argv[1], json.loads(sys.argv[2])):
+        print(*answered, sep="\t")

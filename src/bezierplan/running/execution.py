@@ -17,7 +17,7 @@ import itertools
 import logging
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import partial
 from typing import Any, NamedTuple, TypeVar
 
@@ -107,7 +107,7 @@ def run(job: dict, condition: Condition, repeat: int, problem: Problem) -> Plan:
     return plan(problem, generator(job, condition, repeat), **settings_in(job, condition))
 
 
-class UnfitAnswer(RuntimeError):
+class UnfitAnswer(watchdog.PlannerFailure):
     """A planner's answer that no row may show; the message names run, planner and field."""
 
 
@@ -167,7 +167,8 @@ def row(job: dict, condition: Condition, repeat: int, plan: Plan, problem: Probl
 def run_chunk(problems: dict[str, Problem], job: dict) -> tuple[pa.Table, pa.Table]:
     """The runs of a job (`RUN_COLUMNS`) and, in a separate table because they are never reproducible, their times: id, cpu_s, wall_s.
 
-    Raises RuntimeError, naming the run, if a planner fails or does not return a valid plan for the problem (`row`).
+    Raises PlannerFailure, naming the run, if a planner fails or does not return a valid plan for the problem (`row`), or if its first run
+    cannot be repeated.
     """
     blocked = {name: region(problem.workspace) for name, problem in problems.items() if name in job["problems"]}
     given = list(conditions(list(job["problems"]), job["vary"]))
@@ -178,10 +179,15 @@ def run_chunk(problems: dict[str, Problem], job: dict) -> tuple[pa.Table, pa.Tab
         for n, (k, repeat) in enumerate(_order(job, len(given), range(first, first + 1 if deterministic else last))):
             condition, problem = given[k], problems[given[k].problem]
             once = partial(run, job, condition, repeat, problem)
+            made = partial(row, job, condition, repeat, problem=problem, blocked=blocked[condition.problem])
             if not rows:
-                _warm_up(partial(timed, once, job, condition, repeat, watch))
+                # What needs no random numbers must not be changed by others.
+                again = partial(run, job, condition, repeat + 1, problem) if deterministic else once
+                warm = _warm_up(partial(timed, again, job, condition, repeat, watch))
             plan, cpu, wall = timed(once, job, condition, repeat, watch)
-            rows[k, repeat] = row(job, condition, repeat, plan, problem, blocked[condition.problem])
+            rows[k, repeat] = made(plan)
+            if n == 0:
+                refuse_unrepeatable(map(made, warm), rows[k, repeat], job, deterministic)
             times[k, repeat] = {"id": rows[k, repeat]["id"], "cpu_s": cpu, "wall_s": wall}
             if (n + 1) % _LOGGED == 0:
                 logger.info("%d runs done", n + 1)
@@ -211,29 +217,41 @@ def _order(job: dict, conditions: int, repeats: range) -> list[tuple[int, int]]:
     return [pairs[n] for n in shuffled]
 
 
-def _warm_up(once: Callable[[], tuple[Plan, float, float]]) -> None:
-    """Discard runs until their CPU time is stable or they are long: the first ones of a process load code and wake the processor."""
-    taken = []
+def _warm_up(once: Callable[[], tuple[T, float, float]]) -> list[T]:
+    """What the first and the last of some runs return, which are made until their CPU time is stable or they are long: the first ones of a
+    process load code and wake the processor.
+    """
+    taken, found = [], []
     while len(taken) < _ALIKE or max(taken[-_ALIKE:]) > (1 + _STABLE) * min(taken[-_ALIKE:]):
-        taken.append(once()[1])
+        plan, cpu, _ = once()
+        taken.append(cpu)
+        found[1:] = [plan]
         if taken[-1] > _LONG_RUN or sum(taken[1:]) > _WARM_UP:
-            return
+            break
+    return found
+
+
+def refuse_unrepeatable(repetitions: Iterable[dict[str, Any]], found: dict[str, Any], job: dict, deterministic: bool) -> None:
+    """Raise PlannerFailure, naming the run, if repetitions of a run do not have the bits of its row."""
+    for again in repetitions:
+        # The text of a number tells all its bits, and unlike the number a NaN is equal to itself.
+        column = next((name for name in found | again if repr(found.get(name)) != repr(again.get(name))), None)
+        if column:
+            reason = (
+                "has deterministic = True, but with another generator"
+                if deterministic
+                else "a plan must follow from problem, rng and settings alone: no other random numbers, no clock, no id() or hash(), "
+                "nothing kept from an earlier run; but with the same generator"
+            )
+            raise watchdog.PlannerFailure(f"run {found['id']}: planner {job['planner']}: {reason} its run has another {column}")
 
 
 def timed(once: Callable[[], T], job: dict, condition: Condition, repeat: int, watch: Callable[[str], None]) -> tuple[T, float, float]:
-    """What one run returns, its CPU seconds and its wall-clock seconds. Raises RuntimeError, naming the run, if the planner fails.
+    """What one run returns, its CPU seconds and its wall-clock seconds. Raises PlannerFailure, naming the run, if the planner fails.
 
     watch: told what is under way, and with an empty text that it is over (`watchdog.watching`).
     """
-    watch(f"run {run_id(job, condition, repeat)}: planner {job['planner']}")
-    try:
+    with watchdog.executing(f"run {run_id(job, condition, repeat)}: planner {job['planner']}", watch):
         cpu, wall = time.process_time(), time.perf_counter()
         found = once()
         return found, time.process_time() - cpu, time.perf_counter() - wall
-    except UnfitAnswer:
-        raise
-    except Exception as error:
-        told = " ".join(f"{type(error).__name__}: {error}".split())
-        raise RuntimeError(f"run {run_id(job, condition, repeat)}: {told}") from error
-    finally:
-        watch("")

@@ -22,7 +22,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Any
 
-from bezierplan.running.log import end_with_parent
+from bezierplan.running.watchdog import end_with_parent
 
 # What the first jobs of a workflow import, which wait for it: each on its own would take as long, and more time of all cores.
 FIRST = (

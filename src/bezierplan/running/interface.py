@@ -1,15 +1,26 @@
-"""Whether a file is a planner: the checks that come before any run, for studies and for the contract tests alike."""
+"""Whether a file is a planner: the checks that come before any run, for studies and for the contract tests alike.
+
+A file of unknown origin is first executed in a process of its own (`watchdog.verdict`), for it may end or stall the one that it is in.
+"""
 
 import inspect
 import traceback
+from collections.abc import Callable
+from functools import partial
 from types import ModuleType
 from typing import Any
 
+from bezierplan import planners
 from bezierplan.planners import planner_module, planner_settings, setting_fault
+from bezierplan.running import watchdog
 from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.words import LONGEST, plain, told
 
 KINDS = ("grid", "circles", "polygons")
 """Kinds of workspace that planners meet."""
+
+LIMIT = 60.0
+"""Seconds that a planner's file may take to be executed, and each call of its `check` and `serves`."""
 
 _EXPECTED = "expected bool, int, float, Literal, or Annotated with a Range"
 
@@ -18,13 +29,47 @@ def loaded(planner: str, place: str) -> ModuleType:
     """The module of a planner, given as a name or the path of a file. Raises Fault, beginning with a place, unless it can be executed and
     has the interface of a planner (`planners`).
     """
-    try:
-        module = planner_module(planner)
-    except (Exception, SystemExit) as error:  # a user's file can fail in any way
-        raise Fault(f"{place}: {_failed(error, planner)}") from None
-    if fault := interface_fault(module):
+    module, fault = None, ""
+    if planner.endswith(".py"):
+        fault = watchdog.verdict("when it is imported", lambda: _loaded(planner)[1], LIMIT)
+    if not fault:
+        module, fault = _loaded(planner)
+    if fault:
         raise Fault(f"{place}: {fault}")
     return module
+
+
+def _loaded(planner: str) -> tuple[ModuleType | None, str]:
+    """The module of a planner, and what is wrong with it: empty if nothing is."""
+    try:
+        module = planner_module(planner)
+    except watchdog.Interrupted:
+        raise
+    except BaseException as error:  # a user's file can fail in any way
+        return None, _failed(error, planner)
+    return module, interface_fault(module) or ""
+
+
+def asked(function: Callable[..., Any], place: str, *given: Any) -> None:
+    """Call a planner's `check` or `serves`, which raises ValueError to report a problem. Raises Fault, beginning with a place."""
+    if function.__module__.startswith(f"{planners.__name__}."):
+        said = _complaint(function, *given)
+    else:
+        said = watchdog.verdict(f"{function.__name__} of its planner", partial(_complaint, function, *given), LIMIT)
+    if said:
+        raise Fault(f"{place}: {said}")
+
+
+def _complaint(function: Callable[..., Any], *given: Any) -> str:
+    try:
+        function(*given)
+    except ValueError as error:
+        return plain(" ".join(str(error).split()), LONGEST) or "ValueError"
+    except watchdog.Interrupted:
+        raise
+    except BaseException as error:  # a user's function can fail in any way
+        return f"{function.__name__} of its planner fails ({told(error)})"
+    return ""
 
 
 def interface_fault(module: ModuleType) -> str | None:
@@ -45,7 +90,7 @@ def interface_fault(module: ModuleType) -> str | None:
     try:
         annotations = planner_settings(module)
     except Exception as error:
-        return f"function plan: its annotations cannot be read ({type(error).__name__}: {error})"
+        return f"function plan: its annotations cannot be read ({told(error)})"
     for setting, annotation in annotations.items():
         try:
             setting_fault(annotation, 0)
@@ -65,9 +110,9 @@ def _failed(error: BaseException, file: str) -> str:
     """What went wrong in an executed file, with the line number if known."""
     if isinstance(error, SyntaxError):
         line = error.lineno
-        text = error.msg
+        text = f"{type(error).__name__}: {error.msg}"
     else:
         lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename.endswith(file)]
         line = lines[-1] if lines else None
-        text = (str(error).splitlines() or [""])[0]
-    return f"{f'line {line}: ' if line else ''}{type(error).__name__}: {text}"
+        text = told(error)
+    return f"{f'line {line}: ' if line else ''}{text}"

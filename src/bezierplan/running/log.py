@@ -1,44 +1,46 @@
 """Common behaviour of workflow jobs: end with the parent, write to the log, leave only complete files, report a failure in one line."""
 
-import ctypes
 import errno
 import glob
 import logging
 import os
 import shutil
-import signal
 import sys
 import tempfile
+import traceback
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
-from bezierplan.running import effort
+from bezierplan.running import effort, watchdog
+from bezierplan.running.watchdog import end_with_parent
+from bezierplan.schema.words import plain, told
 
-PR_SET_PDEATHSIG = 1
 FULL = (errno.ENOSPC, errno.EDQUOT)
 """What an operating system says of a full disk, or of a user's full share of it."""
+LAST = "CRITICAL "
+"""What comes, in the log of a job that has failed, before the line that says why."""
+MOST_FRAMES, MOST_LINES, LONGEST_LINE = 100, 400, 2000
+"""The most frames and lines of a traceback in a log, and the most characters of a line."""
 RUNS_COLUMN = "id"
 """A column of every table of runs."""
-
-
-def end_with_parent() -> None:
-    """Have the kernel end this process when its parent ends, so that no job keeps writing after its workflow is killed (Linux only)."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
 
 
 @contextmanager
 def job(given: Any) -> Iterator[Any]:
     """Run a job: `given` is its script's `snakemake` object; the block receives temporary names for the output files.
 
-    The files get their final names when the block ends, and the log says what CPU time the job took (`effort`). An exception is written to
-    the job's log in full and ends the process with a one-line message.
+    The block runs in a process that another one watches (`watchdog.supervise`). The files get their final names when the block ends, and
+    the log says what CPU time the job took (`effort`). An exception is written to the job's log in full and ends the process with a
+    one-line message, which is also the last line of the log; so does an end that nothing in the process could report.
     """
+    log = given.log[0]
     end_with_parent()
+    watchdog.supervise(str(given.output[0]), partial(report, log))
     effort.begin()
-    logging.basicConfig(filename=given.log[0], filemode="w", level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s")
+    logging.basicConfig(filename=log, filemode="w", level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s")
     try:
         with whole_files(given.output) as output:
             yield output
@@ -46,10 +48,32 @@ def job(given: Any) -> Iterator[Any]:
     except Exception as error:
         if isinstance(error, OSError) and error.errno in FULL:
             logging.raiseExceptions = False  # the log may lie on the same disk
-        logging.exception("failed")
-        sys.exit(
-            full_disk(error, given.output) or damaged(given.input) or f"{type(error).__name__}: {error} (full account: {given.log[0]})"
-        )
+        logging.error("failed\n%s", account(error))
+        said = str(error) if isinstance(error, watchdog.PlannerFailure) else told(error)
+        line = full_disk(error, given.output) or damaged(given.input) or f"{said} (full account: {log})"
+        logging.critical(line)
+        watchdog.settle()
+        sys.exit(line)
+    except watchdog.Interrupted:
+        watchdog.settle()
+        raise
+    watchdog.settle()
+
+
+def report(log: str, line: str) -> None:
+    """Write how a job has ended to its log and to stderr."""
+    line = f"{plain(line)} (log: {log})"
+    with suppress(OSError), open(log, "a", encoding="utf-8") as file:
+        file.write(f"{LAST}{line}\n")
+    with suppress(OSError):
+        os.write(sys.stderr.fileno(), f"{line}\n".encode())
+
+
+def account(error: BaseException) -> str:
+    """The traceback of an exception, each line without control characters and of a limited length."""
+    lines = "".join(traceback.format_exception(error, limit=-MOST_FRAMES)).splitlines()
+    shown = lines if len(lines) <= MOST_LINES else [*lines[: MOST_LINES // 2], "...", *lines[-MOST_LINES // 2 :]]
+    return "\n".join(plain(line, LONGEST_LINE) for line in shown)
 
 
 @contextmanager

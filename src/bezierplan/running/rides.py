@@ -126,9 +126,12 @@ def run_chunk(problems: dict[str, Problem], worlds: dict[str, World], job: dict)
                 problem, world = problems[condition.problem], worlds[condition.problem]
                 once = partial(run, job, condition, repeat, problem, world)
                 if not rows:
-                    execution.timed(once, job, condition, repeat, watch)  # compiles and loads
+                    first, *_ = execution.timed(once, job, condition, repeat, watch)  # compiles and loads
                 ride, cpu, wall = execution.timed(once, job, condition, repeat, watch)
                 found, trace = row(job, condition, repeat, ride, problem, world)
+                if not rows:
+                    again, _ = row(job, condition, repeat, first, problem, world)
+                    execution.refuse_unrepeatable([again], found, job, deterministic=False)
                 rows.append(found)
                 traces.append(trace)
                 times.append({"id": found["id"], "cpu_s": cpu, "wall_s": wall} | _replan_times(ride, job["policy"]["step_seconds"]))

@@ -1,57 +1,261 @@
-"""End a process whose run takes too long, whatever it is doing.
+"""Work in a process that another one watches, so that nothing it does can end, stall or outlive the job in silence.
 
-A compiled kernel does not yield to Python before it ends, so neither a signal handler nor a thread of the same process could act. The
-watchdog is therefore a separate process. It reads from a pipe which run has begun, costs a run two short writes, and ends with the
-process that it watches, whose pipe then closes.
+Code of planners can do anything: exit, crash, loop in a compiled kernel that never yields to Python, or leave processes behind. So a
+process that may meet such code goes on in a child (`supervise`) and itself only waits: it knows how the child ends, what was under way, and
+for how long, and it kills whatever the child leaves. A pipe tells it which run has begun, which costs a run two short writes.
 """
 
+import contextlib
+import ctypes
+import math
 import os
 import select
 import signal
 import sys
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from pathlib import Path
+from typing import Any, NoReturn
+
+from bezierplan.schema.words import told
+
+PR_SET_PDEATHSIG, PR_SET_CHILD_SUBREAPER = 1, 36
+# Seconds between two looks at whether the child is there: while its end of the pipe is open, which another process may hold, and after.
+_LOOK, _CLOSED = 1.0, 0.005
+# Seconds that a process has for ending after its work is done: threads that a planner left running would keep an interpreter for ever.
+_ENDING = 10.0
+# What a child tells last: that its end, good or bad, needs no more words.
+_SETTLED = "settled"
+
+_pipe: int | None = None
+"""The end of the pipe that this process writes to; None if nobody watches it."""
+
+
+def end_with_parent() -> None:
+    """Have the kernel end this process when its parent ends, so that no job keeps writing after its workflow is killed (Linux only)."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def supervise(name: str, report: Callable[[str], None]) -> None:
+    """Return in a child of this process; the process itself waits for it and ends as it does.
+
+    report: called, in this process, with a line that begins with what was under way, or with `name` if nothing was: if the child ends
+    before it is settled (`settle`), or takes longer than it may (`watching`). Then the status is 1. Processes that the child leaves are
+    killed.
+    """
+    global _pipe
+    sys.stdout.flush()
+    sys.stderr.flush()
+    heard, ours = os.pipe()
+    child = os.fork()
+    if child:
+        os.close(ours)
+        _wait(child, heard, name, report)
+    os.close(heard)
+    _pipe = ours
+    signal.signal(signal.SIGINT, _interrupt)
+    end_with_parent()
+    _adopt()
+
+
+class Interrupted(KeyboardInterrupt):
+    """The user's interrupt, which a KeyboardInterrupt of a planner is not."""
+
+
+def _interrupt(*_: Any) -> NoReturn:
+    raise Interrupted
+
+
+def settle() -> None:
+    """Tell that this process ends as it should, or has said why it does not."""
+    _tell(_SETTLED)
 
 
 @contextmanager
 def watching(limit: float | None) -> Iterator[Callable[[str], None]]:
     """Yield a function to call with the name of a run when it begins, and with an empty text when it ends.
 
-    A run longer than `limit` seconds ends this process by SIGKILL, after one line that names the run on stderr and in this process's log
-    file, if any. Without a limit nothing is watched.
+    A run longer than `limit` seconds ends this process, if it is supervised; None is no limit.
     """
-    if limit is None:
-        yield lambda begun: None
-        return
-    import logging
-    import subprocess
-
-    log = next((each.baseFilename for each in logging.getLogger().handlers if isinstance(each, logging.FileHandler)), os.devnull)
-    # Neither the environment nor site-packages are read. In a session of its own, only the closing pipe ends the watchdog.
-    command = [sys.executable, "-I", "-S", __file__, str(os.getpid()), str(limit), log]
-    with subprocess.Popen(command, stdin=subprocess.PIPE, start_new_session=True) as watchdog:
-
-        def tell(begun: str) -> None:
-            os.write(watchdog.stdin.fileno(), f"{begun}\n".encode())
-
-        yield tell
+    yield lambda begun: _tell(f"{math.inf if limit is None else limit} {begun}" if begun else "")
 
 
-def _watch(process: int, limit: float, log: str) -> None:
-    """Read from stdin the name of each run that begins, one per line, and end a process if no line follows within the limit."""
-    begun = b""
-    while select.select([0], [], [], limit if begun else None)[0]:
-        told = os.read(0, 1 << 16)
-        if not told:
-            return
-        begun = told.split(b"\n")[-2]
-    line = f"{begun.decode()}: not done within the time limit of {limit:g} s; the job is ended\n"
-    with open(log, "a", encoding="utf-8") as file:
-        file.write(line)
-    sys.stderr.write(line)
+class PlannerFailure(RuntimeError):
+    """What a planner does that no result may come from; the message is one line that names the planner and its run."""
+
+
+@contextmanager
+def executing(name: str, watch: Callable[[str], None]) -> Iterator[None]:
+    """A block that executes code of a planner, of which `name` tells the planner and what it does.
+
+    watch: as yielded by `watching`. Raises PlannerFailure, beginning with the name, for any exception and for processes that the block
+    leaves behind, which are ended.
+    """
+    before = children()
+    watch(name)
+    try:
+        yield
+    except (Interrupted, PlannerFailure):
+        raise
+    except BaseException as error:  # code of unknown origin may raise anything, SystemExit and KeyboardInterrupt included
+        end_children(before)
+        raise PlannerFailure(f"{name}: {told(error)}") from error
+    finally:
+        watch("")
+    if children() - before:
+        end_children(before)
+        raise PlannerFailure(f"{name}: {LEFT}")
+
+
+def children() -> frozenset[int]:
+    """The processes that this one has started, or inherited as the last one responsible, and that have not ended (Linux only).
+
+    The process in which Python's multiprocessing keeps track of shared memory is none of them: it ends by itself.
+    """
+    try:
+        os.waitid(os.P_ALL, 0, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+    except ChildProcessError:  # the usual case: a thousand of these calls take a millisecond
+        return frozenset()
+    tracker = getattr(getattr(sys.modules.get("multiprocessing.resource_tracker"), "_resource_tracker", None), "_pid", None)
+    found = (int(child) for file in Path("/proc/self/task").glob("*/children") for child in file.read_text().split())
+    return frozenset(child for child in found if child != tracker and not _is_dead(child))
+
+
+def end_children(spared: frozenset[int] = frozenset()) -> None:
+    """Kill the processes that this one has started, and theirs, but for some."""
+    while left := children() - spared:
+        for child in left:
+            with contextlib.suppress(ProcessLookupError, ChildProcessError):
+                os.kill(child, signal.SIGKILL)
+                os.waitpid(child, 0)
+
+
+def verdict(name: str, judge: Callable[[], str], limit: float) -> str:
+    """What a function says that is called in a process of its own, which cannot harm this one; or, beginning with `name`, how the process
+    ended instead. limit: seconds that it may take. What it prints is lost. On Linux; elsewhere it is called in this process.
+    """
+    if sys.platform != "linux":  # a fork of a process that has loaded libraries of macOS may crash
+        return judge()
+    heard, ours = os.pipe()
+    sys.stdout.flush()
     sys.stderr.flush()
-    os.kill(process, signal.SIGKILL)
+    supervisor = os.fork()
+    if supervisor == 0:
+        _judge(name, judge, limit, lambda line: os.write(ours, line.encode()))
+    os.close(ours)
+    try:
+        with os.fdopen(heard, "rb") as stream:
+            said = stream.read().decode()
+    except BaseException:
+        os.kill(supervisor, signal.SIGKILL)
+        raise
+    finally:
+        os.waitpid(supervisor, 0)
+    return said
 
 
-if __name__ == "__main__":
-    _watch(int(sys.argv[1]), float(sys.argv[2]), sys.argv[3])
+def _judge(name: str, judge: Callable[[], str], limit: float, say: Callable[[str], object]) -> NoReturn:
+    try:
+        end_with_parent()
+        supervise(name, say)
+        with open(os.devnull, "r+b") as nothing:
+            for stream in range(3):
+                os.dup2(nothing.fileno(), stream)
+        with watching(limit) as watch:
+            watch(name)
+            said = judge()
+        say(f"{name}: {LEFT}" if children() else said)
+        settle()
+    finally:
+        os._exit(0)
+
+
+LEFT = "leaves a process behind, which is ended; end or join what it starts"
+"""What is said of one that leaves a process behind."""
+
+
+def _tell(text: str) -> None:
+    if _pipe is not None:
+        with contextlib.suppress(OSError):  # a planner may have closed it
+            os.write(_pipe, f"{text}\n".encode())
+
+
+def _forget() -> None:
+    """A fork of the watched process is not the watched one; if it held the pipe, the end of that one would go unnoticed."""
+    global _pipe
+    if _pipe is not None:
+        os.close(_pipe)
+        _pipe = None
+
+
+os.register_at_fork(after_in_child=_forget)
+
+
+def _adopt() -> None:
+    """Become the parent of all processes below this one whose own parent ends (Linux only)."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(PR_SET_CHILD_SUBREAPER, 1)
+
+
+def _wait(child: int, heard: int, name: str, report: Callable[[str], None]) -> NoReturn:
+    """Wait for a child, report what it does not say itself, and end as it does."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _adopt()
+    code = 1
+    try:
+        line, code = _heard(child, heard, name)
+        end_children()
+        if line:
+            report(line)
+    finally:
+        os._exit(code)
+
+
+def _heard(child: int, heard: int, name: str) -> tuple[str, int]:
+    """What is to be reported of a child that has ended, or is ended here, and the exit status."""
+    pipes, rest, last, limit, until, ended, status = [heard], b"", "", math.inf, math.inf, 0, 0
+    while True:
+        if not ended:
+            ended, status = os.waitpid(child, os.WNOHANG)
+        pause = 0.0 if ended else min(_LOOK if pipes else _CLOSED, until - time.monotonic())
+        if select.select(pipes, [], [], max(0.0, pause))[0]:
+            told = os.read(heard, 1 << 16)
+            pipes = pipes if told else []
+            *lines, rest = (rest + told).split(b"\n")
+            if lines:
+                last = lines[-1].decode()
+                limit = {"": math.inf, _SETTLED: _ENDING}.get(last) or float(last.split(" ", 1)[0])
+                until = time.monotonic() + limit
+            continue
+        under_way = name if last in ("", _SETTLED) else last.split(" ", 1)[1]
+        if ended:
+            return ("", status_code(status)) if last == _SETTLED else (f"{under_way}: {how_ended(status)}", 1)
+        if time.monotonic() >= until:
+            os.kill(child, signal.SIGKILL)
+            os.waitpid(child, 0)
+            return ("", 0) if last == _SETTLED else (f"{under_way}: not done within the time limit of {limit:g} s; it is ended", 1)
+
+
+def how_ended(status: int) -> str:
+    """How a process ended before its work was done, from what the operating system says of it."""
+    if os.WIFSIGNALED(status):
+        number = os.WTERMSIG(status)
+        name = signal.Signals(number).name if number in set(signal.Signals) else f"number {number}"
+        cause = ", by itself, by another program, or for want of memory" if number == signal.SIGKILL else ""
+        return f"its process was ended by signal {name}{cause}"
+    return f"its process ended itself with exit status {os.waitstatus_to_exitcode(status)}, before it was done"
+
+
+def status_code(status: int) -> int:
+    """The exit status of a process that ends as another one did."""
+    code = os.waitstatus_to_exitcode(status)
+    return code if code >= 0 else 128 - code
+
+
+def _is_dead(process: int) -> bool:
+    try:
+        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] in "ZX"
+    except OSError:
+        return True

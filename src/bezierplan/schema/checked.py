@@ -14,6 +14,8 @@ from typing import Any
 
 import yaml
 
+from bezierplan.schema.words import plain
+
 LONGEST_FILE = 4_000_000
 """Bytes of the longest file that is read: a study's YAML, maps, published numbers."""
 DEEPEST = 20
@@ -27,7 +29,7 @@ class Fault(ValueError):
     """A problem in a file that the user must fix, in one line: no character from the file can break the line."""
 
     def __init__(self, text: str) -> None:
-        super().__init__("".join(c if c.isprintable() else c.encode("unicode_escape").decode() for c in text))
+        super().__init__(plain(text))
 
 
 class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):

@@ -14,7 +14,7 @@ from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.claims.kinds import Check
 from bezierplan.figures.panels import Panel, spheres
 from bezierplan.planners import planner_module
-from bezierplan.running import problems, worlds
+from bezierplan.running import interface, problems, worlds
 from bezierplan.running.execution import conditions, settings_in
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.model import Model, first_fault, named, one_or_list
@@ -26,7 +26,7 @@ from bezierplan.study.definition import Study, files_of, relative
 from bezierplan.study.design import Design, in_first_variant
 from bezierplan.study.files import inside
 from bezierplan.study.jobs import job
-from bezierplan.study.planner_checks import asked, check_complete, check_settings, loaded
+from bezierplan.study.planner_checks import check_complete, check_settings, loaded
 from bezierplan.workspaces import files
 from bezierplan.workspaces.kinds import kinds
 from bezierplan.workspaces.problem import Problem
@@ -218,7 +218,7 @@ def _check_method_in(study: Study, built: Callable[[str], Problem], name: str, m
             served = ", ".join(module.workspaces)
             raise Fault(f"{place}: methods: {method}: its planner serves workspaces of kind {served}, not {kind} ({problem})")
         if hasattr(module, "serves"):
-            asked(module.serves, f"{place}: methods: {method}: problem {problem}", built(problem))
+            interface.asked(module.serves, f"{place}: methods: {method}: problem {problem}", built(problem))
     described = job(study, name, method, "full", 0)
     # One problem for each distinct set of problem settings.
     apart = {str(met.get("settings")): problem for problem, met in reversed(described["problems"].items())}

@@ -1,6 +1,5 @@
 """Checks that a file is a planner and that settings fit it; every fault is reported in one line."""
 
-from collections.abc import Callable
 from types import ModuleType
 from typing import Any
 
@@ -36,17 +35,7 @@ def check_settings(module: ModuleType, settings: dict[str, Any], place: str) -> 
         if wanted := setting_fault(accepted[setting], settings[setting]):
             raise Fault(f"{place}: settings: {setting}: {settings[setting]!r}; expected {wanted}")
     if hasattr(module, "check"):
-        asked(module.check, f"{place}: settings", settings)
-
-
-def asked(check: Callable[..., Any], place: str, *given: Any) -> None:
-    """Call a planner's check, which raises ValueError to report a problem. Raises Fault, beginning with a place."""
-    try:
-        check(*given)
-    except ValueError as error:
-        raise Fault(f"{place}: {error}") from None
-    except Exception as error:  # a user's check can fail in any way
-        raise Fault(f"{place}: {check.__name__} of its planner fails ({type(error).__name__}: {error})") from None
+        interface.asked(module.check, f"{place}: settings", settings)
 
 
 def check_complete(study: Study, place: str) -> None:

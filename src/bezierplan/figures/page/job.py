@@ -12,7 +12,7 @@ from typing import Any
 import pandas as pd
 
 from bezierplan.figures.page import answer, build, content, gather, runs
-from bezierplan.running.log import end_with_parent
+from bezierplan.running.watchdog import end_with_parent
 
 
 def page(job: dict[str, Any], folder: Path, summary: list[str] | None, processes: int = 1) -> content.Page:
