@@ -88,9 +88,8 @@ def test_points_visited_before_repel_out_of_a_dead_end():
 
 
 def test_a_sealed_target_is_a_plan_without_a_path():
-    lines = ["......#.", "......##", "........", "........"]
+    lines = ["......#.", ".....###", "........", "........"]
     grid = from_lines(lines, 1.0, "cell")
-    grid.occupied[2, 5:] = True
     problem = Problem("test", grid, (0.5, 0.5), (7.5, 3.5))
     found = plan(problem)
     assert found.path is None

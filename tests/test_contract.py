@@ -74,6 +74,11 @@ BAD = {
     "changes an array of the problem": (
         "    start, target",
         "    problem.workspace.radii[:] *= 0.5\n    start, target",
+        "plan",
+    ),
+    "puts another array into the problem": (
+        "    start, target",
+        '    object.__setattr__(problem.workspace, "radii", problem.workspace.radii * 0.5)\n    start, target',
         "problem unchanged",
     ),
     "starts elsewhere": ("np.array([start,", "np.array([np.add(start, 1e-9),", "path"),

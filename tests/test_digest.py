@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from bezierplan.running import digest as digests
+
 SOURCE = Path(__file__).parents[1] / "src"
 ASK = "from bezierplan.running.digest import source_digest; print(source_digest(*{modules!r}))"
 
@@ -140,3 +142,17 @@ def test_a_kernel_outlives_a_move(tree, tmp_path_factory):
     assert kernel(tree)[0] == 0
     moved = shutil.copytree(tree.parent, tmp_path_factory.mktemp("moved") / "tree")
     assert kernel(moved / "src") == (1, str(moved / ".cache" / "kernels" / Path(kernel(tree)[1]).name))
+
+
+def test_versions_of_the_libraries_that_compute_are_part_of_what_a_job_depends_on(monkeypatch):
+    """A straight line needs no library of geometry, a table of runs needs pandas."""
+    real = digests.library_version
+    line, table = "bezierplan.planners.straight_line", "bezierplan.analysis.tables"
+    before = {name: digests.versioned_digest(name) for name in (line, table)}
+    monkeypatch.setattr(digests, "library_version", lambda name: "99" if name == "pandas" else real(name))
+    assert digests.versioned_digest(line) == before[line]
+    assert digests.versioned_digest(table) != before[table]
+    assert " pandas 99" in digests.versioned_digest(table)
+    monkeypatch.setattr(digests, "library_version", lambda name: "99" if name == "numpy" else real(name))
+    assert digests.versioned_digest(line) != before[line]
+    assert digests.versioned_digest(line).split()[0] == digests.source_digest(line)

@@ -820,6 +820,10 @@ PLANNERS = {
         "def plan(problem, rng, *, length: int):\n    pass\n",
         "walk.py: its setting length is a column of the runs table",
     ),
+    "a setting of the name of a column that is joined": (
+        "def plan(problem, rng, *, bound: int):\n    pass\n",
+        "walk.py: its setting bound is a column of the runs table, or joined to it; give it another name",
+    ),
     "a setting without a value": (
         "def plan(problem, rng, *, tries: int, more: int):\n    pass\n",
         "settings: more: missing; walk.py needs it",

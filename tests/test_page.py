@@ -449,3 +449,11 @@ def test_the_answer_counts_claims_that_would_show_again_and_keep_their_verdict()
     read = [claim(f"C{n}", "supported", readings=readings) for n, readings in enumerate([[one], [one, other], [other], []])]
     told = "".join(part.text for part in answer._readings(read))
     assert told.startswith("Of 3 claims that can be read in more than one way, 1 keeps its verdict in every reading")
+
+
+def test_what_was_judged_again_stands_on_the_page():
+    assert "were judged again" not in build.html(page(), Path())
+    verified = content.Verified(files=2, runs=1234, paths=567, digest="0123abcd", versions={"numba": "1.2", "numpy": "3.4"})
+    told = " ".join(build.html(page().model_copy(update={"verified": verified}), Path()).split())
+    assert "All 1,234 runs shown here, 567 different paths, were judged again" in told
+    assert "digest 0123abcd, with numba 1.2, numpy 3.4." in told

@@ -11,6 +11,7 @@ from PIL import Image
 
 from bezierplan.__main__ import main
 from bezierplan.commands.plan import EXAMPLES
+from bezierplan.geometry import shortest_paths
 
 GAPS = str(BENCHMARK_MAPS / "gaps.geojson")
 CELLS = str(BENCHMARK_MAPS.parents[1] / "song2016" / "workspaces" / "figure2.txt")
@@ -165,3 +166,43 @@ def test_a_target_that_cannot_be_reached_is_told(capsys, tmp_path):
     (tmp_path / "room.txt").write_text("..#.\n..#.\n")
     told = refused(capsys, tmp_path / "room.txt", "--start", "0.5,0.5", "--target", "3.5,0.5")
     assert told == "--target: 3.5,0.5: no free way leads there from the start; expected one that can be reached\n"
+
+
+# What a planner answers, or does before it does, and what is told of it. The room has a wall between start and target.
+ANSWERS = {
+    "elsewhere": ("line[1] = (1.5, 0.5)", "answer", "its answer: path: target: (1.5, 0.5); expected exactly (3.5, 0.5)"),
+    "nothing": ("", "None", "its answer: is a NoneType; expected a Plan"),
+    "an error": ("{}[1]", "answer", "KeyError: 1"),
+    "an error of two lines": ('raise ValueError("a\\nb")', "answer", "ValueError: a b"),
+    "an exit": ("raise SystemExit(0)", "answer", "SystemExit: 0"),
+    "an empty map": ("problem.workspace.occupied[:] = False", "answer", "ValueError: assignment destination is read-only"),
+    "another map": (
+        'object.__setattr__(problem.workspace, "occupied", ~problem.workspace.occupied)',
+        "answer",
+        "problem: : workspace: occupied: is another after the run; a planner copies what it changes",
+    ),
+}
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_answer_of_a_planner_comes_through_the_door(capsys, tmp_path, name):
+    code, given, told = ANSWERS[name]
+    (tmp_path / "room.txt").write_text("....\n.#..\n.#..\n")
+    planner = tmp_path / "own.py"
+    planner.write_text(
+        "import numpy as np\nfrom bezierplan.planners import Path, Plan\n\n\ndef plan(problem, rng):\n"
+        f"    line = np.array([problem.start, problem.target])\n    {code}\n"
+        '    answer = Plan(Path("polyline", line), 1.0, True, 1, np.array([1.0]), "done", {})\n'
+        f"    return {given}\n"
+    )
+    words = [tmp_path / "room.txt", "--start", "0.5,0.5", "--target", "3.5,0.5", "--planner", planner]
+    assert refused(capsys, *words) == f"--planner: {planner}: {told}\n"
+
+
+def test_a_feasible_path_shorter_than_the_bound_is_no_answer(capsys, monkeypatch, tmp_path):
+    """If the bound is wrong, or the checker, no negative gap is printed."""
+    (tmp_path / "room.txt").write_text("...\n...\n")
+    found = shortest_paths.shortest_path
+    monkeypatch.setattr(shortest_paths, "shortest_path", lambda problem: (bound := found(problem))._replace(length=bound.length + 1))
+    told = refused(capsys, tmp_path / "room.txt", "--start", "0.5,0.5", "--target", "2.5,0.5", "--planner", "straight_line")
+    assert told.startswith("--planner: straight_line: its path is 2 long and feasible, but no free path is shorter than 3: ")

@@ -36,7 +36,7 @@ ON_CLUSTER = {
     "snakemake extended --workflow-profile profiles/slurm",
 }
 # These read results, so they come last.
-LATE = [command for command in COMMANDS if " --report " in command or " digest " in command or " replay " in command]
+LATE = [command for command in COMMANDS if any(word in command for word in (" --report ", " digest ", " verify ", " replay "))]
 ORDER = [command for command in COMMANDS if command not in LATE] + LATE
 
 

@@ -13,6 +13,7 @@ COMMANDS = {
     "list": "studies, their artefacts, methods, workspaces and numbers of repeats",
     "replay": "one run again, bit-equal, with its picture",
     "digest": "one hash per run table, over sorted rows without times: what `same content` means",
+    "verify": "every stored path and bound of a scale's results judged again, in processes that no planner was in",
     "check-planner": "the contract tests of a planner, on small and degenerate problems",
     "plan": "one path on a map, checked by exact geometry",
     "forecast": "how long a target takes on some cores, how much disk, and its longest jobs",

@@ -39,6 +39,21 @@ rule summary:
         "../scripts/summary.py"
 
 
+# Every path that the page shows, judged again from its row, in processes that no planner was in.
+rule verified:
+    input:
+        inputs(page.verified_inputs),
+    output:
+        "results/{scale}/verified.json",
+    log:
+        "results/{scale}/verified.log",
+    threads: 2
+    params:
+        **params(page.verified_params, "job", "code"),
+    script:
+        "../scripts/verified.py"
+
+
 rule page:
     input:
         inputs(page.inputs),

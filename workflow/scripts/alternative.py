@@ -8,7 +8,7 @@ with log.job(snakemake) as output:
     import pyarrow.parquet as parquet
 
     from bezierplan.analysis.claims import job as claims_job
-    from bezierplan.running import execution, problems
+    from bezierplan.running import execution, problems, rows
 
     files = {name: list(snakemake.input[name]) for name in ("problems", "bounds", "published")}
     runs = list(snakemake.input.runs)
@@ -16,7 +16,8 @@ with log.job(snakemake) as output:
     for chunk, job in snakemake.params.chunks.items():
         file = Path(output.runs) / chunk
         file.parent.mkdir(parents=True, exist_ok=True)
-        for table, path in zip(execution.run_chunk(made[job["experiment"]], job), (file, file.with_suffix(".times.parquet")), strict=True):
-            parquet.write_table(table, path)
+        table, times = execution.run_chunk(made[job["experiment"]], job)
+        rows.write(table, str(file))
+        parquet.write_table(times, file.with_suffix(".times.parquet"))
         runs.append(str(file))
     claims_job.run(snakemake.params.job, runs, files, output.claims, output.checks)

@@ -5,10 +5,10 @@ from bezierplan.running import log
 with log.job(snakemake) as output:
     import pyarrow.parquet as parquet
 
-    from bezierplan.running import problems, rides, worlds
+    from bezierplan.running import problems, rides, rows, worlds
 
     file = snakemake.input.problems
     runs, times, traces = rides.run_chunk(problems.read(file), worlds.read(file), snakemake.params.job)
-    parquet.write_table(runs, output.runs)
+    rows.write(runs, output.runs)
     parquet.write_table(times, output.times)
     parquet.write_table(traces, output.traces, compression="zstd")

@@ -5,8 +5,8 @@ from bezierplan.running import log
 with log.job(snakemake) as output:
     import pyarrow.parquet as parquet
 
-    from bezierplan.running import execution, problems
+    from bezierplan.running import execution, problems, rows
 
     runs, times = execution.run_chunk(problems.read(snakemake.input.problems), snakemake.params.job)
-    parquet.write_table(runs, output.runs)
+    rows.write(runs, output.runs)
     parquet.write_table(times, output.times)

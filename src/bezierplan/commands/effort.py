@@ -26,6 +26,7 @@ WORK = {
     "alternative": "alternatives: their runs and claims",
     "readings_of": "readings: their runs and comparisons",
     "figure": "drawing figures",
+    "verified": "judging stored runs again",
     "page": "the page",
 }
 ROWS = [

@@ -4,6 +4,7 @@ import sys
 import time
 from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
 from pathlib import Path as File
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -12,7 +13,9 @@ from bezierplan.analysis.measures import CURVATURE_SAMPLES
 from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.planners import Plan, known_planners, planner_module, planner_settings, setting_fault
-from bezierplan.running import interface, problems, watchdog
+from bezierplan.running import answer, interface, problems, watchdog
+from bezierplan.running.columns import TAKEN
+from bezierplan.running.loans import lend
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.workspaces import files
@@ -107,11 +110,13 @@ def _plan(given: Namespace) -> None:
     if hasattr(module, "serves"):
         interface.asked(module.serves, f"--planner: {planner}", problem)
     for _ in range(2):  # the first run also loads compiled code, so only the second is timed
-        begin = time.process_time()
-        with watchdog.watching(None) as watch, watchdog.executing(f"planner {planner}", watch):
-            plan = module.plan(problem, np.random.default_rng(given.seed), **settings)
-        seconds = time.process_time() - begin
-    check = None if plan.path is None else checker.check(curves.bezier_pieces(plan.path), region(problem.workspace))
+        plan, seconds = _answer(module, problem, planner, settings, given.seed)
+    _, check = answer.verdict(plan.path, region(problem.workspace))
+    if check.feasible and curves.length(plan.path) < shortest_paths.least_length(bound):
+        raise Fault(
+            f"--planner: {planner}: its path is {curves.length(plan.path):.12g} long and feasible, but no free path is shorter than"
+            f" {bound.length:.12g}: the checker or the bound is wrong"
+        )
     for name, text in _told(problem, planner, settings, plan, check, bound.length, seconds):
         print(f"{name:14}{text}")
     if given.out and plan.path is None:
@@ -120,14 +125,32 @@ def _plan(given: Namespace) -> None:
         _write(given.out, problem, plan.path, check, bound.points)
 
 
+def _answer(module: ModuleType, problem: Problem, planner: str, settings: dict[str, Any], seed: int) -> tuple[Plan, float]:
+    """A planner's answer, through the door of all answers, and its CPU seconds. Raises Fault, in one line, however the planner fails."""
+    loan = lend({problem.name: problem})[problem.name]
+    try:
+        with watchdog.watching(None) as watch, watchdog.executing(f"--planner: {planner}", watch):
+            begin = time.process_time()
+            given = module.plan(loan.problem, np.random.default_rng(seed), **settings)
+            seconds = time.process_time() - begin
+        plan = answer.accepted(given, problem, {*TAKEN, *settings})
+    except answer.Unfit as fault:
+        raise Fault(f"--planner: {planner}: its answer: {fault}") from None
+    except watchdog.PlannerFailure as failure:
+        raise Fault(str(failure)) from None
+    if fault := loan.thorough_fault():
+        raise Fault(f"--planner: {planner}: {fault}")
+    return plan, seconds
+
+
 def _told(
-    problem: Problem, planner: str, settings: dict[str, Any], plan: Plan, check: checker.Check | None, shortest: float, seconds: float
+    problem: Problem, planner: str, settings: dict[str, Any], plan: Plan, check: checker.Check, shortest: float, seconds: float
 ) -> list[tuple[str, str]]:
     """The names and values to print."""
     unit = problem.workspace.unit
     lines = [("planner", planner), ("settings", ", ".join(f"{name} {value}" for name, value in settings.items()) or "none")]
     lines.append(("shortest path", f"{shortest:.6g} {unit}"))
-    if check is None:
+    if plan.path is None:
         return [*lines, ("path", f"none ({plan.stop})"), ("CPU time", f"{seconds:.3g} s")]
     length = curves.length(plan.path)
     lines.append(

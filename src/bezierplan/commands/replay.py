@@ -12,10 +12,12 @@ from bezierplan.commands.digest import read_rows, row_text
 from bezierplan.figures import animation, sheet
 from bezierplan.geometry.region import region
 from bezierplan.running import execution, problems, rides, worlds
+from bezierplan.running.loans import lend
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.study import reading
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import job, problems_job
+from bezierplan.workspaces.worlds import from_json, to_json
 
 SHOWN = ("objective", "length", "bound", "claimed_feasible", "feasible", "collision_at", "collision_depth", "clearance", "evaluations")
 
@@ -70,9 +72,9 @@ def _rerun(described: dict, condition: execution.Condition, repeat: int, study: 
     """A run where nothing moves."""
     made, _ = problems.build_all(problems_job(study, described["experiment"], "full"), study.folder)
     problem = made[condition.problem]
-    plan = execution.run(described, condition, repeat, problem)
-    row = execution.row(described, condition, repeat, plan, problem, region(problem.workspace))
     named = {condition.problem: problem}
+    plan = execution.run(described, condition, repeat, lend(named)[condition.problem].problem)
+    row = execution.row(described, condition, repeat, plan, problem, region(problem.workspace))
     return results.joined(pd.DataFrame([row]), named, problems.bounds_of(named).to_pandas())
 
 
@@ -80,7 +82,7 @@ def _redriven(described: dict, condition: execution.Condition, repeat: int, stud
     """A run in a world that moves."""
     made, _, found = worlds.build_all(problems_job(study, described["experiment"], "full"), study.folder)
     problem, world = made[condition.problem], found[condition.problem]
-    ride = rides.run(described, condition, repeat, problem, world)
+    ride = rides.run(described, condition, repeat, problem, from_json(to_json(world)))
     row, _ = rides.row(described, condition, repeat, ride, problem, world)
     named, moving = {condition.problem: problem}, {condition.problem: world}
     joined = results.joined(pd.DataFrame([row]), named, rides.bounds_of(named, moving).to_pandas())

@@ -71,7 +71,10 @@ Region = GridRegion | CircleRegion | PolygonRegion
 
 
 def region(workspace: Workspace) -> Region:
-    """The blocked region of a workspace; of cells drawn from polygons, that of the polygons. Build it once and use it for many paths."""
+    """The blocked region of a workspace; of cells drawn from polygons, that of the polygons. Build it once and use it for many paths.
+
+    It shares no memory with the workspace.
+    """
     if isinstance(workspace, Grid) and isinstance(workspace.drawn, Polygons):
         return _polygon_region(workspace.drawn)
     if isinstance(workspace, Grid):
@@ -168,9 +171,13 @@ def _runs(boundary: np.ndarray) -> np.ndarray:
 
 
 def _circle_region(circles: Circles) -> CircleRegion:
-    centres = np.ascontiguousarray(circles.centres, dtype=float).reshape(-1, 2)
-    radii = np.ascontiguousarray(circles.radii, dtype=float)
-    return CircleRegion(centres, radii, np.array(circles.bounds, dtype=float), border_edges(circles.bounds))
+    # Copies: a region shares no memory with the workspace that a planner holds.
+    return CircleRegion(
+        np.array(circles.centres, dtype=float).reshape(-1, 2),
+        np.array(circles.radii, dtype=float),
+        np.array(circles.bounds, dtype=float),
+        border_edges(circles.bounds),
+    )
 
 
 def _polygon_region(polygons: Polygons) -> PolygonRegion:

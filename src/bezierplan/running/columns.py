@@ -1,4 +1,6 @@
-"""Columns of the runs tables: of `execution`, and of drives (`rides`)."""
+"""Columns of the runs tables: of `execution`, and of drives (`rides`); and names that are taken by them."""
+
+from bezierplan.planners import PLACE
 
 RUN_COLUMNS = (
     *("id", "study", "experiment", "condition", "problem", "workspace", "method", "repeat", "planner"),
@@ -18,3 +20,13 @@ OUTCOMES = (
     *("collision_steps", "hit_waiting", "known_at", "avoidable", "clearance_least"),
 )
 """Columns of a runs table that only drives have."""
+
+JOINED = (
+    *("straight_line", "bound", "least_length", "bound_path", "octile_bound", "clairvoyant_arrival", "clairvoyant_length"),
+    *("cpu_s", "wall_s", "replan_mean_s", "replan_95_s", "replan_max_s", "replans_late"),
+)
+"""Columns that are joined to a runs table when it is read: of `problems.bounds_of` and `rides.bounds_of`, and the times."""
+
+TAKEN = frozenset((*RUN_COLUMNS, *OUTCOMES, *PLACE, *JOINED))
+"""Names that no planner's extra column can have; the job's settings and what it varies are others. A setting cannot have them
+either."""

@@ -3,7 +3,6 @@
 Every setting of a planner needs a value. The planner counts its own budget: the tests check its count, not its actual work.
 """
 
-import copy
 import hashlib
 import itertools
 import json
@@ -24,12 +23,12 @@ from bezierplan.geometry.region import Region, region
 from bezierplan.kernels import allocation_free
 from bezierplan.planners import Plan, Range, known_planners, planner_settings, setting_fault
 from bezierplan.running import answer, interface, watchdog
-from bezierplan.running.execution import TAKEN
+from bezierplan.running.columns import TAKEN
+from bezierplan.running.loans import lend
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.words import told
 from bezierplan.workspaces import grid
 from bezierplan.workspaces.circles import Circles
-from bezierplan.workspaces.files import to_json
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem, Workspace
 
@@ -312,15 +311,18 @@ def _runs(module: ModuleType, problem: Problem, settings: dict[str, Any]) -> tup
         except watchdog.PlannerFailure as failure:
             cause = failure.__cause__
             return [], f"raises {told(cause)}" if cause else watchdog.LEFT
-        fault = answer.plan_fault(runs[-1].plan)
-        if fault:
-            return [], fault
+        try:
+            runs[-1] = runs[-1]._replace(plan=answer.plain(runs[-1].plan))
+        except answer.Unfit as fault:
+            return [], str(fault)
     return runs, ""
 
 
 def _run(module: ModuleType, problem: Problem, settings: dict[str, Any], seed: int, surroundings: int) -> _Run:
-    """One run on a copy of a problem. surroundings: seed of the global generators, whose state is restored afterwards."""
-    given = copy.deepcopy(problem)
+    """One run on a copy of a problem, as the workflow makes it. surroundings: seed of the global generators, whose state is
+    restored afterwards.
+    """
+    loan = lend({problem.name: problem})[problem.name]
     kept = np.random.get_state(), random.getstate()  # noqa: NPY002
     try:
         np.random.seed(surroundings)  # noqa: NPY002
@@ -329,13 +331,13 @@ def _run(module: ModuleType, problem: Problem, settings: dict[str, Any], seed: i
         before = _global_states()
         rng = np.random.default_rng(seed)
         fresh = _state(rng)
-        plan = module.plan(given, rng, **settings)
+        plan = module.plan(loan.problem, rng, **settings)
         used = [name for name, state in _global_states().items() if state != before[name]]
     finally:
         np.random.set_state(kept[0])  # noqa: NPY002
         random.setstate(kept[1])
     left = _state(rng)
-    return _Run(plan, used, _content(given) != _content(problem), None if left == fresh else left)
+    return _Run(plan, used, bool(loan.thorough_fault()), None if left == fresh else left)
 
 
 def _state(rng: np.random.Generator) -> str:
@@ -355,19 +357,16 @@ def _seed_compiled(seed: int) -> None:
     random.seed(seed)
 
 
-def _content(problem: Problem) -> tuple:
-    return problem.name, problem.start, problem.target, to_json(problem.workspace)
-
-
 # ---------------------------------------------------------------------------------------------------------------------
 # Facts: each returns whether it holds for a case, and a detail
 
 
 def _has_its_ends(case: _Case) -> tuple[bool, str]:
     for plan in case.plans:
-        fault = answer.ends_fault(plan, case.problem)
-        if fault:
-            return False, fault
+        try:
+            answer.check_ends(plan, case.problem)
+        except answer.Unfit as fault:
+            return False, str(fault)
     found = sum(plan.path is not None for plan in case.plans)
     return True, f"{found} paths of {len(case.plans)} plans"
 
@@ -384,9 +383,10 @@ def _history_falls(case: _Case) -> tuple[bool, str]:
 
 def _extra_is_free(case: _Case) -> tuple[bool, str]:
     for plan in case.plans:
-        fault = answer.names_fault(plan, {*TAKEN, *case.settings})
-        if fault:
-            return False, fault
+        try:
+            answer.plain(plan, {*TAKEN, *case.settings})
+        except answer.Unfit as fault:
+            return False, str(fault)
         if plan.extra.keys() != case.columns:
             return False, f"{min(plan.extra.keys() ^ case.columns)}: not in every plan; a table needs the same columns in each row"
     return True, ""

@@ -7,6 +7,7 @@ in which numba keeps the compiled kernels of a module, because numba itself does
 import ast
 import contextlib
 import hashlib
+import importlib.metadata
 import json
 import os
 import sys
@@ -20,6 +21,9 @@ ROOT = PACKAGE.name
 
 # Modules that affect how a job starts and ends, but never what it writes.
 NEUTRAL = {f"{ROOT}.running.{name}" for name in ("digest", "effort", "kernel_cache", "log")}
+
+COMPUTING = ("numba", "llvmlite", "numpy", "scipy", "shapely", "pandas", "pyarrow")
+"""Libraries whose versions can change a number."""
 
 
 def cache_folder() -> Path:
@@ -113,14 +117,31 @@ def _imports(module: _Module) -> set[_Module]:
     return ours.union(*(each.parents() for each in ours))
 
 
-@cache
 def source_digest(*modules: str) -> str:
     """Digest of modules and everything that they import, directly or indirectly, from this package or, for a file, from its folder.
 
     A module is a dotted name of this package or the path of a file, such as a user's planner. Comments, docstrings and layout do not
     count: the digest is taken over syntax trees. Raises ValueError for a missing module.
     """
-    todo, texts = [], {}
+    return _reached(*modules)[0]
+
+
+def versioned_digest(*modules: str) -> str:
+    """`source_digest`, with the versions of the libraries among `COMPUTING` that these modules import: what a job's results depend on."""
+    digest, libraries = _reached(*modules)
+    return " ".join([digest, *(f"{name} {library_version(name)}" for name in COMPUTING if name in libraries)])
+
+
+@cache
+def library_version(name: str) -> str:
+    """The version of an installed library."""
+    return importlib.metadata.version(name)
+
+
+@cache
+def _reached(*modules: str) -> tuple[str, set[str]]:
+    """The digest of `source_digest`, and the libraries among `COMPUTING` that are imported anywhere; llvmlite comes with numba."""
+    todo, texts, libraries = [], {}, set()
     for module in map(_module, modules):
         if module.file() is None:
             raise ValueError(f"no module {module.name} in {module.home}")
@@ -130,7 +151,10 @@ def source_digest(*modules: str) -> str:
         if module not in texts and module.file() and module.name not in NEUTRAL:
             texts[module] = f"{module.name} {_syntax(module.file()).tree}"
             todo += _imports(module)
-    return hashlib.sha256("\n".join(sorted(texts.values())).encode()).hexdigest()[:16]
+            libraries.update(base.split(".")[0] for level, base, _ in _syntax(module.file()).imports if not level and base)
+    libraries |= {"llvmlite"} if "numba" in libraries else set()
+    digest = hashlib.sha256("\n".join(sorted(texts.values())).encode()).hexdigest()[:16]
+    return digest, libraries
 
 
 @cache

@@ -15,7 +15,6 @@ A job is a mapping with these keys, all of them names and plain values (built by
 
 import itertools
 import logging
-import math
 import time
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
@@ -24,23 +23,17 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 import pyarrow as pa
 
-from bezierplan.geometry import checker, curves
 from bezierplan.geometry.region import Region, region
-from bezierplan.planners import PLACE, Plan, planner_module, planner_settings
+from bezierplan.planners import Plan, planner_module, planner_settings
 from bezierplan.running import answer, watchdog
-from bezierplan.running.columns import RUN_COLUMNS
+from bezierplan.running.columns import TAKEN
+from bezierplan.running.loans import Loan, lend
 from bezierplan.workspaces import seeds
 from bezierplan.workspaces.problem import Problem
 
 logger = logging.getLogger(__name__)
 
 T = TypeVar("T")
-
-JOINED = ("straight_line", "bound", "least_length", "bound_path", "octile_bound", "cpu_s", "wall_s")
-"""Columns that are joined to a runs table when it is read: of `problems.bounds_of`, and the times."""
-
-TAKEN = frozenset((*RUN_COLUMNS, *PLACE, *JOINED))
-"""Names that no planner's extra column can have; the job's settings and what it varies are others."""
 
 # Warm-up runs are discarded until this many in a row agree in CPU time to within this share, until those after the first have taken this
 # many seconds, or until one takes so long that its loading time is negligible.
@@ -51,8 +44,6 @@ _LONG_RUN = 1.0
 
 # Number of runs between two lines of the log.
 _LOGGED = 100
-
-NO_PATH = checker.Check(False, math.nan, math.nan, math.nan, math.nan, 0)
 
 
 class Condition(NamedTuple):
@@ -111,11 +102,18 @@ class UnfitAnswer(watchdog.PlannerFailure):
     """A planner's answer that no row may show; the message names run, planner and field."""
 
 
-def refuse_unfit(plan: Any, problem: Problem, job: dict, condition: Condition, repeat: int) -> None:
-    """Raise UnfitAnswer if a planner's answer is not valid for a problem (`answer.fault`)."""
-    fault = answer.fault(plan, problem, {*TAKEN, *settings_in(job, condition), *condition.values})
-    if fault:
-        raise UnfitAnswer(f"run {run_id(job, condition, repeat)}: the answer of planner {job['planner']}: {fault}")
+def accepted(plan: Any, problem: Problem, job: dict, condition: Condition, repeat: int) -> Plan:
+    """A planner's answer as plain values (`answer.accepted`). Raises UnfitAnswer if it is not valid for the problem."""
+    try:
+        return answer.accepted(plan, problem, {*TAKEN, *settings_in(job, condition), *condition.values})
+    except answer.Unfit as fault:
+        raise UnfitAnswer(f"run {run_id(job, condition, repeat)}: the answer of planner {job['planner']}: {fault}") from None
+
+
+def refuse_changed(loan: Loan, job: dict, condition: Condition, repeat: int) -> None:
+    """Raise UnfitAnswer if a planner put something else in a workspace that was lent to it."""
+    if fault := loan.fault():
+        raise UnfitAnswer(f"run {run_id(job, condition, repeat)}: planner {job['planner']}: {fault}")
 
 
 def identity(job: dict, condition: Condition, repeat: int) -> dict[str, Any]:
@@ -135,31 +133,32 @@ def identity(job: dict, condition: Condition, repeat: int) -> dict[str, Any]:
     }
 
 
-def row(job: dict, condition: Condition, repeat: int, plan: Plan, problem: Problem, blocked: Region) -> dict[str, Any]:
-    """One row of the runs table; `blocked` is the region of the problem's workspace.
+def row(job: dict, condition: Condition, repeat: int, plan: Any, problem: Problem, blocked: Region) -> dict[str, Any]:
+    """One row of the runs table, from a planner's answer. `blocked` is the region of the problem's workspace, of which no planner holds any
+    part.
 
-    Raises UnfitAnswer if the plan is not valid for this problem: for example, if its path begins or ends elsewhere, or a column would
-    overwrite another.
+    Length and verdict are those of the points that the row holds. Raises UnfitAnswer if the answer is not valid for this problem: for
+    example, if its path begins or ends elsewhere, or a column would overwrite another.
     """
-    refuse_unfit(plan, problem, job, condition, repeat)
-    path = plan.path
-    check = NO_PATH if path is None else checker.check(curves.bezier_pieces(path), blocked)
+    plan = accepted(plan, problem, job, condition, repeat)
+    curve, points = answer.stored(plan.path)
+    length, check = answer.verdict(answer.restored(curve, points), blocked)
     return {
         **identity(job, condition, repeat),
-        "objective": float(plan.objective),
-        "length": math.nan if path is None else curves.length(path),
-        "claimed_feasible": bool(plan.claimed_feasible),
+        "objective": plan.objective,
+        "length": length,
+        "claimed_feasible": plan.claimed_feasible,
         "feasible": check.feasible,
         "collision_at": check.collision_at,
         "collision_depth": check.depth,
         "clearance": check.clearance,
         "clearance_error": check.tolerance,
-        "evaluations": int(plan.evaluations),
+        "evaluations": plan.evaluations,
         "generations": len(plan.history) - 1,
         "stop": plan.stop,
         "history": plan.history.tolist(),
-        "path_curve": "" if path is None else path.curve,
-        "path_points": [] if path is None else path.points.ravel().tolist(),
+        "path_curve": curve,
+        "path_points": points,
         **plan.extra,
     }
 
@@ -167,30 +166,37 @@ def row(job: dict, condition: Condition, repeat: int, plan: Plan, problem: Probl
 def run_chunk(problems: dict[str, Problem], job: dict) -> tuple[pa.Table, pa.Table]:
     """The runs of a job (`RUN_COLUMNS`) and, in a separate table because they are never reproducible, their times: id, cpu_s, wall_s.
 
-    Raises PlannerFailure, naming the run, if a planner fails or does not return a valid plan for the problem (`row`), or if its first run
-    cannot be repeated.
+    Planners get copies of the problems, and these stay here to judge by. Raises PlannerFailure, naming the run, if a planner fails, does
+    not return a valid plan for the problem (`row`), changes a workspace, or gives another plan when its first run is repeated.
     """
-    blocked = {name: region(problem.workspace) for name, problem in problems.items() if name in job["problems"]}
+    met = {name: problem for name, problem in problems.items() if name in job["problems"]}
+    blocked = {name: region(problem.workspace) for name, problem in met.items()}
+    loans = lend(met)
     given = list(conditions(list(job["problems"]), job["vary"]))
     deterministic = getattr(planner_module(job["planner"]), "deterministic", False)
     first, last = job["repeats"]
     rows, times = {}, {}
     with watchdog.watching(job.get("time_limit")) as watch:
         for n, (k, repeat) in enumerate(_order(job, len(given), range(first, first + 1 if deterministic else last))):
-            condition, problem = given[k], problems[given[k].problem]
-            once = partial(run, job, condition, repeat, problem)
+            condition = given[k]
+            problem, loan = met[condition.problem], loans[condition.problem]
+            once = partial(run, job, condition, repeat, loan.problem)
             made = partial(row, job, condition, repeat, problem=problem, blocked=blocked[condition.problem])
             if not rows:
                 # What needs no random numbers must not be changed by others.
-                again = partial(run, job, condition, repeat + 1, problem) if deterministic else once
+                again = partial(run, job, condition, repeat + 1, loan.problem) if deterministic else once
                 warm = _warm_up(partial(timed, again, job, condition, repeat, watch))
             plan, cpu, wall = timed(once, job, condition, repeat, watch)
+            refuse_changed(loan, job, condition, repeat)
             rows[k, repeat] = made(plan)
             if n == 0:
                 refuse_unrepeatable(map(made, warm), rows[k, repeat], job, deterministic)
             times[k, repeat] = {"id": rows[k, repeat]["id"], "cpu_s": cpu, "wall_s": wall}
             if (n + 1) % _LOGGED == 0:
                 logger.info("%d runs done", n + 1)
+    if fault := next(filter(None, (loan.thorough_fault() for loan in loans.values())), ""):
+        runs_of = f"{job['study']}/{job['experiment']}/*/{job['method']}"
+        raise UnfitAnswer(f"run {runs_of}: planner {job['planner']}: {fault}")
     if deterministic:
         for k, repeat in itertools.product(range(len(given)), range(first + 1, last)):
             rows[k, repeat] = rows[k, first] | {"id": run_id(job, given[k], repeat), "repeat": repeat}

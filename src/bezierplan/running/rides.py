@@ -32,12 +32,13 @@ from bezierplan.planners import planner_module
 from bezierplan.running import execution, watchdog
 from bezierplan.running import problems as problem_files
 from bezierplan.running.execution import Condition
+from bezierplan.running.loans import lend_once
 from bezierplan.running.simulation import hindsight, motion_check
 from bezierplan.running.simulation.clairvoyant import earliest, least_way
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.robot import Ride, drive
 from bezierplan.workspaces.problem import Path, Problem
-from bezierplan.workspaces.worlds import World
+from bezierplan.workspaces.worlds import World, from_json, to_json
 
 
 def run(job: dict, condition: Condition, repeat: int, problem: Problem, world: World) -> Ride:
@@ -47,9 +48,11 @@ def run(job: dict, condition: Condition, repeat: int, problem: Problem, world: W
     policy = _policy(job)
 
     def planner(seen: Problem, state: Any) -> tuple:
-        plan, state = module.resume(seen, rng, state, **settings) if policy.warm else (module.plan(seen, rng, **settings), None)
-        execution.refuse_unfit(plan, seen, job, condition, repeat)
-        return plan, state
+        loan = lend_once(seen)
+        given = loan.problem, rng
+        plan, state = module.resume(*given, state, **settings) if policy.warm else (module.plan(*given, **settings), None)
+        execution.refuse_changed(loan, job, condition, repeat)
+        return execution.accepted(plan, seen, job, condition, repeat), state
 
     return drive(world, problem, policy, planner)
 
@@ -118,13 +121,19 @@ def row(job: dict, condition: Condition, repeat: int, ride: Ride, problem: Probl
 
 
 def run_chunk(problems: dict[str, Problem], worlds: dict[str, World], job: dict) -> tuple[pa.Table, pa.Table, pa.Table]:
-    """The runs of a job, their times, and their traces (`row`). Raises RuntimeError, naming the run, if a planner fails."""
+    """The runs of a job, their times, and their traces (`row`).
+
+    Robots drive in copies of the worlds, and these stay here to judge by. Raises RuntimeError, naming the run, if a planner fails, does not
+    return a valid plan, or changes a world.
+    """
+    texts = {name: to_json(worlds[name]) for name in job["problems"]}
+    driven = {name: from_json(text) for name, text in texts.items()}
     rows, times, traces = [], [], []
     with watchdog.watching(job.get("time_limit")) as watch:
         for condition in execution.conditions(list(job["problems"]), job["vary"]):
             for repeat in range(*job["repeats"]):
                 problem, world = problems[condition.problem], worlds[condition.problem]
-                once = partial(run, job, condition, repeat, problem, world)
+                once = partial(run, job, condition, repeat, problem, driven[condition.problem])
                 if not rows:
                     first, *_ = execution.timed(once, job, condition, repeat, watch)  # compiles and loads
                 ride, cpu, wall = execution.timed(once, job, condition, repeat, watch)
@@ -135,6 +144,10 @@ def run_chunk(problems: dict[str, Problem], worlds: dict[str, World], job: dict)
                 rows.append(found)
                 traces.append(trace)
                 times.append({"id": found["id"], "cpu_s": cpu, "wall_s": wall} | _replan_times(ride, job["policy"]["step_seconds"]))
+    for name, text in texts.items():
+        if to_json(driven[name]) != text:
+            runs_of = f"{job['study']}/{job['experiment']}/*/{job['method']}"
+            raise execution.UnfitAnswer(f"run {runs_of}: planner {job['planner']}: problem: {name}: world: is another after the runs")
     return execution.table(rows), pa.Table.from_pylist(times), pa.Table.from_pylist(traces)
 
 

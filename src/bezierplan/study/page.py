@@ -4,7 +4,7 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.figures import page
-from bezierplan.running.digest import content_digest, source_digest
+from bezierplan.running.digest import content_digest, versioned_digest
 from bezierplan.study import jobs, targets
 from bezierplan.study.targets import Studies
 
@@ -22,7 +22,22 @@ def inputs(given: Studies, scale: str) -> dict[str, list[str]]:
     merged = {
         name: list(dict.fromkeys(each for files in runs for each in files[name])) for name in ("runs", "problems", "bounds", "traces")
     }
-    return {"made": made, "summary": named} | merged
+    return {"made": made, "summary": named, "verified": [f"results/{scale}/verified.json"]} | merged
+
+
+def verified_inputs(given: Studies, scale: str) -> dict[str, list[str]]:
+    """Input files of the check of all runs that the page shows."""
+    found = inputs(given, scale)
+    return {name: found[name] for name in ("runs", "problems", "traces")}
+
+
+def verified_params(given: Studies, scale: str) -> dict[str, Any]:
+    """Params of the check: `job`, the file of problems and the files of runs of each experiment."""
+    job = []
+    for key, names in _artefacts(given, scale).items():
+        found = _runs(given, scale, key, names)
+        job += [[problems, [run for run in found["runs"] if _of(run) == Path(problems).stem]] for problems in found["problems"]]
+    return {"job": job, "code": versioned_digest(str(targets.SCRIPTS / "verified.py"))}
 
 
 def params(given: Studies, scale: str) -> dict[str, Any]:
@@ -33,7 +48,7 @@ def params(given: Studies, scale: str) -> dict[str, Any]:
         "job": {"scale": scale, "studies": {key: _study(given, scale, key, names, tried[key]) for key, names in shown.items()}},
         "tried": content_digest(*(file for files in tried.values() for file in files.values())),
         "look": content_digest(*page.files()),
-        "code": source_digest(str(targets.SCRIPTS / "page.py")),
+        "code": versioned_digest(str(targets.SCRIPTS / "page.py")),
     }
 
 

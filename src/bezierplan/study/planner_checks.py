@@ -5,7 +5,7 @@ from typing import Any
 
 from bezierplan.planners import known_planners, planner_settings, setting_fault
 from bezierplan.running import interface
-from bezierplan.running.columns import RUN_COLUMNS
+from bezierplan.running.columns import TAKEN
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.study.definition import Study
 from bezierplan.study.files import inside
@@ -23,8 +23,8 @@ def loaded(study: Study, method: str, place: str) -> ModuleType:
     module = interface.loaded(study.planner(method), place)
     for setting in planner_settings(module):
         # The column `generations` holds the number actually performed, so a setting of that name adds nothing.
-        if setting in RUN_COLUMNS and setting != "generations":
-            raise Fault(f"{place}: its setting {setting} is a column of the runs table; give it another name")
+        if setting in TAKEN and setting != "generations":
+            raise Fault(f"{place}: its setting {setting} is a column of the runs table, or joined to it; give it another name")
     return module
 
 

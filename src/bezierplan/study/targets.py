@@ -10,7 +10,7 @@ calls, and digests of the content of maps and published numbers. So timestamps o
 from collections.abc import Iterable
 from pathlib import Path
 
-from bezierplan.running.digest import PACKAGE, content_digest, source_digest
+from bezierplan.running.digest import PACKAGE, content_digest, versioned_digest
 from bezierplan.study import alternatives, choices, definition, design, jobs
 from bezierplan.study.artefacts import Comparison, Pivot
 from bezierplan.study.claims import Claim
@@ -40,8 +40,8 @@ def _bounds(study: Study, scale: str, experiments: Iterable[str]) -> list[str]:
 
 
 def _code(script: str, *modules: str | None) -> str:
-    """Digest of a script with everything that it imports, and of modules that it imports by name."""
-    return source_digest(str(SCRIPTS / f"{script}.py"), *filter(None, modules))
+    """Digest of a script with everything that it imports, and of modules that it imports by name, with versions of what computes."""
+    return versioned_digest(str(SCRIPTS / f"{script}.py"), *filter(None, modules))
 
 
 def _planner(planner: str) -> str:

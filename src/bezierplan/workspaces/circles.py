@@ -4,12 +4,21 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bezierplan.workspaces.arrays import read_only
+
 
 @dataclass(frozen=True)
 class Circles:
-    """bounds: lowest and highest x, lowest and highest y, in units. centres: (n, 2) in units. radii: (n,) in units. unit: its name."""
+    """bounds: lowest and highest x, lowest and highest y, in units. centres: (n, 2) in units. radii: (n,) in units. unit: its name.
+
+    The arrays are read-only.
+    """
 
     bounds: tuple[float, float, float, float]
     centres: np.ndarray
     radii: np.ndarray
     unit: str
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "centres", read_only(self.centres, float))
+        object.__setattr__(self, "radii", read_only(self.radii, float))

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bezierplan.workspaces.arrays import read_only
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.polygons import Polygons
 
@@ -27,7 +28,7 @@ class Grid:
     occupied: bool (rows, columns), row 0 at the bottom. cell: side of a cell, in units. unit: name of the unit of length. origin: x, y of
     the lower left corner, in units. drawn: the shapes from which the cells were drawn, if any: circles, which only pictures show, or
     polygons, which are then the obstacles of the certified check and of the exact bounds (`raster`). heights: (rows, columns) height of the
-    ground in each cell, in units, where it is not flat; only some planners use them.
+    ground in each cell, in units, where it is not flat; only some planners use them. The arrays are read-only.
     """
 
     occupied: np.ndarray
@@ -36,6 +37,11 @@ class Grid:
     origin: tuple[float, float] = (0.0, 0.0)
     drawn: Circles | Polygons | None = None
     heights: np.ndarray | None = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "occupied", read_only(self.occupied, bool))
+        if self.heights is not None:
+            object.__setattr__(self, "heights", read_only(self.heights, float))
 
     @property
     def bounds(self) -> tuple[float, float, float, float]:

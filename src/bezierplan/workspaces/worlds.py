@@ -11,6 +11,7 @@ import numpy as np
 
 from bezierplan.kernels import compiled
 from bezierplan.workspaces import files, random_field
+from bezierplan.workspaces.arrays import read_only
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 
@@ -36,6 +37,10 @@ class MovingCircles:
     end: int
     unit: str
 
+    def __post_init__(self) -> None:
+        for name in ("centres", "velocities", "radii"):
+            object.__setattr__(self, name, read_only(getattr(self, name), float))
+
     def at(self, step: int) -> np.ndarray:
         """Centres (n, 2) at a whole step, in units."""
         return positions(self.centres, self.velocities, np.array(self.walls), step)
@@ -59,6 +64,9 @@ class ChangingCells:
     moments: np.ndarray
     pace: float
     end: int
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "moments", read_only(self.moments, float))
 
     @property
     def unit(self) -> str:
@@ -110,9 +118,9 @@ def from_json(text: str) -> World:
     return MovingCircles(
         bounds=tuple(content["bounds"]),
         walls=tuple(content["walls"]),
-        centres=table[:, :2].copy(),
-        velocities=table[:, 2:4].copy(),
-        radii=table[:, 4].copy(),
+        centres=table[:, :2],
+        velocities=table[:, 2:4],
+        radii=table[:, 4],
         seen=content["seen"],
         pace=content["pace"],
         end=content["end"],

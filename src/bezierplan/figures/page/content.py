@@ -277,12 +277,23 @@ class Run(Record):
     collision_step: float | None = Field(None, description="of a drive: time of the first collision, in steps")
 
 
+class Verified(Record):
+    """What was judged again from stored points when the page was made, all of it without a difference."""
+
+    files: int = Field(description="files of runs")
+    runs: int
+    paths: int = Field(description="different paths among those of the runs")
+    digest: str = Field(description="of all runs")
+    versions: dict[str, str] = Field(description="library that computes -> its version")
+
+
 class Page(Record):
     """All results of a scale."""
 
     format: int = FORMAT
     scale: str
     answer: list[list[Part]] = Field(description="sentences, each in parts")
+    verified: Verified | None = Field(None, description="the check of the runs that the page shows")
     studies: dict[str, Study]
     workspaces: dict[str, dict[str, Any]] = Field(description="kind, unit, bounds and shapes, by the first problem in each")
     problems: dict[str, Problem]

@@ -15,12 +15,13 @@ from bezierplan.figures.page import answer, build, content, gather, runs
 from bezierplan.running.watchdog import end_with_parent
 
 
-def page(job: dict[str, Any], folder: Path, summary: list[str] | None, processes: int = 1) -> content.Page:
+def page(job: dict[str, Any], folder: Path, summary: list[str] | None, processes: int = 1, verified: str | None = None) -> content.Page:
     """The content of the page.
 
     job: `scale`, and `studies`: study -> what `gather.studies` takes, and `experiments` (name -> `methods`, `repeats` and the files `runs`,
     `problems`, `bounds` and, of drives, `traces`). folder: that of the scale. summary: files of all studies together,
     numbers.csv, claims.csv and worth.csv, if the scale has them. processes: how many look for runs, if more than one beside this one.
+    verified: the file of the check of these runs (`running.recheck`), if there is one.
     """
     experiments = [(key, *each) for key, own in job["studies"].items() for each in own["experiments"].items()]
     shown: dict[str, list[content.Shown]] = {key: [] for key in job["studies"]}
@@ -38,7 +39,9 @@ def page(job: dict[str, Any], folder: Path, summary: list[str] | None, processes
             kept |= chosen.runs
     studies = {key: study.model_copy(update={"shown": shown[key]}) for key, study in studies.items()}
     shared = {"workspaces": workspaces, "problems": problems}
-    return content.Page(scale=job["scale"], answer=answer.answer(studies), studies=studies, runs=kept, **_once(**shared))
+    checked = content.Verified(**json.loads(Path(verified).read_text())) if verified else None
+    said = answer.answer(studies)
+    return content.Page(scale=job["scale"], answer=said, verified=checked, studies=studies, runs=kept, **_once(**shared))
 
 
 @contextmanager
@@ -65,6 +68,6 @@ def _once(workspaces: dict[str, dict[str, Any]], problems: dict[str, content.Pro
     }
 
 
-def write(job: dict[str, Any], folder: Path, summary: list[str] | None, file: str, processes: int = 1) -> None:
+def write(job: dict[str, Any], folder: Path, summary: list[str] | None, file: str, processes: int = 1, verified: str | None = None) -> None:
     """Write the page."""
-    Path(file).write_text(build.html(page(job, folder, summary, processes), folder), encoding="utf-8")
+    Path(file).write_text(build.html(page(job, folder, summary, processes, verified), folder), encoding="utf-8")

@@ -1,0 +1,34 @@
+"""Judge results again from their own points: `python -m bezierplan verify results/full`."""
+
+import os
+import sys
+from argparse import ArgumentParser
+from pathlib import Path
+
+
+def main(parser: ArgumentParser, words: list[str]) -> None:
+    """Print a line for each stored value that differs from what is computed again, and what was checked.
+
+    Ends with status 1 if anything differs, and with 2 and one line for a folder without results or a file that cannot be read.
+    """
+    from bezierplan.running import recheck
+
+    parser.add_argument("folder", type=Path, help="the folder of a scale, such as results/full")
+    parser.add_argument("--cores", type=int, default=len(os.sched_getaffinity(0)), metavar="N", help="processes (default: all cores)")
+    given = parser.parse_args(words)
+    try:
+        if given.cores < 1:
+            raise ValueError(f"--cores: {given.cores}; expected a number of at least 1")
+        found = recheck.verify(recheck.tasks(given.folder), given.cores, lambda line: print(line, file=sys.stderr, flush=True))
+    except (ValueError, FileNotFoundError) as fault:
+        print(fault, file=sys.stderr)
+        sys.exit(2)
+    for fault in found.faults:
+        print(fault)
+    print(f"{found.runs} runs in {found.files} files: {found.paths} different paths judged again, {found.bounds} bounds computed again")
+    if found.undigested:
+        print(f"{found.undigested} files hold no digest of their rows, so what no path determines is not checked in them")
+    print(f"digest {found.digest}; " + ", ".join(f"{name} {version}" for name, version in recheck.versions().items()))
+    print("sound" if not found.faults else f"{len(found.faults)} values differ")
+    if found.faults:
+        sys.exit(1)

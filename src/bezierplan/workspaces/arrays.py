@@ -1,0 +1,19 @@
+"""Arrays that nobody can change: what planners get, and what results are judged by."""
+
+import numpy as np
+from numpy.typing import ArrayLike, DTypeLike
+
+
+def read_only(values: ArrayLike, dtype: DTypeLike) -> np.ndarray:
+    """Values as an array in rows whose memory is immutable, so that no flag makes it writable again; a copy, unless it is one already.
+
+    >>> centres = read_only([[1, 2]], float)
+    >>> centres[0, 0] = 3
+    Traceback (most recent call last):
+    ...
+    ValueError: assignment destination is read-only
+    """
+    if type(values) is np.ndarray and values.dtype == dtype and isinstance(values.base, bytes) and values.flags.c_contiguous:
+        return values
+    found = np.ascontiguousarray(values, dtype)
+    return np.ndarray(np.shape(values), found.dtype, found.tobytes())
