@@ -90,13 +90,13 @@ TEXTS = {
     "a table that is a word": (A, "tables: {table1: x}\n", "artefacts.yaml: tables: table1: 'x': expected a mapping with kind"),
     "a table without a kind": (A, "tables: {table1: {}}\n", "artefacts.yaml: tables: table1: kind: missing key; one of comparison"),
     "a kind that is a list": (A, "tables: {table1: {kind: [pivot]}}\n", "artefacts.yaml: tables: table1: kind: ['pivot']: unknown"),
-    "an empty file of published numbers": (T, "", "table1.csv: line 1: column metric is missing"),
+    "an empty file of published numbers": (T, "", "table1.csv: line 1: the file is empty; expected a header"),
     "published bytes": (T, b"\xff\xff", "table1.csv: cannot be read (UnicodeDecodeError)"),
-    "published NUL": (T, "metric,statistic,n,unit,value\na\0,b,c,d,e\n", "table1.csv: line 2: metric: a"),
+    "published NUL": (T, "metric,statistic,n,unit,value\na\0,b,c,d,e\n", "table1.csv: line 2: has the character '\\x00'; expected csv"),
     "a field of a million characters": (
         T,
         "metric,statistic,n,unit,value\n" + "a" * 1_000_000 + ",b,c,d,e\n",
-        "table1.csv: line 1: not csv (field larger than field limit",
+        "table1.csv: line 2: not csv (field larger than field limit",
     ),
     "an empty map": (M, "", "figure2.txt: the map is empty"),
     "a map of bytes": (M, b"\xff\xff", "workspaces/figure2.txt: cannot be read: byte 0 is not UTF-8"),
@@ -545,7 +545,7 @@ WORDS = {
         A,
         "{kind: workspace, workspace: figure2, numbers: free}",
         "{kind: paths, explicit: {curve: bezier, points: [[0, 0]]}}",
-        "explicit: points: [[0, 0]]: expected a list of at least two",
+        "explicit: points: [[0, 0]]: expected a list of two to 100",
     ),
     "a path of words": (
         A,
@@ -613,7 +613,7 @@ WORDS = {
         A,
         "figures:\n",
         "  table9: {title: a, kind: transcribed, published: ../../x.csv}\nfigures:\n",
-        "published: ../../x.csv: ",
+        "published: '../../x.csv': expected a file in the study's folder",
     ),
     "a comparison of no table": (
         A,
@@ -659,7 +659,12 @@ WORDS = {
         "the same keys, metric and statistic as line 2",
     ),
     "a column twice": (T, "problem,method,", "problem,problem,", "table1.csv: line 1: column problem is listed twice"),
-    "a row that is too long": (T, "unstated,,generation,26", "unstated,,generation,26,27", "table1.csv: line 2: expected 7 values"),
+    "a row that is too long": (
+        T,
+        "unstated,,generation,26",
+        "unstated,,generation,26,27",
+        "table1.csv: line 2: 8 values; expected 7 values",
+    ),
     # Claims
     "a claim twice": (C, "id: C2", "id: C1", "claims.yaml: claims: C1: another one has this id already"),
     "a claim of another name": (C, "id: C2", "id: two", "claims.yaml: claims: 1: id: 'two': expected C and a number"),

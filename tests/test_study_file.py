@@ -196,7 +196,7 @@ FAULTS = {
         TABLE,
         "unstated,,generation,26",
         "unstated,generation,26",
-        "table1.csv: line 2: expected 7 values",
+        "table1.csv: line 2: 6 values; expected 7 values",
     ),
     "published unknown problem": (TABLE, "0_15,", "0_14,", "table1.csv: line 2: problem: 0_14: unknown; did you mean 0_15?"),
     "published unknown metric": (

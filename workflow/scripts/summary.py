@@ -12,7 +12,7 @@ with log.job(snakemake) as output:
     job, files = snakemake.params.job, snakemake.input
     comparisons = {tuple(name): pd.read_csv(file) for name, file in zip(job["tables"], files.comparisons, strict=True)}
     numbers = summary.numbers(comparisons, job["variants"], dict(zip(comparisons, job["deciding"], strict=True)))
-    claims = pd.concat([pd.read_csv(file) for file in files.claims], ignore_index=True)
+    claims = summary.read_claims(files.claims)
     numbers.to_csv(output.numbers, index=False, float_format="%.10g", lineterminator="\n")
     claims.to_csv(output.claims, index=False, float_format="%.10g", lineterminator="\n")
     report = summary.report(numbers, claims, pd.read_csv(files.worth), job["titles"], snakemake.wildcards.scale)

@@ -21,7 +21,7 @@ One row for each group of runs, metric and statistic; an empty cell means that t
 | can_fail | whether a number on the published one's side of ours could have been rejected (`statistics.can_fail`) |
 | power | share of the numbers that matter (`_rivals`) that would have been rejected instead of the published one |
 | verdict | not reproduced; cannot fail; not told apart (reproduced, with a power below one half); reproduced |
-| possible | whether the metric can have the published value at all, and ranks add up. A length below the bound is judged, not left out |
+| possible | whether the metric can have the published value, and ranks add up. A length below the bound of our map is judged all the same |
 | share_claimed | share of all runs whose path passed the planner's own test |
 | share_feasible | share of all runs whose path the certified checker accepts |
 | bound | least length of the problem, of the metric's kind (`metrics.Metric`); for several problems, the median over the runs |
@@ -194,9 +194,7 @@ def _judged(
         return {"can_fail": None, "possible": None}
     limits = _limits(row["statistic"], (row["least"], row["most"]), size)
     half = 0.0 if pd.isna(row["decimals"]) else 0.5 * 10.0 ** -row["decimals"]
-    # A value below a bound of our own map is judged; a value that the metric cannot have on any map is not.
-    on_any_map = isinstance(metrics.METRICS[row["metric"]].least, str) or published >= limits[0] - half
-    judged = {"possible": bool(on_any_map and published <= limits[1] + half)}
+    judged = {"possible": not (published < limits[0] - half or published > limits[1] + half)}
     if reproduced is None:
         return judged | {"can_fail": None}
     ends = (predicted[0] - half, predicted[1] + half)

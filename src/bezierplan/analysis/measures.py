@@ -37,6 +37,8 @@ BENDING_SAMPLES = 64
 MEASURES_KEPT = 250_000
 # A smaller change of heading, in radians, is not a corner.
 CORNER = 1e-6
+# By which share a printed length may be rounded.
+ROUNDED = 0.01
 # A value this many interquartile ranges beyond its quartile is an outlier in a box plot.
 _OUTLIER_REACH = 1.5
 
@@ -65,14 +67,25 @@ def outlier(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     return ((runs["objective"] < first - reach) | (runs["objective"] > third + reach)).to_numpy()
 
 
+def _reference(runs: pd.DataFrame) -> pd.Series:
+    """The length of the best known path of each run's problem. Raises ValueError if it is shorter than the exact shortest path."""
+    too_short = runs["reference"] < (1 - ROUNDED) * runs.get("bound", np.nan)
+    if too_short.any():
+        run = runs[too_short].iloc[0]
+        raise ValueError(
+            f"problem {run['problem']}: reference {run['reference']:g} lies below the exact shortest length {run['bound']:.12g}"
+        )
+    return runs["reference"]
+
+
 def gap_reference(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     """Length over that of the best known path of the same kind, minus 1 (n,); NaN where none is known."""
-    return runs["length"] / runs["reference"] - 1
+    return runs["length"] / _reference(runs) - 1
 
 
 def excess_reference(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     """Length minus that of the best known path of the same kind (n,); NaN where none is known."""
-    return runs["length"] - runs["reference"]
+    return runs["length"] - _reference(runs)
 
 
 def _held_history(runs: pd.DataFrame) -> np.ndarray:

@@ -30,8 +30,9 @@ class Metric(NamedTuple):
     among_rows: it compares the methods of a table with each other, so variants and baselines outside the table have none.
     least: the smallest value that a run can have, or the column of the runs table that holds it. most: the largest.
     bound, gap: the column with the bound for this kind of length, and the metric of the gap to it.
-    step: the distance between possible values of a run, 1 for whole numbers; None if there is none. of_group: all runs of a method under a
-    condition share it, so resampling them does not show how certain it is.
+    step: the distance between possible values of a run, 1 for whole numbers; None if there is none. needs: columns that only some runs
+    tables have; with none, and without compute, the column of its own name. on: kinds of workspace; () for all. of_group: all runs of a
+    method under a condition share it, so resampling them does not show how certain it is.
     """
 
     unit: str
@@ -45,20 +46,26 @@ class Metric(NamedTuple):
     gap: str = "gap"
     step: float | None = None
     of_group: bool = False
+    needs: tuple[str, ...] = ()
+    on: tuple[str, ...] = ()
 
 
 def values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Series:
     """A metric of each run, as floats (booleans as 1 and 0) with the runs' index.
 
     NaN where the run has no such value, and where a metric for feasible runs only meets an infeasible run. A metric that compares runs
-    with each other uses the given ones. Raises KeyError for an unknown metric, or if the runs table lacks a column.
+    with each other uses the given ones. Raises KeyError for an unknown metric, and ValueError if the runs table lacks a column that only
+    some have.
     """
     import pandas as pd
 
     metric = METRICS[name]
     counted = runs[runs["feasible"].astype(bool)] if metric.feasible_only else runs
+    lacking = [column for column in metric.needs or (() if metric.compute else (name,)) if column not in runs]
     if counted.empty:
         numbers = pd.Series(dtype=float)
+    elif lacking:
+        raise ValueError(f"metric {name}: no run has it: their table has no column {lacking[0]}")
     elif metric.compute is None:
         numbers = counted[name].astype(float)
     else:
@@ -68,7 +75,7 @@ def values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Se
 
 def unit(name: str, workspace_unit: str) -> str:
     """The unit of a metric in a workspace with the given unit of length."""
-    return re.sub(r"\bu\b", workspace_unit, METRICS[name].unit)
+    return re.sub(r"\bu\b", lambda _: workspace_unit, METRICS[name].unit)
 
 
 # Lengths counted in cells have their own bound and gap.
@@ -91,10 +98,16 @@ METRICS: dict[str, Metric] = {
         "-", "free by the checker's test, not by the planner's own", False, partial(measures.disagrees, False), step=1.0
     ),
     "obstacle_clearance": Metric(
-        "u", "least distance to the occupied cells of a grid, its border not counted", True, measures.obstacle_clearance
+        "u", "least distance to the occupied cells of a grid, its border not counted", True, measures.obstacle_clearance, on=("grid",)
     ),
     "keeps_distance": Metric(
-        "-", "whether the planner's safety distance from the occupied cells is kept", True, measures.keeps_distance, step=1.0
+        "-",
+        "whether the planner's safety distance from the occupied cells is kept",
+        True,
+        measures.keeps_distance,
+        step=1.0,
+        needs=("safety_distance",),
+        on=("grid",),
     ),
     "collision_depth": Metric("u", "largest depth of the path in obstacles or beyond the border", False),
     "clearance": Metric("u", "least distance to the obstacles and the border", False),
@@ -196,9 +209,14 @@ METRICS: dict[str, Metric] = {
         True,
         partial(measures.of_path_on_grid, measures.occupied_points),
         step=1.0,
+        on=("grid",),
     ),
-    "gap_reference": Metric("-", "length / length of the best known path of the same kind - 1", True, measures.gap_reference),
-    "excess_reference": Metric("u", "length - length of the best known path of the same kind", True, measures.excess_reference),
+    "gap_reference": Metric(
+        "-", "length / length of the best known path of the same kind - 1", True, measures.gap_reference, needs=("reference",)
+    ),
+    "excess_reference": Metric(
+        "u", "length - length of the best known path of the same kind", True, measures.excess_reference, needs=("reference",)
+    ),
     "cells4": Metric(
         "u",
         "cells that the path touches, 1.5 for a diagonal step; none for a path that touches an occupied cell",
@@ -206,6 +224,7 @@ METRICS: dict[str, Metric] = {
         partial(measures.length_in_cells, "length4"),
         least="octile_bound",
         **_CELLS4,
+        on=("grid",),
     ),
     "cells8": Metric(
         "u",
@@ -214,10 +233,16 @@ METRICS: dict[str, Metric] = {
         partial(measures.length_in_cells, "length8"),
         least="octile_bound",
         **_CELLS8,
+        on=("grid",),
     ),
-    "octile_bound": Metric("u", "least length of a path of free cells, 1.5 for a diagonal step", False),
+    "octile_bound": Metric("u", "least length of a path of free cells, 1.5 for a diagonal step", False, on=("grid",)),
     "homotopy": Metric(
-        "-", "class of the path: the sum of 2^k over the circles k that it leaves to its left", True, measures.homotopy, step=1.0
+        "-",
+        "class of the path: the sum of 2^k over the circles k that it leaves to its left",
+        True,
+        measures.homotopy,
+        step=1.0,
+        on=("circles",),
     ),
     "best_corridor": Metric(
         "-",
@@ -225,15 +250,17 @@ METRICS: dict[str, Metric] = {
         False,
         measures.best_corridor,
         step=1.0,
+        on=("circles",),
     ),
-    "gap4": Metric("-", "cells4 / octile_bound - 1", True, partial(measures.gap_cells, "length4"), least=0.0, **_CELLS4),
-    "gap8": Metric("-", "cells8 / octile_bound - 1", True, partial(measures.gap_cells, "length8"), least=0.0, **_CELLS8),
+    "gap4": Metric("-", "cells4 / octile_bound - 1", True, partial(measures.gap_cells, "length4"), least=0.0, **_CELLS4, on=("grid",)),
+    "gap8": Metric("-", "cells8 / octile_bound - 1", True, partial(measures.gap_cells, "length8"), least=0.0, **_CELLS8, on=("grid",)),
     "straight_blocked": Metric(
         "-",
         "whether the straight line from start to target touches an occupied cell",
         False,
         measures.straight_blocked,
         step=1.0,
+        on=("grid",),
     ),
     "history_mean": Metric("u", "mean over the generations of the best objective so far", False, measures.history_mean),
     "deviation": Metric(
@@ -265,13 +292,24 @@ METRICS: dict[str, Metric] = {
     "hit_waiting": Metric("-", "whether the robot first collides while it waits", False, step=1.0),
     "avoidable": Metric("-", "whether the robot could have escaped its first collision when it could know of it", False, step=1.0),
     "avoidable_waiting": Metric(
-        "-", "whether it waits at a first collision that it could have escaped", False, measures.avoidable_waiting, step=1.0
+        "-",
+        "whether it waits at a first collision that it could have escaped",
+        False,
+        measures.avoidable_waiting,
+        step=1.0,
+        needs=("avoidable", "hit_waiting"),
     ),
-    "unforeseen": Metric("-", "whether the robot collides and could not know of it before", False, measures.unforeseen, step=1.0),
-    "warning": Metric("steps", "from when the robot could know of its first collision until then", False, measures.warning, least=0.0),
+    "unforeseen": Metric(
+        "-", "whether the robot collides and could not know of it before", False, measures.unforeseen, step=1.0, needs=("known_at",)
+    ),
+    "warning": Metric(
+        "steps", "from when the robot could know of its first collision until then", False, measures.warning, least=0.0, needs=("known_at",)
+    ),
     "known_at": Metric("steps", "when the robot could know of its first collision", False, least=0.0),
     "clearance_least": Metric("u", "least distance to an obstacle, negative inside a circle", False),
-    "gap_arrival": Metric("-", "arrival / earliest arrival found with the future known - 1", True, measures.gap_arrival),
+    "gap_arrival": Metric(
+        "-", "arrival / earliest arrival found with the future known - 1", True, measures.gap_arrival, needs=("arrival",)
+    ),
     "clairvoyant_arrival": Metric("steps", "earliest arrival found with the future known", False),
     "clairvoyant_length": Metric("u", "length of the way with the earliest arrival found with the future known", False),
     "replan_mean_s": Metric("s", "CPU seconds of a plan after the first, mean of a drive", False, least=0.0),
@@ -284,6 +322,7 @@ METRICS: dict[str, Metric] = {
         False,
         partial(measures.of_path_on_grid, measures.fine_bad),
         step=1.0,
+        on=("grid",),
     ),
 }
 

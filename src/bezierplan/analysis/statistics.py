@@ -16,6 +16,8 @@ TAIL = 0.025
 LEAST_RUNS = 6
 # Above this many values, a normal approximation replaces the bootstrap.
 MOST_RESAMPLED = 200
+# Above this many values of an experiment, its statistics are not drawn value by value: in two stages, and in one.
+MOST_PREDICTED, MOST_DRAWN = 1000, 10_000
 # Maximum count of numbers drawn at once: blocks of this size stay in the processor's cache.
 BLOCK = 1 << 15
 
@@ -79,9 +81,16 @@ def statistic(name: str, values: np.ndarray) -> float:
 
 
 def resampled(name: str, values: np.ndarray, size: int, rng: np.random.Generator) -> np.ndarray:
-    """A named statistic of `size` values drawn with replacement from values (n,), n at least 1: (DRAWS,)."""
-    if values.min() == values.max():
+    """A named statistic of `size` values drawn with replacement from values (n,), n at least 1: (DRAWS,).
+
+    Above `MOST_DRAWN` values, its normal approximation; where that is not known, of so many values.
+    """
+    if values.min() == values.max() and size <= MOST_DRAWN:
         return np.full(DRAWS, STATISTICS[name](np.full(size, values[0])))  # all draws are alike
+    if size > MOST_DRAWN and _is_normal(name, values):
+        # In random order, since draws of several cells are added.
+        return rng.permutation(_normal(name, values, 1 / size))
+    size = min(size, MOST_DRAWN)
     rows = max(1, BLOCK // size)
     drawn = np.empty(DRAWS)
     for first in range(0, DRAWS, rows):
@@ -132,6 +141,16 @@ def normal_draws(centre: float, error: float) -> np.ndarray:
     return centre + error * ndtri((np.arange(DRAWS) + 0.5) / DRAWS)
 
 
+def _is_normal(name: str, values: np.ndarray) -> bool:
+    """Whether a statistic of many values has a normal approximation that follows from values (n,)."""
+    return name not in WITHOUT_INTERVAL and len(values) > 1 and bool(np.isfinite(values).all())
+
+
+def _normal(name: str, values: np.ndarray, share: float) -> np.ndarray:
+    """Normal draws (DRAWS,) of a statistic whose variance is a share of that of its influence function over values (n,)."""
+    return normal_draws(statistic(name, values), influence(name, values).std(ddof=1) * math.sqrt(share))
+
+
 def interval(name: str, values: np.ndarray, rng: np.random.Generator) -> tuple[float, float]:
     """95 % percentile bootstrap interval of a named statistic of values (n,); above `MOST_RESAMPLED` values, its normal approximation.
 
@@ -151,12 +170,16 @@ def predicted(name: str, values: np.ndarray, size: int, rng: np.random.Generator
     """A named statistic of experiments with `size` values, as predicted from our values (n,), n at least 1: (DRAWS,).
 
     Drawn in two stages, because our values are a sample too: first the population, then an experiment from it. Numbers are drawn with
-    replacement twice; for booleans, the share is drawn (from Jeffreys' posterior), then the number of true values.
+    replacement twice; for booleans, the share is drawn (from Jeffreys' posterior), then the number of true values. Above `MOST_PREDICTED`
+    values, the normal approximation of both stages; where that is not known, experiments of so many values.
     """
     if name in ("count", "share"):
         true = values.sum()
         counts = rng.binomial(size, rng.beta(true + 0.5, len(values) - true + 0.5, DRAWS))
         return counts / (size if name == "share" else 1)
+    if size > MOST_PREDICTED and _is_normal(name, values):
+        return _normal(name, values, 1 / len(values) + 1 / size)
+    size = min(size, MOST_PREDICTED)
     rows = max(1, BLOCK // size)
     drawn = np.empty(DRAWS)
     for first in range(0, DRAWS, rows):
@@ -175,9 +198,11 @@ def predicted_within(name: str, groups: list[np.ndarray], size: int, rng: np.ran
     First a group is drawn, then an experiment from it, for example runs in one layout of the obstacles.
     """
     chosen, drawn = rng.integers(len(groups), size=DRAWS), np.empty(DRAWS)
+    size = min(size, MOST_PREDICTED)  # more values differ less within a group than groups do
     for number, values in enumerate(groups):
         experiments = np.flatnonzero(chosen == number)
-        drawn[experiments] = STATISTICS[name](values[rng.integers(len(values), size=(len(experiments), size))])
+        for block in np.split(experiments, range(BLOCK // size, len(experiments), BLOCK // size)):
+            drawn[block] = STATISTICS[name](values[rng.integers(len(values), size=(len(block), size))])
     return drawn
 
 

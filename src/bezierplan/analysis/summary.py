@@ -4,10 +4,20 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import explained, worth
+from bezierplan.analysis.claims.judge import CLAIM_COLUMNS
 from bezierplan.analysis.claims.verdicts import VERDICTS
+from bezierplan.analysis.metrics import METRICS
 
 HEADING = "# Outcome at scale "
 NUMBERS = ("reproduced", "not told apart", "cannot fail", "not reproduced")
+
+
+def read_claims(files: list[str]) -> pd.DataFrame:
+    """The claims of all studies, from the files of those that have any."""
+    tables = [pd.read_csv(file) for file in files]
+    return (
+        pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(columns=CLAIM_COLUMNS).astype({"primary": bool, "finding": bool})
+    )
 
 
 def numbers(
@@ -37,10 +47,13 @@ def numbers(
 
 
 def _counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
-    """Which rows (n,) count in the denominator: those that are primary and judged, except impossible numbers, repetitions of a number in
-    another table, and the last of several counts that add up to the number of runs.
+    """Which rows (n,) count in the denominator: those that are primary and judged, except numbers that are impossible on any map,
+    repetitions of a number in another table, and the last of several counts that add up to the number of runs.
     """
-    counted = (numbers["primary"] & numbers["reproduced"].notna() & numbers["possible"].astype("boolean").fillna(True)).to_numpy(dtype=bool)
+    # A length below the bound is impossible on our map alone.
+    of_map = numbers["metric"].map(lambda metric: isinstance(METRICS[metric].least, str)).astype(bool)
+    possible = numbers["possible"].astype("boolean").fillna(True) | of_map
+    counted = (numbers["primary"] & numbers["reproduced"].notna() & possible).to_numpy(dtype=bool)
     same = ["study", "metric", "statistic", "value_published", *({"method"} & set(keys))]
     for _, rows in numbers[counted].groupby(same, dropna=False, sort=False):
         for n, (index, row) in enumerate(rows.iterrows()):

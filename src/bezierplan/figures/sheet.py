@@ -125,7 +125,8 @@ def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, column
     """
     rows = math.ceil(len(panels) / columns)
     width = style.NARROW if columns == 1 else style.WIDE
-    scene = scene._replace(narrow=width / columns < style.NARROW_PANEL)
+    labels = {name: _plain(label) for name, label in scene.labels.items()}
+    scene = scene._replace(narrow=width / columns < style.NARROW_PANEL, labels=labels)
     with mpl.rc_context(style.SETTINGS):
         figure = Figure(figsize=(width, width * rows / columns))
         FigureCanvasAgg(figure)  # remembers the extents of texts, which the bare canvas of a figure measures anew for each question
@@ -161,11 +162,16 @@ def _places(figure: Figure, panels: list[dict[str, Any]], rows: int, columns: in
 
 def _title(panel: dict[str, Any], frame: pd.DataFrame, scene: Scene) -> str:
     """A panel's title with the method whose runs it shows, if there is only one and there is room: it says how to read the curve."""
-    words = [panel["title"]] if "title" in panel else []
+    words = [_plain(panel["title"])] if "title" in panel else []
     methods = frame["method"].dropna().unique() if "method" in frame else []
     if len(methods) == 1 and not (words and scene.narrow):
         words.append(scene.labels.get(methods[0], methods[0]))
     return ", ".join(words)
+
+
+def _plain(text: str) -> str:
+    """Text that matplotlib prints as it stands: a dollar begins no formula."""
+    return text.replace("$", r"\$")
 
 
 def _write_notes(row: np.ndarray, notes: list[str]) -> None:
@@ -235,7 +241,7 @@ def _lay_out(figure: Figure, grid: np.ndarray, legend: float) -> None:
     """Place panels (rows, columns), all as wide as the sheet allows, the tops of each row level, and fit the sheet's height to them.
 
     Takes three rounds, because the labels beside a panel depend on its size: ticks, and names of vertical axes, which are broken to fit
-    its height. legend: room for it, in inches.
+    its height. legend: room for it, in inches. Raises ValueError if labels leave no room.
     """
     for _ in range(3):
         margins = np.array([[_margins(axes) for axes in row] for row in grid]) + style.GAP / 2
@@ -243,6 +249,8 @@ def _lay_out(figure: Figure, grid: np.ndarray, legend: float) -> None:
         bottom, top = margins[:, :, 2:].max(axis=1).T
         sheet_width = figure.get_figwidth()
         width = (sheet_width - (left + right).sum()) / len(left)
+        if width <= 0:
+            raise ValueError("the labels leave no room for the panels; shorten them, or put fewer panels side by side (columns)")
         heights = width * np.array([[_shape(axes) for axes in row] for row in grid])
         depths = np.cumsum(top + heights.max(axis=1) + bottom)
         sheet_height = depths[-1] + legend

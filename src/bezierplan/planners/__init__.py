@@ -7,7 +7,8 @@ A planner is a module with a function
 whose keyword-only arguments are its settings, all without default values: annotated with `bool`, `int`, `float`, `Literal[...]`, or
 `Annotated[int, Range(...)]`. It may also have `workspaces`, the kinds of workspace that it supports; `exact = True`, if its own feasibility
 test is meant to agree with the certified check; `keeps_best = False`, if its result can be worse than the best path it found;
-`deterministic = True`, if it uses no random numbers; `check(settings)`, which raises ValueError for incompatible settings;
+`deterministic = True`, if it uses no random numbers; `extra`, the names of its extra columns, so that a study which asks for another is
+refused before the first run; `check(settings)`, which raises ValueError for incompatible settings;
 `serves(problem)`, which raises ValueError for a problem that the planner cannot solve; `track(problem, rng, **settings)`, the control
 points (iterations + 1, n, 2) of the best path after each iteration of the run that `plan` makes with the same arguments, for figures that
 show how a run arrived at its path; `resume(problem, rng, last, **settings)`, a `Plan` and what the next call gets as `last`, None at first:

@@ -20,6 +20,7 @@ from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces.problem import Path, Problem
 
+extra = ("first_length", "turns")
 workspaces = ("grid",)
 exact = True
 

@@ -21,6 +21,7 @@ from bezierplan.planners.parts.random_integers import integer
 from bezierplan.workspaces.grid import ON_LINE, Grid
 from bezierplan.workspaces.problem import Path, Problem
 
+extra = ("bad_samples", "safety_term")
 workspaces = ("grid",)
 
 CurveKind = Literal["bezier", "piecewise_quadratic"]

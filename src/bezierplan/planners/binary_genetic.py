@@ -20,6 +20,7 @@ from bezierplan.planners.parts.random_integers import integer
 from bezierplan.workspaces.grid import ON_LINE, embed
 from bezierplan.workspaces.problem import Path, Problem
 
+extra = ("bad_samples",)
 workspaces = ("grid",)
 
 Mutation = Literal["one_bit", "each_gene", "each_bit"]

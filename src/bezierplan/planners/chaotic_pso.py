@@ -25,6 +25,17 @@ from bezierplan.workspaces.problem import Path, Problem
 
 logger = logging.getLogger(__name__)
 
+extra = (
+    "violation",
+    "collisions_a",
+    "collisions_b",
+    "collisions_c",
+    "collisions_d",
+    "collisions_e",
+    "collisions_f",
+    "zeta_collapsed_at",
+    "zeta_clipped",
+)
 workspaces = ("circles", "polygons")
 
 ChaoticTerm = Literal["none", "cognitive", "social"]

@@ -25,6 +25,7 @@ from bezierplan.planners.parts.random_integers import integer
 from bezierplan.planners.prm import roadmap
 from bezierplan.workspaces.problem import Path, Problem
 
+extra = ("distinct_chromosomes", "mean_q", "extra_batches", "valid_share")
 workspaces = ("grid",)
 
 CurveKind = Literal["single", "composite"]

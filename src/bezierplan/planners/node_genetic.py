@@ -20,6 +20,7 @@ from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.ground import centres, edge_energy, ground_of, least_energy, obstacles_met, path_met
 from bezierplan.workspaces.problem import Path, Problem
 
+extra = ("optimum", "optimal", "near_optimal", "infeasible", "feasible_last", "made_infeasible", "node_diversity")
 workspaces = ("grid",)
 exact = True
 keeps_best = False

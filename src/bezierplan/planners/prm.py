@@ -18,6 +18,7 @@ from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path, Problem
 
+extra = ("roads",)
 workspaces = ("circles", "grid")
 exact = True
 

@@ -20,6 +20,7 @@ from bezierplan.planners import Plan, Range
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Path, Problem
 
+extra = ("turns", "tight_turns", "least_radius")
 exact = True
 deterministic = True
 

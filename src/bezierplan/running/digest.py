@@ -52,7 +52,9 @@ class _Module(NamedTuple):
 def _file(home: Path, name: str) -> Path | None:
     """The source file of a module, by its dotted name in a folder, or None."""
     place = home.joinpath(*name.split("."))
-    return next((file for file in (place.with_suffix(".py"), place / "__init__.py") if file.is_file()), None)
+    # A file outside the package may have dots in its name.
+    places = (place.with_suffix(".py"), place / "__init__.py", home / f"{name}.py")
+    return next((file for file in places if file.is_file()), None)
 
 
 def _module(name: str) -> _Module:

@@ -159,7 +159,9 @@ def value(fits: Callable[[Any], bool], expected: str) -> PlainValidator:
 
 def is_number(given: Any) -> bool:
     """Whether it is a finite number, and not a boolean."""
-    return isinstance(given, int | float) and not isinstance(given, bool) and math.isfinite(given)
+    if isinstance(given, int):
+        return not isinstance(given, bool) and abs(given) < 10**300  # the others are no floats
+    return isinstance(given, float) and math.isfinite(given)
 
 
 def _is_whole(given: Any) -> bool:
@@ -170,46 +172,98 @@ def _is_huge(given: Any) -> bool:
     return isinstance(given, int) and abs(given) >= 10**9
 
 
-def _is_line(given: Any) -> bool:
-    return isinstance(given, str) and 0 < len(given) <= LONGEST_LINE and given.isprintable()
+def is_line(given: Any, longest: int) -> bool:
+    """Whether it is one line of printable text that is not blank, with at most so many characters."""
+    return isinstance(given, str) and bool(given.strip()) and len(given) <= longest and given.isprintable()
 
 
 LONGEST_LINE = 600
 """Characters of a text."""
+LONGEST_LABEL, LONGEST_WORD = 80, 30
+"""Characters of a text that is printed in a figure or in the head of a table, and of a word in it: lines are broken at blanks."""
 MOST = 1_000_000
 """Largest count: of repeats, of layouts, of cells."""
+SMALLEST, LARGEST = 1e-12, 1e12
+"""Size of a number other than 0: beyond, arithmetic with coordinates and lengths means nothing."""
 
-Number = Annotated[float, value(is_number, "a number")]
-Positive = Annotated[float, value(lambda given: is_number(given) and given > 0, "a number above 0")]
-NotNegative = Annotated[float, value(lambda given: is_number(given) and given >= 0, "a number of at least 0")]
+
+def sized(fits: Callable[[Any], bool], expected: str) -> PlainValidator:
+    """A type of number, kept as written, of a size that can be meant."""
+
+    def check(given: Any) -> Any:
+        if not (is_number(given) and fits(given)):
+            raise PydanticCustomError("expected", "{text}", {"text": expected})
+        if given and not SMALLEST <= abs(given) <= LARGEST:
+            raise wrong(f"{shown(given)}: expected a size from {SMALLEST:g} to {LARGEST:g}, or 0")
+        return given
+
+    return PlainValidator(check)
+
+
+Number = Annotated[float, sized(lambda given: True, "a number")]
+Positive = Annotated[float, sized(lambda given: given > 0, "a number above 0")]
+NotNegative = Annotated[float, sized(lambda given: given >= 0, "a number of at least 0")]
 Whole = Annotated[int, value(lambda given: _is_whole(given) and 0 <= given <= MOST, f"a whole number from 0 to {MOST}")]
 Count = Annotated[int, value(lambda given: _is_whole(given) and 1 <= given <= MOST, f"a whole number of at least 1, at most {MOST}")]
-Line = Annotated[str, value(_is_line, f"one line of text without control characters, at most {LONGEST_LINE} characters")]
+Decimals = Annotated[int, value(lambda given: _is_whole(given) and 0 <= given <= 15, "a whole number from 0 to 15")]
+
+
+def line(longest: int) -> PlainValidator:
+    """A type of text: one line, kept as written."""
+    return value(
+        lambda given: is_line(given, longest), f"one line of text without control characters, not blank, at most {longest} characters"
+    )
+
+
+Line = Annotated[str, line(LONGEST_LINE)]
+Label = Annotated[
+    str,
+    value(
+        lambda given: is_line(given, LONGEST_LABEL) and max(map(len, given.split())) <= LONGEST_WORD,
+        f"one line of text without control characters, not blank, at most {LONGEST_LABEL} characters, {LONGEST_WORD} a word",
+    ),
+]
 Flag = Annotated[bool, value(lambda given: isinstance(given, bool), "true or false")]
 Scalar = Annotated[
-    str | float | bool, value(lambda given: isinstance(given, bool) or is_number(given) or _is_line(given), "a word or a number")
+    str | float | bool,
+    value(lambda given: isinstance(given, bool) or is_number(given) or is_line(given, LONGEST_LINE), "a word or a number"),
 ]
 """A value of a column: a word, a number, true or false."""
 Setting = Annotated[
     str | float | bool | None,
     value(
         lambda given: (
-            given is None or _is_line(given) or (isinstance(given, int | float) and not math.isnan(given) and not _is_huge(given))
+            given is None
+            or is_line(given, LONGEST_LINE)
+            or (isinstance(given, int | float) and not math.isnan(given) and not _is_huge(given))
         ),
         "a word, a number, true or false",
     ),
 ]
 """A value of a planner's setting, which may be infinite."""
 
-NAME = r"^[a-z][a-z0-9_]*$"
+LONGEST_NAME = 100
+"""Characters of a name, which is part of paths."""
+DEVICES = frozenset({"con", "prn", "aux", "nul", *(f"{port}{number}" for port in ("com", "lpt") for number in range(10))})
+"""Names that no file can have on Windows."""
 
 
 def matching(pattern: str, expected: str) -> PlainValidator:
-    """A type of text that matches a regular expression."""
-    return value(lambda given: isinstance(given, str) and re.search(pattern, given) is not None and len(given) <= 100, expected)
+    """A type of text that a regular expression matches as a whole, and that a file or folder can be called."""
+
+    def check(given: Any) -> Any:
+        if not (isinstance(given, str) and re.fullmatch(pattern, given)):
+            raise PydanticCustomError("expected", "{text}", {"text": expected})
+        if len(given) > LONGEST_NAME:
+            raise wrong(f"{shown(given)}: {len(given)} characters; expected at most {LONGEST_NAME}")
+        if given in DEVICES:
+            raise wrong(f"{given}: the name of a device on Windows; expected another one")
+        return given
+
+    return PlainValidator(check)
 
 
-Name = Annotated[str, matching(NAME, "a name of lower-case letters, digits and _ that begins with a letter")]
+Name = Annotated[str, matching(r"[a-z][a-z0-9_]*", "a name of lower-case letters, digits and _ that begins with a letter")]
 
 
 def one_or_list(given: Any) -> list:
@@ -217,19 +271,45 @@ def one_or_list(given: Any) -> list:
     return given if isinstance(given, list) else [given]
 
 
-def listed(item: Any, *, least: int = 1, single: bool = False) -> Any:
+MOST_ENTRIES = 1000
+"""Entries of a list of names or values, and of a mapping of what has a name: methods, problems, claims, ..."""
+
+
+def identity(given: Any) -> str:
+    """A text that equal values share, and no others: 20 and 20.0 are one number, true and 1 are not; also inside lists."""
+    if isinstance(given, list):
+        return f"[{', '.join(map(identity, given))}]"
+    return repr(float(given) if is_number(given) else given)
+
+
+def at_most(number: int) -> AfterValidator:
+    """A limit on the entries of a list or mapping."""
+
+    def check(given: Any) -> Any:
+        if len(given) > number:
+            raise wrong(f"{len(given)} entries; expected at most {number}")
+        return given
+
+    return AfterValidator(check)
+
+
+def listed(item: Any, *, least: int = 1, most: int = MOST_ENTRIES, single: bool = False) -> Any:
     """A type of list without duplicates, kept as written; with `single`, also a lone item without a list."""
     adapter = TypeAdapter(list[item], config=ConfigDict(strict=True))
 
     def check(given: Any) -> Any:
         if not isinstance(given, list) and not single:
             raise PydanticCustomError("expected", "{text}", {"text": "a list"})
+        if isinstance(given, list) and len(given) > most:
+            raise wrong(f"{len(given)} entries; expected at most {most}")
         items = adapter.validate_python(one_or_list(given)) if isinstance(given, list) else _one(adapter, given)
         if isinstance(given, list) and len(items) < least:
             raise PydanticCustomError("expected", "{text}", {"text": f"a list of at least {least}"})
-        texts = [repr(each) for each in items]
-        if repeated := [text for number, text in enumerate(texts) if text in texts[:number]]:
-            raise wrong(f"{shown(given)}: {repeated[0]} is listed twice")
+        texts: dict[str, None] = {}
+        for each in items:
+            if (text := identity(each)) in texts:
+                raise wrong(f"{shown(given)}: {each!r} is listed twice")
+            texts[text] = None
         return items if isinstance(given, list) else items[0]
 
     return Annotated[list[item], PlainValidator(check)]
@@ -287,6 +367,13 @@ class Names(NamedTuple):
 Metric = Annotated[Name, Names("metric")]
 Statistic = Annotated[Name, Names("statistic")]
 Column = Annotated[Name, Names("column")]
+"""A column that is known before a run: runs are told apart by it."""
+NumberColumn = Annotated[Name, Names("number column")]
+"""Such a column of numbers."""
+Quantity = Annotated[Name, Names("quantity")]
+"""Any column of numbers."""
+Repeat = Annotated[Whole, Names("repeat")]
+PrintedTable = Annotated[Line, Names("printed table")]
 Experiment = Annotated[Name, Names("experiment")]
 Workspace = Annotated[Name, Names("workspace")]
 Function = Annotated[Name, Names("function")]

@@ -2,16 +2,18 @@
 
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field, PlainValidator, TypeAdapter, ValidationError
+from pydantic import ConfigDict, Field, PlainValidator, TypeAdapter, ValidationError, model_validator
 
-from bezierplan.figures.panels import EACH, Panel, kinds
+from bezierplan.figures.panels import EACH, MOST_PANELS, Panel, kinds
 from bezierplan.schema.model import (
     ARGUMENTS,
     Arguments,
     Column,
+    Decimals,
     Experiment,
     Flag,
     Function,
+    Label,
     Line,
     Metric,
     Model,
@@ -20,18 +22,20 @@ from bezierplan.schema.model import (
     Setting,
     Statistic,
     Where,
-    Whole,
+    at_most,
     first_fault,
     listed,
     mapping_or,
+    matching,
     one_of,
     one_or_list,
     wrong,
 )
 from bezierplan.study.experiments import Settings
-from bezierplan.workspaces.kinds import File
 
-PublishedFile = Annotated[File, Names("published")]
+PublishedFile = Annotated[
+    str, matching(r"[A-Za-z0-9_-]+\.csv", "a name of letters, digits, _ and -, that ends in .csv"), Names("published")
+]
 # A column of the runs table, `value` or `statistic`.
 Columns = listed(Annotated[Name, Names("level")], least=0)
 
@@ -54,12 +58,16 @@ class TableValue(Model):
         "and ours is then the median"
     )
     where: Where = Field({}, description="column of the runs table → value or list of values: the runs that count")
-    label: Line = Field(description="how the value is printed")
-    decimals: Whole = Field(description="how many decimals are printed, a whole number of at least 0")
+    label: Label = Field(description="how the value is printed, at most 80 characters, 30 a word")
+    decimals: Decimals = Field(description="how many decimals are printed, a whole number from 0 to 15")
 
     @property
     def statistics(self) -> list[str]:
         return one_or_list(self.statistic)
+
+
+MOST_VALUES = 100
+"""Entries of a table's `values`, and of its `monotone`."""
 
 
 class Monotone(Model):
@@ -80,8 +88,12 @@ class Pivot(Table):
     where: Where = Field({}, description="column of the runs table → value or list of values, which also gives the order")
     index: Columns = Field(description="a list of columns of the runs table, `value` or `statistic`: what the rows are")
     columns: Columns = Field([], description="likewise: what the columns are")
-    values: list[TableValue] = Field(description="a list of {metric, statistic, label, decimals}, and perhaps `where`", min_length=1)
-    published: PublishedFile = Field(None, description="a file in the study's folder `published` to compare with")
+    values: Annotated[list[TableValue], at_most(MOST_VALUES)] = Field(
+        description="a list of {metric, statistic, label, decimals}, and perhaps `where`", min_length=1
+    )
+    published: PublishedFile = Field(
+        None, description="a file in the study's folder `published` to compare with: letters, digits, _ and -, then .csv"
+    )
     reads: dict[Name, Metric] = Field(
         {},
         description="metric in the published file → the metric that the number is compared with, where the paper leaves open which it is",
@@ -91,7 +103,7 @@ class Pivot(Table):
         description="the column of which all runs behind a published number share one value, such as layout: predictions are then for "
         "experiments within one of ours; left out: none",
     )
-    monotone: list[Monotone] = Field(
+    monotone: Annotated[list[Monotone], at_most(MOST_VALUES)] = Field(
         [],
         description="orders that the published numbers must keep, which the audit checks: {metric, statistic, along, direction, because}",
     )
@@ -102,12 +114,25 @@ class Pivot(Table):
     )
     primary: Where = Field({}, description="column → the value whose rows count as the paper's reading in the summary; left out: all rows")
 
+    @model_validator(mode="after")
+    def _check_places(self) -> "Pivot":
+        for key in self.columns:
+            if key in self.index:
+                raise wrong(f"columns: {key}: in index already; expected it in one of the two")
+        labels = [entry.label for entry in self.values]
+        for number, label in enumerate(labels):
+            if label in labels[:number]:
+                raise wrong(f"values: {number}: label: {label}: another entry has this label; expected one that tells them apart")
+        if self.reads and self.published is None:
+            raise wrong("reads: the table has no published numbers, whose metrics it names; leave it out")
+        return self
+
 
 class Transcribed(Table):
     """A published file, unchanged."""
 
     kind: Literal["transcribed"] = Field(description="transcribed")
-    published: PublishedFile = Field(description="a file in the study's folder `published`")
+    published: PublishedFile = Field(description="a file in the study's folder `published`: letters, digits, _ and -, then .csv")
 
 
 class FunctionTable(Table):
@@ -170,15 +195,18 @@ def _joined(own: dict[str, Any], shared: dict[str, Any], place: str) -> dict[str
 
 
 _ENTRIES = TypeAdapter(Annotated[list[Annotated[Any, PlainValidator(_expanded)]], Field(min_length=1)])
+_LIST = TypeAdapter(Annotated[list[Any], at_most(MOST_PANELS)], config=ConfigDict(strict=True))
 
 
 def _panels(given: Any) -> list[Panel]:
     """The panels of a figure, each with its place in the list that is given."""
     panels = []
-    for number, entry in enumerate(_ENTRIES.validate_python(given)):
+    for number, entry in enumerate(_ENTRIES.validate_python(_LIST.validate_python(given))):
         for place, panel in entry.items():
             panel._place = f"{number}: {place}" if place else str(number)
             panels.append(panel)
+    if len(panels) > MOST_PANELS:
+        raise wrong(f"{len(panels)} panels; expected at most {MOST_PANELS}, one a letter")
     return panels
 
 
@@ -193,7 +221,7 @@ class Figure(Model):
 class ArtefactsFile(Model):
     """The file."""
 
-    labels: dict[Line, Line] = Field({}, description="name → how it is printed")
+    labels: dict[Line, Label] = Field({}, description="name → how it is printed, at most 80 characters, 30 a word")
     tables: dict[Name, Annotated[Table, one_of("kind", TABLES)]] = Field({}, description="name → a table")
     figures: dict[Name, Figure] = Field({}, description="name → title, columns and panels")
 

@@ -4,17 +4,19 @@ numbers. Every fault is reported in one line.
 
 import importlib
 import inspect
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, partial
+from pathlib import Path
 from typing import Any
 
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
-from bezierplan.analysis import metrics, statistics
-from bezierplan.analysis.claims.kinds import Check
+from bezierplan.analysis import measures, metrics, statistics
+from bezierplan.analysis.claims.kinds import Check, PublishedMargin
 from bezierplan.figures.panels import Panel, spheres
-from bezierplan.planners import planner_module
-from bezierplan.running import interface, problems, worlds
+from bezierplan.planners import PLACE, planner_module
+from bezierplan.running import columns, interface, problems, worlds
 from bezierplan.running.execution import conditions, settings_in
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.model import Model, first_fault, named, one_or_list
@@ -23,7 +25,7 @@ from bezierplan.study.alternatives import alternatives, concerned, methods_chang
 from bezierplan.study.artefacts import Comparison, Pivot, Table
 from bezierplan.study.claims import Assumption, Claim
 from bezierplan.study.definition import Study, files_of, relative
-from bezierplan.study.design import Design, in_first_variant
+from bezierplan.study.design import Design, fits, in_first_variant
 from bezierplan.study.files import inside
 from bezierplan.study.jobs import job
 from bezierplan.study.planner_checks import check_complete, check_settings, loaded
@@ -31,11 +33,17 @@ from bezierplan.workspaces import files
 from bezierplan.workspaces.kinds import kinds
 from bezierplan.workspaces.problem import Problem
 
+RESERVED = {*columns.RUN_COLUMNS, *columns.OUTCOMES, *columns.JOINED, *columns.DRIVE_JOINED, *columns.WORDS, *PLACE} - {"generations"}
+"""Names that no setting can have. The column `generations` holds the number actually performed, so a setting of that name adds nothing."""
+LONGEST_REFERENCE = 1000
+"""Times the perimeter of a workspace: no best known path is longer."""
+
 
 def check(study: Study) -> None:
     """Raise Fault for anything wrong in a study whose files are each valid on their own."""
     _check_experiments(study, relative(study.folder / "experiments.yaml"))
     design, functions = Design(study), _functions(study)
+    published.check_files(study)
     place = relative(study.folder / "artefacts.yaml")
     for name, table in study.tables.items():
         _check_table(design, functions, table, f"{place}: tables: {name}")
@@ -46,6 +54,7 @@ def check(study: Study) -> None:
             where = f"{place}: figures: {name}: panels: {panel.place}"
             _check_names(design, functions, panel, where)
             _check_dimensions(study, panel, where)
+            _check_shown(design, panel, where)
     place = relative(study.folder / "claims.yaml")
     _check_ids(study.claims, f"{place}: claims")
     for claim in study.claims:
@@ -83,8 +92,11 @@ def _check_experiments(study: Study, place: str) -> None:
     for name, method in study.methods.items():
         where = f"{place}: {'baselines' if name in study.baselines else 'methods'}: {name}"
         loaded(study, name, where)
+        for setting in study.accepted(name):
+            if setting in RESERVED:
+                raise Fault(f"{where}: planner: {method.planner}: its setting {setting} is a column of results; give it another name")
         if method.variant_of:
-            _known(method.variant_of, study.methods, f"{where}: variant_of")
+            _known(method.variant_of, study.methods.keys() - {name}, f"{where}: variant_of")
         for setting in method.settings:
             _known(setting, study.accepted(name), f"{where}: settings")
         if method.policy:
@@ -122,6 +134,9 @@ def _check_shared_settings(study: Study, used: set[str], place: str) -> None:
         for setting in settings:
             _known(setting, study.accepted(planners[planner]), f"{place}: settings: {planner}")
     for preset, values in study.presets.items():
+        if preset in used or preset in RESERVED:
+            taken = "a planner's setting" if preset in used else "a column of results"
+            raise Fault(f"{place}: presets: {preset}: {taken} has this name; give it another one")
         for value, settings in values.items():
             for setting in settings:
                 _known(setting, used, f"{place}: presets: {preset}: {value}")
@@ -161,9 +176,20 @@ def _check_problem(study: Study, built: Callable[[str], Problem], name: str, pla
     if home.drawn and hasattr(home, "circles") and max(problem.obstacles) > home.circles:
         raise Fault(f"{place}: obstacles: {max(problem.obstacles)}; expected at most {home.circles}, the circles of the workspace")
     try:
-        built(name)
+        seen = built(name)
     except ValueError as error:
         raise Fault(f"{place}: {error}") from None
+    if problem.reference is not None:
+        # The exact bound takes too long for a start; the job that computes it tells a reference below it.
+        least, most = math.dist(seen.start, seen.target), LONGEST_REFERENCE * _perimeter(seen)
+        if not (1 - measures.ROUNDED) * least <= problem.reference <= most:
+            limits = f"a length from {least:.6g}, the straight line, to {most:.6g}, {LONGEST_REFERENCE} times round the workspace"
+            raise Fault(f"{place}: reference: {problem.reference}: expected {limits}")
+
+
+def _perimeter(problem: Problem) -> float:
+    west, east, south, north = problem.workspace.bounds
+    return 2 * (east - west + north - south)
 
 
 def _built(study: Study, name: str) -> Problem:
@@ -241,25 +267,40 @@ def _check_names(design: Design, functions: dict[str, Callable], model: Model, p
         "statistic": statistics.STATISTICS,
         "compared": [name for name, table in study.compared().items() if table.published],
         "artefact": [*study.tables, *study.figures],
+        "printed table": [Path(file).stem for file in study.published_files()],
     }
-    if experiments or isinstance(model, Comparison):
-        known |= {"metric": metrics.METRICS}
     for path, what, name in named(model):
         if what == "experiment":
             _known(name, known[what], _at(place, path))
-    if experiments:
-        columns = frozenset().union(*map(design.columns, experiments))
-        known |= {"column": columns, "level": columns | {"value", "statistic"}}
     for path, what, name in named(model):
         where = _at(place, path)
         if what in known:
             _known(name, known[what], where)
-        elif what == "where" and experiments:
-            design.check_where(experiments, name, where, baselines=not isinstance(model, Check))
         elif what == "published":
             inside(study.folder, f"published/{name}", f"{where}: {name}")
+        elif what == "metric" and (experiments or isinstance(model, Comparison)):
+            _known(name, metrics.METRICS, where)
+            design.check_metric(experiments, name, where)
+        elif experiments:
+            _check_of_runs(design, experiments, what, name, where, isinstance(model, Check))
         if what == "function" and len(path) == 1:
             _check_arguments(functions[name], getattr(model, "arguments", {}), f"{place}: arguments")
+
+
+def _check_of_runs(design: Design, experiments: list[str], what: str, name: Any, place: str, of_claim: bool) -> None:
+    """A column, a selection, a repeat or a problem exists in the runs of experiments."""
+    match what:
+        case "column" | "number column" | "quantity":
+            design.check_column(experiments, name, what, place)
+        case "level":
+            if name not in ("value", "statistic"):
+                design.check_column(experiments, name, "column", place)
+        case "where":
+            design.check_where(experiments, name, place, baselines=not of_claim)
+        case "repeat":
+            design.check_repeat(experiments, name, place)
+        case "problem of runs":
+            _known(name, [problem for each in experiments for problem in design.study.problems_of(each, "full")], place)
 
 
 def _check_arguments(function: Callable, given: dict[str, Any], place: str) -> None:
@@ -283,24 +324,73 @@ def _at(place: str, path: tuple[str, ...]) -> str:
     return ": ".join([place, *(path[:-1] if path[-1].isdecimal() else path)])
 
 
+def _check_shown(design: Design, panel: Panel, place: str) -> None:
+    """A panel's runs are of the kind that it shows, of one problem and one method if it shows one run, and of enough methods."""
+    if not getattr(panel, "experiment", None):
+        return
+    study = design.study
+    if getattr(panel, "hue", None) and panel.hue == getattr(panel, "x", None):
+        raise Fault(f"{place}: hue: {panel.hue}: is x already; expected another column")
+    if panel.drives and not study.moves(panel.experiment):
+        raise Fault(f"{place}: experiment: {panel.experiment}: nothing moves there; expected an experiment of drives")
+    hue = getattr(panel, "hue", None) if panel.one else None
+    rows = design.rows(panel.experiment) if hue else []
+    for value in design.values([panel.experiment], hue, rows) if hue else [None]:
+        where = panel.where | ({hue: value} if hue else {})
+        if hue and value not in one_or_list(panel.where.get(hue, value)):
+            continue
+        shown = design.shown(panel.experiment, where)
+        for column in panel.one:
+            if len(shown[column]) > 1:
+                some = ", ".join(sorted(shown[column])[:3])
+                raise Fault(f"{place}: where: selects {len(shown[column])} values of {column} ({some}, ...); expected one, which is shown")
+    methods = design.shown(panel.experiment, panel.where)["method"]
+    if len(methods) < panel.fewest_methods:
+        raise Fault(f"{place}: where: method: {', '.join(sorted(methods))}: expected at least {panel.fewest_methods} methods")
+    for method in sorted(methods) if panel.tracks else []:
+        if not hasattr(planner_module(study.planner(method)), "track"):
+            raise Fault(f"{place}: where: method: {method}: its planner {study.methods[method].planner} has no function track")
+
+
 def _check_table(design: Design, functions: dict[str, Callable], table: Table, place: str) -> None:
     _check_names(design, functions, table, place)
-    if isinstance(table, Pivot) and table.published:
-        published.check(design, table)
-    elif isinstance(table, Pivot) and table.monotone:
+    if isinstance(table, Comparison):
+        _check_comparison(design, table, place)
+    if not isinstance(table, Pivot):
+        return
+    if table.published:
+        published.check(design, table, place)
+    elif table.monotone:
         raise Fault(f"{place}: monotone: the table has no published numbers, which it is about; leave it out")
+    keys = published.keys(design.study, table)
+    for column in table.primary:
+        _known(column, keys, f"{place}: primary")
+
+
+def _check_comparison(design: Design, table: Comparison, place: str) -> None:
+    """The tables that it compares have its metrics, and the columns and values that it selects."""
+    pivots = [design.study.compared()[name] for name in table.of]
+    keys = {
+        key: [pivot.experiment for pivot in pivots if key in published.keys(design.study, pivot)]
+        for pivot in pivots
+        for key in published.keys(design.study, pivot)
+    }
+    for metric in table.metrics:
+        _known(metric, {entry.metric for pivot in pivots for entry in pivot.values}, f"{place}: metrics")
+    for column, wanted in table.where.items():
+        _known(column, keys, f"{place}: where")
+        for value in one_or_list(wanted):
+            design.check_where(keys[column], {column: value}, f"{place}: where")
 
 
 def _check_claim(design: Design, functions: dict[str, Callable], claim: Claim, place: str) -> None:
     _check_names(design, functions, claim, place)
-    for value in claim.variants.get("metric", []):
-        _known(value, metrics.METRICS, f"{place}: variants: metric")
-    for value in claim.variants.get("experiment", []):
-        for name in one_or_list(value):
-            _known(name, design.study.experiments, f"{place}: variants: experiment")
+    _check_variants(design, claim, f"{place}: variants")
     for number, each in enumerate(claim.checks):
         where = f"{place}: checks: {number}"
         _check_names(design, functions, each, where)
+        if each.of_printed:
+            published.check_arithmetic(design.study, each, where)
         if not each.experiments or not hasattr(each, "every"):
             continue
         rows = design.selectable(each.experiments, baselines=False)
@@ -309,6 +399,50 @@ def _check_claim(design: Design, functions: dict[str, Callable], claim: Claim, p
             if group != "rest" and group not in values:
                 raise Fault(f"{where}: group: {group}: unknown{design.hint(group, values)}")
         design.check_mixtures(each, in_first_variant(claim, each), where)
+        _check_values_of_x(design, each, in_first_variant(claim, each), where)
+        if isinstance(getattr(each, "margin", None), PublishedMargin) and not _is_printed(design.study, each):
+            raise Fault(f"{where}: margin: published: no table of {', '.join(each.experiments)} has printed numbers of {each.metric}")
+
+
+def _check_variants(design: Design, claim: Claim, place: str) -> None:
+    """Every value of a variant exists, and takes the place of something: of a metric or an experiment, or of runs that a check selects."""
+    experiments = list(dict.fromkeys(name for each in claim.checks for name in each.experiments))
+    for column, values in claim.variants.items():
+        if not experiments:
+            raise Fault(f"{place}: {column}: no check of the claim is about runs; leave it out")
+        for value in (each for entry in values for each in one_or_list(entry)):
+            if column == "metric":
+                _known(value, metrics.METRICS, f"{place}: metric")
+                design.check_metric(experiments, value, f"{place}: metric")
+            elif column == "experiment":
+                _known(value, design.study.experiments, f"{place}: experiment")
+            else:
+                design.check_where(experiments, {column: value}, place, baselines=False)
+        if column in ("metric", "experiment"):
+            judged = {name for each in claim.checks for name in one_or_list(getattr(each, column, None) or [])}
+            for value in one_or_list(values[0]):
+                if value not in judged:
+                    raise Fault(f"{place}: {column}: {value}: not in a check; expected first what the checks name: {', '.join(judged)}")
+
+
+def _check_values_of_x(design: Design, check: Check, where: dict[str, Any], place: str) -> None:
+    """A trend has several values to go along."""
+    if check.cells_key != "x":
+        return
+    rows = [row for row in design.selectable(check.experiments, baselines=False) if fits(row, where)]
+    values = design.values(check.experiments, check.x, rows)
+    if len(values) < 2:
+        raise Fault(f"{place}: x: {check.x}: has the only value {values[0] if values else 'none'}; a trend needs at least two")
+
+
+def _is_printed(study: Study, check: Check) -> bool:
+    """Whether a table of a check's experiments has printed numbers of its metric."""
+    metric = check.metric
+    for pivot in study.compared().values():
+        given = published.rows_of(study, pivot.published) if pivot.published and pivot.experiment in check.experiments else []
+        if metric in {pivot.reads.get(row["metric"], row["metric"]) for row in given}:
+            return True
+    return False
 
 
 def _check_dimensions(study: Study, panel: Panel, place: str) -> None:
@@ -317,6 +451,9 @@ def _check_dimensions(study: Study, panel: Panel, place: str) -> None:
     if workspace and panel.plans != (workspace.kind == "spheres"):
         fit = "of kind spheres" if panel.plans else "in the plane, since only panels of kind spheres show others"
         raise Fault(f"{place}: workspace: {panel.workspace}: a workspace of kind {workspace.kind}; expected one {fit}")
+    of_cells = [key for key in ("numbers", "embed") if getattr(panel, key, "none") not in ("none", False)]
+    if workspace and of_cells and (workspace.made or workspace.kind) != "grid":
+        raise Fault(f"{place}: {of_cells[0]}: {panel.workspace}: a workspace of kind {workspace.kind}; only grids have cells")
     if not panel.plans:
         return
     _known(panel.method, study.methods, f"{place}: method")
@@ -352,6 +489,10 @@ def check_assumption(study: Study, assumption: Assumption, place: str) -> None:
         used = {setting for method in study.methods for setting in study.resolved(method)}
         raise Fault(f"{place}: setting: {assumption.setting}: no method has this setting{closest(assumption.setting, used)}")
     _check_in_force(study, assumption, methods, place)
+    for method, settings in assumption.along.items():
+        _known(method, methods, f"{place}: with")
+        for setting in settings:
+            _known(setting, study.accepted(method).keys() - {assumption.setting}, f"{place}: with: {method}")
     for name, (identity, value) in alternatives(study).items():
         if identity == assumption.id:
             changed = with_alternative(study, name)

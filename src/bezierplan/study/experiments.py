@@ -1,11 +1,14 @@
 """Models of `experiments.yaml`: methods, workspaces, problems, experiments."""
 
 import math
+import re
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, model_validator
 
 from bezierplan.schema.model import (
+    LARGEST,
+    MOST_ENTRIES,
     Count,
     Flag,
     Line,
@@ -15,6 +18,7 @@ from bezierplan.schema.model import (
     Positive,
     Setting,
     Whole,
+    at_most,
     is_number,
     listed,
     mapping_or,
@@ -29,11 +33,14 @@ SCALES = ("smoke", "full", "extended")
 
 MOST_CHUNKS = 10_000
 """Jobs of one method in one experiment."""
-MOST_CONDITIONS = 100_000
+MOST_CONDITIONS = 10_000
 """Problems of an experiment times combinations of varied values."""
 
 Settings = dict[Name, Setting]
-ProblemName = Annotated[str, matching(r"^[a-z0-9][a-z0-9_]*$", "a name of lower-case letters, digits and _")]
+PART = r"[A-Za-z0-9_.+-]+"
+"""What a value must be like to be part of the name of a run or of a folder."""
+PART_EXPECTED = "a word of letters, digits, _, ., + and -"
+ProblemName = Annotated[str, matching(r"[a-z0-9][a-z0-9_]*", "a name of lower-case letters, digits and _")]
 Point = of_length(2, "[x, y]")
 
 
@@ -59,7 +66,10 @@ class Method(Model):
 
 Margins = Annotated[
     list[float],
-    value(lambda given: isinstance(given, list) and len(given) > 0 and all(is_number(each) and each >= 0 for each in given), ""),
+    value(
+        lambda given: isinstance(given, list) and 0 < len(given) <= 100 and all(is_number(each) and 0 <= each <= LARGEST for each in given),
+        "",
+    ),
 ]
 
 
@@ -130,7 +140,9 @@ class Problem(Model):
     side: Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 5000, "")] = Field(
         None, description="the side of a random field or of a map of blocks in cells, a whole number from 1 to 5000"
     )
-    route: Line = Field(None, description="a name for start and target together, a column of the runs table")
+    route: Annotated[str, matching(PART, PART_EXPECTED)] = Field(
+        None, description=f"a name for start and target together, a column of the runs table: {PART_EXPECTED}"
+    )
 
     @model_validator(mode="after")
     def _check_ends(self) -> "Problem":
@@ -152,20 +164,26 @@ class Experiment(Model):
     seeds: Literal["own", "shared", "common"] = Field(
         "own", description="whether a run's seed is its `own`, `shared` by all methods, or `common` to all methods and conditions"
     )
-    time_limit: Annotated[float, value(lambda given: is_number(given) and 0 < given <= 1_000_000, "")] = Field(
-        600, description="seconds after which a single run, compiling included, is ended with its job, a number above 0, at most 1000000"
+    time_limit: Annotated[float, value(lambda given: is_number(given) and 1 <= given <= 1_000_000, "")] = Field(
+        600, description="seconds after which a single run, compiling included, is ended with its job, a number from 1 to 1000000"
     )
     repeats: Scales = Field(description="runs of each method under each condition, for smoke, full and extended")
-    chunk: Scales = Field(description="how many repeats one job runs, for smoke, full and extended")
+    chunk: Scales = Field(description="how many repeats one job runs, for smoke, full and extended, at most all of them")
     readings: Count = Field(None, description="repeats from which `snakemake readings` judges a reading; by default those of full")
 
     @model_validator(mode="after")
     def _check_size(self) -> "Experiment":
         for scale in SCALES:
+            if self.chunk[scale] > self.repeats[scale]:
+                most = f"expected at most {self.repeats[scale]}, the repeats, since a chunk always runs whole"
+                raise wrong(f"chunk: {scale}: {self.chunk[scale]}: {most}")
             if self.repeats[scale] > self.chunk[scale] * MOST_CHUNKS:
                 raise wrong(f"chunk: {scale}: {self.chunk[scale]}: {self.repeats[scale]} repeats are more than {MOST_CHUNKS} chunks")
-        if math.prod(map(len, self.vary.values())) > MOST_CONDITIONS:
-            raise wrong(f"vary: expected at most {MOST_CONDITIONS} combinations of values")
+        if math.prod(map(len, self.vary.values())) * len(self.problems) > MOST_CONDITIONS:
+            raise wrong(f"vary: expected at most {MOST_CONDITIONS} conditions: problems times combinations of values")
+        for setting, values in self.vary.items():
+            if odd := [each for each in values if not re.fullmatch(PART, str(each))]:
+                raise wrong(f"vary: {setting}: {odd[0]!r}: is part of a run's name; expected {PART_EXPECTED}, or a number")
         return self
 
     @property
@@ -185,8 +203,8 @@ class ExperimentsFile(Model):
     """The file."""
 
     title: Line = Field(description="one line that names the study")
-    methods: dict[Name, Method] = Field(description="name → planner and settings", min_length=1)
-    baselines: dict[Name, Method] = Field(
+    methods: Annotated[dict[Name, Method], at_most(MOST_ENTRIES)] = Field(description="name → planner and settings", min_length=1)
+    baselines: Annotated[dict[Name, Method], at_most(MOST_ENTRIES)] = Field(
         {},
         description="the same; each joins every experiment whose workspaces its planner serves, unless the experiment varies one of "
         "its settings. "
@@ -197,14 +215,20 @@ class ExperimentsFile(Model):
         "needs a value, there "
         "are no defaults. The name of a planner holds settings of its methods alone, stronger than the others: `prm: {samples: 50}`"
     )
-    presets: dict[Name, dict[str, Settings]] = Field(
+    presets: dict[Name, dict[Annotated[str, matching(PART, PART_EXPECTED)], Settings]] = Field(
         {},
         description="name → value → settings that go with it: a bundle that an experiment can vary like a setting, such as "
         "`profile: {default: {}, tuned: {...}}`",
     )
     policies: dict[Name, Policy] = Field({}, description="name → what a robot does in a world that moves")
-    workspaces: dict[Name, Annotated[Workspace, one_of("kind", kinds())]] = Field(description="name → kind, unit, and the keys of the kind")
-    problems: dict[ProblemName, Problem] = Field(description="name → workspace, start and target", min_length=1)
-    experiments: dict[Name, Experiment] = Field(description="name → problems × varied settings × methods × repeats", min_length=1)
+    workspaces: Annotated[dict[Name, Annotated[Workspace, one_of("kind", kinds())]], at_most(MOST_ENTRIES)] = Field(
+        description="name → kind, unit, and the keys of the kind"
+    )
+    problems: Annotated[dict[ProblemName, Problem], at_most(MOST_ENTRIES)] = Field(
+        description="name → workspace, start and target", min_length=1
+    )
+    experiments: Annotated[dict[Name, Experiment], at_most(MOST_ENTRIES)] = Field(
+        description="name → problems × varied settings × methods × repeats", min_length=1
+    )
     worth: Worth = Field(None, description="what the summary measures the study's methods against: a row of `worth.csv` for each method")
     readings_tried: Count = Field(60, description="how many readings `snakemake readings` tries at most")

@@ -111,7 +111,9 @@ def _study(given: Studies, scale: str, key: str, made: list[str], tried: dict[st
     """What the page needs to know of a study beside its results. made: the names of its tables and figures."""
     study, folder = given[key], f"results/{scale}/{key}"
     judged = scale != "smoke" and study.claims
-    files = {"claims": f"{folder}/claims.csv", "checks": f"{folder}/claim_checks.csv", "audit": f"{folder}/audit.csv"} if judged else {}
+    files = {"claims": f"{folder}/claims.csv", "checks": f"{folder}/claim_checks.csv"} if judged else {}
+    audit = f"{folder}/audit.csv"
+    files |= {"audit": audit} if scale != "smoke" and audit in targets.files_of_study(given, scale, key) else {}
     described = {name: {"title": spec.title, "caption": jobs.caption(study, name, scale)} for name, spec in _specs(study, made).items()}
     return {
         "title": study.title,

@@ -12,7 +12,7 @@ from typing import Any, TypeVar
 from bezierplan.running.digest import PACKAGE
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, closest
-from bezierplan.schema.model import Model, parsed
+from bezierplan.schema.model import DEVICES, LONGEST_NAME, Model, parsed
 from bezierplan.study import stamps
 from bezierplan.study.artefacts import ArtefactsFile, ConfigFile
 from bezierplan.study.claims import AssumptionsFile, ClaimsFile
@@ -132,8 +132,11 @@ def check_names(given: Mapping[str, Study], taken: Iterable[str]) -> None:
     home = PACKAGE.parents[1] / "config" / "studies"
     for key, study in given.items():
         place = relative(study.folder)
-        if not re.fullmatch("[A-Za-z][A-Za-z0-9_-]*", key):
-            raise Fault(f"{place}: {key}: not a name of a study; expected letters, digits, _ and -, a letter first; rename the folder")
+        if not re.fullmatch("[A-Za-z][A-Za-z0-9_-]*", key) or len(key) > LONGEST_NAME or key.lower() in DEVICES:
+            wanted = f"at most {LONGEST_NAME} letters, digits, _ and -, a letter first, and not the name of a device"
+            raise Fault(f"{place}: {key}: not a name of a study; expected {wanted}; rename the folder")
+        if {"{", "}"} & set(place):
+            raise Fault(f"{place}: Snakemake reads braces as a pattern; expected a folder without them; rename it")
         if (home / key).is_dir() and not (home / key).samefile(study.folder):
             raise Fault(f"{place}: config/studies has a study {key} already, whose results this one would overwrite; rename the folder")
         for target in [key, *(f"{key}_{item}" for item in [*study.tables, *study.figures])]:

@@ -429,16 +429,18 @@ def _experiments_behind(study: Study, artefact: str) -> list[str]:
 
 
 def files_of_study(given: Studies, scale: str, study: str) -> list[str]:
-    """All tables and figures of a study that are made at a scale, its claims and its audit."""
+    """All tables and figures of a study that are made at a scale, its claims, and its audit if it has claims or published numbers."""
     files = [file for name in artefacts_of(given[study], scale) for file in files_of(given, scale, study, name)]
     if given[study].claims:
-        files += [f"{_folder(scale, study)}/{name}.csv" for name in ("claims", "audit")]
+        files.append(f"{_folder(scale, study)}/claims.csv")
+    if given[study].claims or _audited(given[study]):
+        files.append(f"{_folder(scale, study)}/audit.csv")
     return files
 
 
 def files_of_scale(given: Studies, scale: str) -> list[str]:
-    """Everything that is made at a scale; a summary if some study has claims and some table has published numbers."""
-    summary = any(study.claims for study in given.values()) and _published_tables(given)
+    """Everything that is made at a scale; a summary if some table has published numbers."""
+    summary = _published_tables(given)
     return [file for study in given for file in files_of_study(given, scale, study)] + ([f"results/{scale}/summary.md"] if summary else [])
 
 

@@ -9,26 +9,32 @@ import importlib
 import inspect
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field, PrivateAttr, model_validator
 
 from bezierplan.schema.model import (
     ARGUMENTS,
     Arguments,
-    Column,
     Experiment,
     Flag,
     Function,
+    Label,
     Line,
     Metric,
     Model,
+    Number,
+    Quantity,
+    Repeat,
     Where,
-    Whole,
     Workspace,
+    after,
     defaults,
     wrong,
 )
+
+MOST_PANELS = 26
+"""Panels of a figure, each of which has a letter."""
 
 EACH = (
     "a list of at least two mappings, for panels that differ in a few keys: each becomes a panel, with its own keys and those beside "
@@ -40,15 +46,20 @@ class Panel(Model):
     """Keys common to all kinds of panel, and what a kind needs in addition to its panels.
 
     published_drawn: whether published numbers are drawn. rerun: whether runs are repeated to draw what no table keeps. plans: whether it
-    plans by itself, with a method of the study.
+    plans by itself, with a method of the study. one: columns of which the runs that it shows have one value. drives: whether these are
+    drives. tracks: whether their planner must have `track`. fewest_methods: how many methods it compares at least.
     """
 
     published_drawn: ClassVar[bool] = False
     rerun: ClassVar[bool] = False
     plans: ClassVar[bool] = False
+    one: ClassVar[tuple[str, ...]] = ()
+    drives: ClassVar[bool] = False
+    tracks: ClassVar[bool] = False
+    fewest_methods: ClassVar[int] = 1
 
     kind: Line = Field(description="the name of a file in `src/bezierplan/figures/panels`")
-    title: Line = Field(None, description="one line above the panel")
+    title: Label = Field(None, description="one line above the panel, at most 80 characters, 30 a word")
     each: list[dict[str, Any]] = Field(None, min_length=2, description=EACH)
 
     _place: str = PrivateAttr("")
@@ -94,9 +105,9 @@ class TablePanel(Panel):
 class Pick(Model):
     """One run."""
 
-    lowest: Column = Field(None, description="a column of the runs table: the feasible run with its lowest value")
-    median: Column = Field(None, description="a column of the runs table: the feasible run with its median value")
-    repeat: Whole = Field(None, description="a whole number: the run of that repeat")
+    lowest: Quantity = Field(None, description="a column of numbers of the runs table: the feasible run with its lowest value")
+    median: Quantity = Field(None, description="a column of numbers of the runs table: the feasible run with its median value")
+    repeat: Repeat = Field(None, description="a whole number: the run of that repeat")
     having: Metric = Field(None, description="beside one of these, the name of a metric: only runs that have more than 0 of it count")
 
     @model_validator(mode="after")
@@ -111,6 +122,19 @@ PICK = (
     "which run: {lowest: column} or {median: column} of the feasible ones, or {repeat: number}; with having: metric, only of those that "
     "have more than 0 of it"
 )
+
+
+def _check_view(given: list[float]) -> list[float]:
+    west, east, south, north = given
+    sides = sorted([east - west, north - south])
+    # Ticks of narrower ones do not tell their ends apart, and longer ones are no more than a line.
+    if not (sides[0] >= 1e-6 and sides[1] <= 100 * sides[0] and max(map(abs, given)) <= 1e6):
+        limits = "1e-6 apart at least, one side at most 100 times the other, numbers of at most 1e6 in absolute value"
+        raise wrong(f"{given}: expected [lowest x, highest x, lowest y, highest y], {limits}")
+    return given
+
+
+View = Annotated[list[Number], after(_check_view)]
 
 
 def exactly_one(panel: Model, *keys: str) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -30,6 +30,8 @@ _CUT_SCALE = 4
 
 class Options(RunsPanel):
     """Keys of a panel."""
+
+    one: ClassVar[tuple[str, ...]] = ("problem", "method")
 
     pick: Pick = Field(description=PICK)
     quantity: Literal["curvature"] = Field(description="what is drawn along the path: curvature")

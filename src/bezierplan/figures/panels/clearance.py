@@ -9,7 +9,7 @@ from pydantic import Field
 
 from bezierplan.figures import style
 from bezierplan.figures.panels import RunsPanel
-from bezierplan.schema.model import Whole
+from bezierplan.schema.model import Repeat
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -22,8 +22,10 @@ class Options(RunsPanel):
     """Keys of a panel."""
 
     rerun: ClassVar[bool] = True
+    one: ClassVar[tuple[str, ...]] = ("problem",)
+    drives: ClassVar[bool] = True
 
-    repeat: Whole = Field(0, description="which run of each method is shown, a whole number; left out: 0")
+    repeat: Repeat = Field(0, description="which run of each method is shown, a whole number; left out: 0")
 
 
 @Options.filled

@@ -15,7 +15,7 @@ from bezierplan.figures import style
 from bezierplan.figures.panels import PICK, Pick, RunsPanel, exactly_one
 from bezierplan.figures.panels.lines import LIMITS, constants, interval_band, published, runs_note, shared_limits
 from bezierplan.figures.panels.paths import feasible_note, picked, run_note
-from bezierplan.schema.model import Column, Flag, Line, Whole, wrong
+from bezierplan.schema.model import Column, Flag, PrintedTable, Whole, wrong
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
@@ -43,12 +43,17 @@ class Options(RunsPanel):
     statistic: Literal["mean", "median"] = Field("mean", description="with hue, of its runs: mean (left out: this) or median")
     reference: Flag = Field(False, description="whether the reference of the problem is drawn, true or false")
     until: Whole = Field(None, description="the generation at which the axis ends; left out: the last one of the longest run")
-    printed: Line = Field(None, description="with hue, the name of a published table whose means are marked beside the last values")
+    printed: PrintedTable = Field(None, description="with hue, the name of a published table whose means are marked beside the last values")
 
     @property
     def published_drawn(self) -> bool:
         """Whether published numbers are drawn."""
         return self.printed is not None
+
+    @property
+    def one(self) -> tuple[str, ...]:
+        """Columns of which the runs have one value, if one of them is picked."""
+        return ("problem", "method") if self.pick else ()
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -11,7 +11,7 @@ from pydantic import Field
 from bezierplan.analysis import metrics, running_time
 from bezierplan.figures import style
 from bezierplan.figures.panels import RunsPanel
-from bezierplan.schema.model import Line, Metric
+from bezierplan.schema.model import Metric, PrintedTable
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -31,8 +31,10 @@ _NAMES = 1.2
 class Options(RunsPanel):
     """Keys of a panel."""
 
+    fewest_methods: ClassVar[int] = 3
+
     metric: Metric = Field("objective", description="what is ranked, the name of a metric; left out: objective")
-    printed: Line = Field(None, description="the name of a published table whose mean ranks are shown besides")
+    printed: PrintedTable = Field(None, description="the name of a published table whose mean ranks are shown besides")
     unit: Literal["repeat", "problem"] = Field(
         "repeat", description="in what methods are ranked: each repeat of a condition (left out: this), or each problem, by the median run"
     )

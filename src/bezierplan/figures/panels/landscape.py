@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 from pydantic import Field
@@ -36,6 +36,8 @@ _LOOK = {
 
 class Options(RunsPanel):
     """Keys of a panel."""
+
+    one: ClassVar[tuple[str, ...]] = ("problem",)
 
     data: Function = Field(description="the name of a function of the study's module that returns a table, called with the runs")
 

@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from bezierplan.analysis import metrics, statistics
 from bezierplan.figures import style
 from bezierplan.figures.panels import TablePanel, exactly_one
-from bezierplan.schema.model import Column, Experiment, Flag, Function, Metric, Where, Whole, listed
+from bezierplan.schema.model import Column, Experiment, Flag, Function, Metric, NumberColumn, Repeat, Where, listed
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
@@ -37,11 +37,11 @@ class Options(TablePanel):
     experiment: Experiment = Field(None, description="the name of an experiment")
     data: Function = Field(None, description="in place of experiment, the name of a function of the study's module that returns a table")
     where: Where = Field({}, description="column of the runs table or of the data → value or list of values")
-    x: Column = Field(description="a column of numbers of the runs table or of the data")
+    x: NumberColumn = Field(description="a column of numbers of the runs table or of the data")
     metric: Metric = Field(description="the name of a metric, or of a column of the data")
     hue: Column = Field(None, description="a column of the runs table or of the data: a line for each of its values")
     statistic: Literal["mean", "median", "share"] = Field("mean", description="of runs: mean (left out: this), median or share")
-    repeats: listed(Whole) = Field((), description="a list of whole numbers: single runs that are drawn besides")
+    repeats: listed(Repeat) = Field((), description="a list of whole numbers: single runs that are drawn besides")
     joined: Flag = Field(True, description="whether lines join points, true or false: false where x is a name in numbers, without order")
 
     @model_validator(mode="after")

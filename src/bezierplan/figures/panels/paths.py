@@ -6,20 +6,22 @@ Or several paths in one workspace, a picked run for each value of a column.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.analysis import metrics
 from bezierplan.figures import style
-from bezierplan.figures.panels import PICK, Pick, RunsPanel, exactly_one
+from bezierplan.figures.panels import PICK, Pick, RunsPanel, View, exactly_one
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.figures.panels.lines import axis_label, published
 from bezierplan.geometry import curves
 from bezierplan.schema.checked import closest
-from bezierplan.schema.model import Column, Experiment, Flag, Line, Metric, Model, Number, wrong
+from bezierplan.schema.model import Column, Experiment, Flag, Label, Line, Metric, Model, Names, PrintedTable, at_most, wrong
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.kinds import of_length
+from bezierplan.workspaces.limits import LARGEST
 from bezierplan.workspaces.problem import Path, Problem, Workspace
 
 if TYPE_CHECKING:
@@ -109,11 +111,17 @@ def feasible_note(frame: pd.DataFrame) -> str:
     return f"{row['feasible_runs']:g} of {row['runs']:g} runs are feasible"
 
 
+MOST_POINTS = 100
+"""Control points of a path without a run."""
+
+
 class Explicit(Model):
     """A path without a run."""
 
     curve: Line = Field(description="the kind of a curve")
-    points: list[list[Number]] = Field(description="a list of at least two [x, y]", min_length=2)
+    points: Annotated[list[of_length(2, "[x, y]")], at_most(MOST_POINTS)] = Field(
+        description="a list of two to 100 [x, y], at most 1e5 in absolute value", min_length=2
+    )
 
 
 class Options(RunsPanel):
@@ -129,18 +137,23 @@ class Options(RunsPanel):
     )
     measure: Metric = Field("length", description="with hue, the metric whose value is written for each path; left out: length")
     bare: Flag = Field(False, description="whether only the workspace with start and target is drawn, true or false")
-    letters: list[Line] = Field(None, description="what is written beside start and target: a list of two", min_length=2, max_length=2)
-    changed_from: Line = Field(
+    letters: list[Label] = Field(None, description="what is written beside start and target: a list of two", min_length=2, max_length=2)
+    changed_from: Annotated[Line, Names("problem of runs")] = Field(
         None, description="the name of another problem of the experiment, on cells as many: those that differ from it are marked"
     )
     cell_optimum: Flag = Field(False, description="whether the least path from cell centre to cell centre is drawn, true or false")
-    printed: Line = Field(None, description="the name of a published table whose shortest length is given beside the run's")
-    view: list[Number] = Field(None, description="what is seen: [lowest x, highest x, lowest y, highest y]", min_length=4, max_length=4)
+    printed: PrintedTable = Field(None, description="the name of a published table whose shortest length is given beside the run's")
+    view: View = Field(None, description="what is seen: [lowest x, highest x, lowest y, highest y]", min_length=4, max_length=4)
 
     @property
     def published_drawn(self) -> bool:
         """Whether published numbers are drawn."""
         return self.printed is not None
+
+    @property
+    def one(self) -> tuple[str, ...]:
+        """Columns of which the runs have one value: one for each of hue."""
+        return ("problem", "method")
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
@@ -152,8 +165,8 @@ class Options(RunsPanel):
             raise wrong("measure: needs hue")
         if self.bare and (self.explicit or self.hue):
             raise wrong(f"bare: not together with {'explicit' if self.explicit else 'hue'}")
-        if self.explicit and any(len(point) != 2 for point in self.explicit.points):
-            raise wrong("explicit: points: expected a list of at least two [x, y]")
+        if self.explicit and any(abs(each) > LARGEST for point in self.explicit.points for each in point):
+            raise wrong(f"explicit: points: expected coordinates of at most {LARGEST:g} in absolute value")
         if self.explicit and self.explicit.curve not in curves.CURVES:
             raise wrong(f"explicit: curve: {self.explicit.curve}: unknown{closest(self.explicit.curve, curves.CURVES)}")
         return self

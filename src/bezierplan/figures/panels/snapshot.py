@@ -34,6 +34,8 @@ class Options(RunsPanel):
     """Keys of a panel."""
 
     rerun: ClassVar[bool] = True
+    one: ClassVar[tuple[str, ...]] = ("problem", "method")
+    drives: ClassVar[bool] = True
 
     pick: Pick = Field(description=PICK)
     at: Annotated[float, value(lambda given: is_number(given) and 0 <= given <= 1, "")] = Field(

@@ -34,6 +34,8 @@ class Options(RunsPanel):
     """Keys of a panel."""
 
     rerun: ClassVar[bool] = True
+    tracks: ClassVar[bool] = True
+    one: ClassVar[tuple[str, ...]] = ("problem", "method")
 
     data: Function = Field(None, description="the name of a function of the study's module that returns a landscape, called with the runs")
     by: Metric = Field(description="the name of a metric: of the feasible runs the best one of each of its commonest values is drawn")

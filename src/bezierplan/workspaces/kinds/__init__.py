@@ -13,6 +13,7 @@ their descriptions in `running.worlds`, since some need shortest paths. All faul
 """
 
 import importlib
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
@@ -20,14 +21,49 @@ from pathlib import Path
 from types import ModuleType
 from typing import Annotated, Any, ClassVar
 
-from pydantic import Field
+from pydantic import Field, PlainValidator
+from pydantic_core import PydanticCustomError
 
-from bezierplan.schema.model import Line, Model, NotNegative, Number, Positive, after, is_number, keys, value, wrong
+from bezierplan.schema.model import (
+    DEVICES,
+    LONGEST_NAME,
+    Line,
+    Model,
+    NotNegative,
+    Number,
+    Positive,
+    after,
+    is_number,
+    keys,
+    value,
+    wrong,
+)
 from bezierplan.workspaces.limits import SMALLEST_FEATURE
 from bezierplan.workspaces.text_file import read_text
 
-_IS_FILE = value(lambda given: isinstance(given, str) and given.isprintable() and 0 < len(given) <= 200, "the name of a file")
+_NOT_IN_NAMES = frozenset('{}*?[]<>|":\\')
+"""Characters that Snakemake reads as a pattern, or that no file can have on Windows."""
+
+
+def _fits_everywhere(part: str) -> bool:
+    """Whether a file or folder can have a name on every system."""
+    return part == part.strip() and len(part) <= LONGEST_NAME and part.partition(".")[0].lower() not in DEVICES
+
+
+def _check_file(given: Any) -> str:
+    if not (isinstance(given, str) and given.isprintable() and 0 < len(given) <= 200):
+        raise PydanticCustomError("expected", "{text}", {"text": "the name of a file"})
+    if _NOT_IN_NAMES & set(given) or not all(map(_fits_everywhere, given.split("/"))):
+        wanted = f"a file's name without {' '.join(sorted(_NOT_IN_NAMES))}, blanks at an end, and names of devices"
+        raise wrong(f"{given!r}: expected {wanted}")
+    return given
+
+
+_IS_FILE = PlainValidator(_check_file)
 File = Annotated[str, _IS_FILE]
+Unit = Annotated[
+    str, value(lambda given: isinstance(given, str) and re.fullmatch(r"[^\W\d_]{1,20}", given) is not None, "letters, 20 at most")
+]
 
 
 def of_length(length: int, expected: str) -> Any:
@@ -64,7 +100,7 @@ class Workspace(Model):
     moves: ClassVar[bool] = False
 
     kind: Line = Field(description="the name of a file in `src/bezierplan/workspaces/kinds`")
-    unit: Line = Field(description="the name of the unit of length")
+    unit: Unit = Field(description="the name of the unit of length, up to 20 letters")
 
 
 class World(Workspace):

@@ -35,6 +35,8 @@ def load(description: dict, folder: Path) -> Circles:
         if radius <= 0:
             raise ValueError(f"circles: circle {i}: radius {radius:g}; expected above 0")
         check_thickness(radius, f"circles: circle {i}: radius")
+        if x + radius <= limits[0] or x - radius >= limits[1] or y + radius <= limits[2] or y - radius >= limits[3]:
+            raise ValueError(f"circles: circle {i}: outside the border; expected a circle of which some part is in it")
         gaps = np.hypot(*(centres[i + 1 :] - (x, y)).T) - radii[i + 1 :] - radius
         gaps = np.append(gaps, [x - radius - limits[0], limits[1] - x - radius, y - radius - limits[2], limits[3] - y - radius])
         check_gaps(gaps, f"circles: circle {i}")

@@ -17,15 +17,16 @@ Options are read at every start of the workflow, so these files import scipy and
 
 import importlib
 import itertools
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
 from types import ModuleType
 from typing import Annotated, Any, ClassVar, Literal
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from bezierplan.schema.model import (
+    LONGEST_LINE,
     Column,
     Experiment,
     Line,
@@ -34,14 +35,19 @@ from bezierplan.schema.model import (
     Positive,
     Where,
     defaults,
+    is_line,
     is_number,
     listed,
     mapping_or,
     one_or_list,
     value,
+    wrong,
 )
 
-Group = Annotated[str | float, value(lambda given: isinstance(given, str) or is_number(given), "a value of the column `across`, or rest")]
+Group = Annotated[
+    str | float,
+    value(lambda given: is_line(given, LONGEST_LINE) or is_number(given), "a value of the column `across`, or rest"),
+]
 Groups = listed(Group)
 Columns = listed(Column)
 
@@ -118,6 +124,13 @@ class Check(Model):
         return named_groups({key: getattr(self, key, None) for key in GROUP_KEYS})
 
 
+def with_itself(pairs: Iterable[tuple[Any, Any]], key: str) -> None:
+    """Raise the error of a check that compares a group with itself."""
+    for group, other in pairs:
+        if group == other:
+            raise wrong(f"{key}: {group}: is compared with itself; expected another group")
+
+
 class OfRuns(Check):
     """Checks of runs."""
 
@@ -126,6 +139,18 @@ class OfRuns(Check):
     where: Where = Field({}, description="column of the runs table → value or list of values: the runs that are judged", min_length=1)
     every: Columns = Field([], description="a list of columns; one comparison for each combination of their values")
     replicate: Column = Field("repeat", description="the column that numbers independent replicates; left out: repeat")
+
+    @model_validator(mode="after")
+    def _check_columns(self) -> "OfRuns":
+        """A column is either compared, or told apart, or averaged, or numbers replicates."""
+        named = {key: one_or_list(getattr(self, key, None) or []) for key in ("every", "pool", self.cells_key, "replicate") if key}
+        owners: dict[str, str] = {}
+        for key, columns in named.items():
+            for column in columns:
+                if column in owners:
+                    raise wrong(f"{key}: {column}: is in {owners[column]} already; expected it in one of the two")
+                owners[column] = key
+        return self
 
 
 class Comparing(OfRuns):

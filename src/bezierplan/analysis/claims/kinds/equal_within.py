@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims.effects import (
     BETWEEN_GROUPS,
@@ -30,7 +30,7 @@ from bezierplan.analysis.claims.effects import (
     units,
     why_none,
 )
-from bezierplan.analysis.claims.kinds import GROUPS, POOL, SECONDARY, THAN, Columns, Comparing, Groups, option
+from bezierplan.analysis.claims.kinds import GROUPS, POOL, SECONDARY, THAN, Columns, Comparing, Groups, option, with_itself
 from bezierplan.analysis.statistics import WITHOUT_INTERVAL
 from bezierplan.schema.model import Number
 
@@ -49,6 +49,11 @@ class Options(Comparing):
     than: Groups = Field(description=THAN)
     statistic: Literal["mean", "median", "min", "max"] = Field(description="the statistic that is compared: mean, median, min or max")
     target: Number = Field(0, description="the claimed difference, a number; left out: 0")
+
+    @model_validator(mode="after")
+    def _check_groups(self) -> Options:
+        with_itself(itertools.product(self.groups, self.than), "than")
+        return self
 
 
 def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:

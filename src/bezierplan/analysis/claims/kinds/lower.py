@@ -59,6 +59,7 @@ from bezierplan.analysis.claims.kinds import (
     Group,
     Groups,
     option,
+    with_itself,
 )
 from bezierplan.analysis.claims.ranks import rank_test, wins
 from bezierplan.analysis.statistics import WITHOUT_INTERVAL
@@ -93,6 +94,7 @@ class Options(Comparing):
             raise wrong("groups: expected either groups and than, or pairs")
         if any(len(pair) != 2 for pair in self.pairs or []):
             raise wrong("pairs: expected a list of [group, other group]")
+        with_itself(itertools.product(self.groups or [], self.than or []), "than")
         return self
 
 

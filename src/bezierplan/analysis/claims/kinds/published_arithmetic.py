@@ -38,6 +38,9 @@ class Options(Check):
 
     @model_validator(mode="after")
     def _check_tables(self) -> Options:
+        wanted = 1 if self.form == "equal" else 2
+        if len(self.of) != wanted:
+            raise wrong(f"of: {len(self.of)} cells; {self.form} needs {wanted}")
         for selector in (*self.of, *([self.equals] if isinstance(self.equals, dict) else [])):
             if "table" not in selector:
                 raise wrong("of: table: missing key; a file of the folder published, or a list of them, without .csv")

@@ -35,7 +35,7 @@ from bezierplan.analysis.claims.effects import (
 from bezierplan.analysis.claims.kinds import MARGIN, PAIRED, SCALE, WORK, Margin, OfRuns, option
 from bezierplan.analysis.claims.ranks import signed_rank_test
 from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED
-from bezierplan.schema.model import Column, Flag, Metric
+from bezierplan.schema.model import Flag, Metric, NumberColumn
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
@@ -48,7 +48,7 @@ class Options(OfRuns):
     cells_key: ClassVar[str | None] = "x"
 
     paired: Flag = Field(None, description=PAIRED)
-    x: Column = Field(description="a column of numbers along which the metric changes")
+    x: NumberColumn = Field(description="a column of numbers along which the metric changes")
     direction: Literal["up", "down"] = Field(description="up or down")
     statistic: Literal["std"] = Field(None, description="std: the spread of each condition; left out: the values themselves")
     scale: Literal["absolute", "relative"] = Field("absolute", description=SCALE)
