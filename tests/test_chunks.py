@@ -11,8 +11,8 @@ import pytest
 from studies import studies
 
 from bezierplan.analysis import results
-from bezierplan.running import problems
-from bezierplan.study import definition, jobs, targets
+from bezierplan.running import log, problems
+from bezierplan.study import definition, jobs, page, targets
 from bezierplan.study.experiments import Experiment
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
@@ -66,21 +66,90 @@ def test_runs_are_pairs_where_methods_share_their_random_numbers(seeds, paired):
     assert experiment(10, 5, **seeds).paired == paired
 
 
-def test_results_are_cut_at_the_number_of_repeats(tmp_path):
-    """Two chunks of four repeats; six are asked for, and whole chunks were run."""
+@pytest.fixture
+def chunks(tmp_path):
+    """The folder of an experiment's results: two chunks of four repeats of two methods, their times, problems and bounds."""
     grid = from_lines(["..", ".."], 1.0, "m")
     described = {"across": Problem("across", grid, (0.5, 0.5), (1.5, 1.5))}
     problems.write(described, {"across": "square"}, str(tmp_path / "problems.parquet"))
     parquet.write_table(problems.bounds_of(described), tmp_path / "bounds.parquet")
-    files = []
-    for chunk in range(2):
-        repeats = np.arange(4 * chunk, 4 * chunk + 4)
-        runs = pd.DataFrame({"id": [f"r{n}" for n in repeats], "problem": "across", "repeat": repeats, "length": 2.0, "feasible": True})
-        times = pd.DataFrame({"id": runs["id"], "cpu_s": repeats / 100, "wall_s": repeats / 50})
-        files.append(str(tmp_path / f"{chunk}.parquet"))
-        parquet.write_table(pa.Table.from_pandas(runs), files[-1])
-        parquet.write_table(pa.Table.from_pandas(times[::-1]), tmp_path / f"{chunk}.times.parquet")
-    found = results.read(files, 6, str(tmp_path / "problems.parquet"), str(tmp_path / "bounds.parquet")).runs
+    for method in ("mine", "other"):
+        folder = tmp_path / "runs" / "first" / method
+        folder.mkdir(parents=True)
+        for chunk in range(2):
+            repeats = np.arange(4 * chunk, 4 * chunk + 4)
+            of = {"experiment": "first", "method": method, "problem": "across"}
+            runs = pd.DataFrame({"id": [f"{method}{n}" for n in repeats], **of, "repeat": repeats, "length": 2.0, "feasible": True})
+            times = pd.DataFrame({"id": runs["id"], "cpu_s": repeats / 100, "wall_s": repeats / 50})
+            parquet.write_table(pa.Table.from_pandas(runs), folder / f"{chunk}.parquet")
+            parquet.write_table(pa.Table.from_pandas(times[::-1]), folder / f"{chunk}.times.parquet")
+    return tmp_path
+
+
+def read(folder):
+    files = [str(folder / "runs/first/mine" / f"{chunk}.parquet") for chunk in range(2)]
+    return results.read(files, 6, str(folder / "problems.parquet"), str(folder / "bounds.parquet")).runs
+
+
+def test_results_are_cut_at_the_number_of_repeats(chunks):
+    """Six are asked for, and whole chunks were run."""
+    found = read(chunks)
     assert found["repeat"].to_list() == [0, 1, 2, 3, 4, 5]
     assert found["cpu_s"].to_list() == [0.0, 0.01, 0.02, 0.03, 0.04, 0.05]
     assert found["bound"].to_numpy() == pytest.approx(np.sqrt(2))
+
+
+MINE = "runs/first/mine"
+# A file, what stands in its place (another file, or content), and what is told of it.
+MISPLACED = {
+    "another method's runs": (f"{MINE}/0.parquet", "runs/first/other/0.parquet", "of method other, not mine"),
+    "another chunk's runs": (f"{MINE}/1.parquet", f"{MINE}/0.parquet", "the runs of another chunk"),
+    "another chunk's times": (f"{MINE}/0.times.parquet", f"{MINE}/1.times.parquet", "not the times of 0.parquet"),
+    "another method's times": (f"{MINE}/0.times.parquet", "runs/first/other/0.times.parquet", "not the times of 0.parquet"),
+    "runs for times": (f"{MINE}/0.times.parquet", f"{MINE}/1.parquet", "not the times of 0.parquet"),
+    "times for runs": (f"{MINE}/0.parquet", f"{MINE}/0.times.parquet", "of experiment no runs, not first"),
+    "bounds for runs": (f"{MINE}/0.parquet", "bounds.parquet", "of experiment no runs, not first"),
+    "a csv for runs": (f"{MINE}/0.parquet", b"id,length\n1,2\n", "not a whole Parquet file"),
+    "a page for runs": (f"{MINE}/0.parquet", b"<html></html>", "not a whole Parquet file"),
+    "nothing for runs": (f"{MINE}/0.parquet", b"", "not a whole Parquet file"),
+    "a csv for times": (f"{MINE}/0.times.parquet", b"id,cpu_s\n", "not a whole Parquet file"),
+    "nothing for bounds": ("bounds.parquet", b"", "not a whole Parquet file"),
+    "a csv for problems": ("problems.parquet", b"problem\nacross\n", "not a whole Parquet file"),
+    "runs for bounds": ("bounds.parquet", f"{MINE}/0.times.parquet", "not of the problems that the runs are of"),
+    "times for problems": ("problems.parquet", f"{MINE}/0.times.parquet", "not of the problems that the runs are of"),
+}
+
+
+@pytest.mark.parametrize("fault", MISPLACED)
+def test_a_file_in_the_place_of_another_is_told(chunks, fault):
+    place, content, told = MISPLACED[fault]
+    (chunks / place).write_bytes(content if isinstance(content, bytes) else (chunks / content).read_bytes())
+    with pytest.raises(ValueError, match=told) as found:
+        read(chunks)
+    assert str(found.value) == f"{chunks / place}: {told}; delete it and start again: the workflow reproduces it"
+
+
+@pytest.mark.parametrize("cut", [1, 100])
+@pytest.mark.parametrize("place", [f"{MINE}/1.parquet", f"{MINE}/1.times.parquet", "problems.parquet", "bounds.parquet"])
+def test_a_file_that_was_cut_off_is_told(chunks, place, cut):
+    (chunks / place).write_bytes((chunks / place).read_bytes()[:-cut])
+    with pytest.raises(ValueError, match=f"{place}: not a whole Parquet file; delete it"):
+        read(chunks)
+
+
+@pytest.mark.parametrize("content", [b"", b" \n", b"PAR1\x15\x04", b"<!doctype html>", b"a,\0\n"])
+def test_what_is_no_csv_is_told(tmp_path, content):
+    (tmp_path / "results").mkdir()
+    table = tmp_path / "results" / "claims.csv"
+    table.write_bytes(b"id,verdict\n")
+    assert not log.damaged([str(table)])
+    table.write_bytes(content)
+    assert log.damaged([str(table)]) == f"{table}: not a csv file; delete it and start again: the workflow reproduces it"
+
+
+def test_a_page_that_was_cut_short_is_not_whole(tmp_path):
+    (tmp_path / "index.html").write_text("<!doctype html>\n<html>\n</html>\n")
+    assert page.is_whole(tmp_path / "index.html")
+    for cut in (2, 12, 31):
+        (tmp_path / "index.html").write_text("<!doctype html>\n<html>\n</html>\n"[:-cut])
+        assert not page.is_whole(tmp_path / "index.html")

@@ -427,7 +427,7 @@ FAULTS = {
         E,
         "[[5, 5, 1]]",
         "[[5, 5, 1], [50, 50, 3]]",
-        "workspaces: pond: circles: circle 1: outside the border",
+        "workspaces: pond: circles: circle 1: lies outside the bounds",
     ),
     "a circle of 1e308": (E, "[[5, 5, 1]]", "[[5, 5, 1e308]]", "workspaces: pond: circles: 0: 2: 1e+308: expected a size"),
     "many conditions": (

@@ -12,21 +12,21 @@ import pytest
 from bezierplan.running import kernel_cache
 
 MODULE = """
-from numba import njit
+from bezierplan.kernels import compiled
 
-@njit(cache=True)
+@compiled
 def inner(x):
     return x + 1
 
-@njit(cache=True)
+@compiled
 def outer(x):
     return inner(x) * 2
 
-@njit(cache=True)
+@compiled
 def constant(x):
     return inner(1) + inner(x)
 
-@njit(cache=True)
+@compiled
 def wrong(x):
     return x + "a"
 """
@@ -34,8 +34,8 @@ def wrong(x):
 START = """
 import os, sys, time
 from pathlib import Path
-import bezierplan
-os.environ["NUMBA_CACHE_DIR"] = "kernels"
+from bezierplan.running import digest
+digest.KERNELS = Path("kernels").resolve()
 import kernels_of_mine as mine
 from bezierplan.running.forks import compile_first
 from numba.core import event
@@ -138,3 +138,56 @@ def test_a_file_system_without_locks(tmp_path, monkeypatch):
     monkeypatch.setattr(fcntl, "flock", refuse)
     with kernel_cache._alone(tmp_path):
         assert kernel_cache._held == [tmp_path]
+
+
+# A kernel of another library, which keeps it beside its source; and what the process has of numba's own before and after a plan.
+FOREIGN = """
+import numba
+@numba.njit(cache=True)
+def twice(x):
+    return 2 * x
+"""
+BESIDE = """
+import os
+from numba.core import caching, config, dispatcher
+def state():
+    classes = (caching.Cache, caching.CacheImpl, caching.IndexDataCacheFile, dispatcher.Dispatcher)
+    variables = {name: value for name, value in os.environ.items() if name.startswith("NUMBA")}
+    return [vars(each).copy() for each in classes], variables, config.CACHE_DIR, config.CACHE_LOCATOR_CLASSES
+before = state()
+import bezierplan
+from bezierplan.__main__ import main
+import foreign
+(room := __import__("pathlib").Path("room.txt")).write_text("....\\n.##.\\n....\\n")
+main(["plan", "room.txt", "--start", "0.5,0.5", "--target", "3.5,2.5"])
+print(foreign.twice(21), foreign.twice._cache.cache_path, sum(foreign.twice.stats.cache_hits.values()), state() == before)
+"""
+
+
+def test_kernels_of_other_libraries_are_left_alone(tmp_path):
+    """They are kept where numba keeps them, by numba's own methods, and no variable of the environment is set."""
+    (tmp_path / "foreign.py").write_text(FOREIGN)
+    environment = os.environ | {"PYTHONPATH": f"{tmp_path}:{os.environ.get('PYTHONPATH', '')}"}
+    for hits in ("0", "1"):
+        done = subprocess.run([sys.executable, "-c", BESIDE], cwd=tmp_path, env=environment, capture_output=True, text=True, check=True)
+        assert done.stdout.splitlines()[-1].split() == ["42", str(tmp_path / "__pycache__"), hits, "True"]
+    assert list((tmp_path / "__pycache__").glob("foreign.twice*.nbc"))
+
+
+def test_kernels_are_compiled_where_none_can_be_kept(tmp_path):
+    (tmp_path / "kernels_of_mine.py").write_text(MODULE)
+    (tmp_path / "a file").touch()
+    code = "from pathlib import Path\nfrom bezierplan.running import digest\ndigest.KERNELS = Path('a file')\n"
+    code += "import kernels_of_mine\nprint(kernels_of_mine.outer(20))"
+    environment = os.environ | {"PYTHONPATH": f"{tmp_path}:{os.environ.get('PYTHONPATH', '')}"}
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=environment, capture_output=True, text=True, check=True)
+    assert done.stdout == "42\n"
+
+
+def test_numba_without_its_compiler_is_told():
+    environment = os.environ | {"NUMBA_DISABLE_JIT": "1"}
+    done = subprocess.run(
+        [sys.executable, "-m", "bezierplan", "check-planner", "prm"], env=environment, capture_output=True, text=True, check=False
+    )
+    assert done.returncode != 0
+    assert done.stderr == "NUMBA_DISABLE_JIT: bezierplan needs compiled code; expected an environment without it\n"

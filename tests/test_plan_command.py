@@ -127,7 +127,7 @@ FAULTS = {
     "seed": ([GAPS, *ENDS, "--seed", "-1"], "--seed: -1; expected a whole number of at least 0"),
     "scenario and ends": ([GAPS, *ENDS, "--scenario", "a.scen:1"], "--scenario: a.scen:1: has a start and a target of its own"),
     "radius": (["a.yaml", *ENDS, "--robot-radius", "-1"], "--robot-radius: -1; expected a number of at least 0"),
-    "scenario": ([GAPS, "--scenario", "a.scen:1"], "--scenario: a.scen:1; expected FILE:NUMBER"),
+    "scenario": ([GAPS, "--scenario", "a.scen:1"], "--scenario: only for a MovingAI grid; .*gaps.geojson is polygons"),
 }
 
 

@@ -1,7 +1,9 @@
 """A study is checked once for each content: what was checked before is only read."""
 
 import contextlib
+import io
 import os
+import pickle
 import shutil
 import subprocess
 import sys
@@ -126,3 +128,43 @@ def test_a_damaged_stamp_counts_as_none(study, checks, length):
 
 def test_a_stamp_knows_what_a_configuration_changes(study):
     assert stamps.stamp_of(study, "settings") not in (stamps.stamp_of(study), stamps.stamp_of(study, "other settings"))
+
+
+class Call:
+    """Writes a file when it comes out of a pickle."""
+
+    def __init__(self, file):
+        self.file = file
+
+    def __reduce__(self):
+        return os.mkdir, (str(self.file),)
+
+
+def stamp_of(study):
+    reading.load([study])
+    (stamp,) = stamps.STAMPS.iterdir()
+    return stamp
+
+
+def test_a_stamp_calls_nothing(study, checks, tmp_path):
+    stamp = stamp_of(study)
+    stamp.write_bytes(pickle.dumps(Call(tmp_path / "called")))
+    reading.load([study])
+    assert checks == ["song2016"] * 2
+    assert not (tmp_path / "called").exists()
+
+
+@pytest.mark.parametrize("name", ["bezierplan.running.digest os.mkdir", "bezierplan.study.stamps remember", "builtins eval", "os mkdir"])
+def test_a_stamp_is_made_of_models_alone(name):
+    with pytest.raises(pickle.UnpicklingError, match="no part of a study"):
+        stamps._Unpickler(io.BytesIO()).find_class(*name.split())
+
+
+@pytest.mark.parametrize("of", ["the folder", "the stamp"])
+def test_a_stamp_that_others_could_have_written_is_not_read(study, checks, of):
+    stamp = stamp_of(study)
+    (stamp if of == "the stamp" else stamp.parent).chmod(0o777)
+    assert stamps.remembered(stamp, study) is None
+    reading.load([study])
+    assert checks == ["song2016"] * 2
+    assert stamps.remembered(stamp, study) is not None

@@ -5,6 +5,7 @@ import importlib
 import os
 import sys
 from functools import partial
+from typing import NoReturn
 
 from bezierplan.running import watchdog
 from bezierplan.schema import words
@@ -23,25 +24,32 @@ COMMANDS = {
 }
 
 
+class _Parser(argparse.ArgumentParser):
+    """A parser that tells what is wrong in one line, without the usage."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(2, f"{self.prog}: {message}; `{self.prog} --help` tells what is expected\n")
+
+
 def main(given: list[str]) -> None:
     """Do what the words of a command line say; a fault ends the process with one line: of input with status 2, of a planner with 1."""
     listed = "\n".join(f"  {name:16}{text}" for name, text in COMMANDS.items())
-    parser = argparse.ArgumentParser(
-        prog="python -m bezierplan", epilog=f"commands:\n{listed}", formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = _Parser(prog="python -m bezierplan", epilog=f"commands:\n{listed}", formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("command", choices=COMMANDS, metavar="COMMAND", help="what to do; `COMMAND --help` tells its arguments")
     name = parser.parse_args(given[:1]).command
-    command = importlib.import_module(f"bezierplan.commands.{name.replace('-', '_')}")
-    own = argparse.ArgumentParser(prog=f"python -m bezierplan {name}", description=COMMANDS[name])
+    own = _Parser(prog=f"python -m bezierplan {name}", description=COMMANDS[name])
     try:
-        command.main(own, given[1:])
-        sys.stdout.flush()
+        importlib.import_module(f"bezierplan.commands.{name.replace('-', '_')}").main(own, given[1:])
+        if sys.stdout:  # which a process without one does not have
+            sys.stdout.flush()
     except BrokenPipeError:  # the reader, such as `head`, has enough; Python flushes once more when it exits
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except watchdog.PlannerFailure as failure:
         sys.exit(str(failure))
     except (ValueError, FileNotFoundError) as fault:
-        print(fault, file=sys.stderr)
+        from bezierplan.schema.checked import Fault
+
+        print(Fault(str(fault)), file=sys.stderr)
         sys.exit(2)
 
 

@@ -1,17 +1,32 @@
-"""Decorators for kernels, the functions that numba compiles: `compiled`, and `allocation_free` for those that create no arrays."""
+"""Decorators for kernels, the functions that numba compiles: `compiled`, `allocation_free` for those that create no arrays, and `inlined`
+for those that are always part of their caller.
+"""
 
 from collections.abc import Callable
 from typing import Any
 
 from numba import njit
+from numba.core import config
 
-# Kept on disk, and without the entry point that numba adds for callers written in C, which takes about a tenth of the time to compile.
-_OPTIONS = {"cache": True, "no_cfunc_wrapper": True}
+from bezierplan.running.kernel_cache import Kernel
+
+# Options of `njit` as numba sets them itself, and without the entry point that it adds for callers written in C, which takes about a tenth
+# of the time to compile.
+_OPTIONS = {"nopython": True, "boundscheck": None, "no_cfunc_wrapper": True}
+
+
+def _kernel(function: Callable[..., Any], **options: Any) -> Callable[..., Any]:
+    """A function with the options of all kernels and some more, kept in this package's own cache."""
+    if config.DISABLE_JIT:
+        raise ValueError("NUMBA_DISABLE_JIT: bezierplan needs compiled code; expected an environment without it")
+    kernel = Kernel(function, targetoptions=_OPTIONS | options)
+    kernel.enable_caching()
+    return kernel
 
 
 def compiled(kernel: Callable[..., Any]) -> Callable[..., Any]:
     """`njit` with the options of all kernels."""
-    return njit(**_OPTIONS)(kernel)
+    return _kernel(kernel)
 
 
 def allocation_free(kernel: Callable[..., Any]) -> Callable[..., Any]:
@@ -21,4 +36,9 @@ def allocation_free(kernel: Callable[..., Any]) -> Callable[..., Any]:
     that takes most of the time, and much of the time to compile them. numba refuses to compile a kernel that creates an array all the same.
     """
     # The flag, which numba documents in `numba.extending.register_jitable`, leaves out its run-time library, which allocates and counts.
-    return njit(**_OPTIONS, _nrt=False)(kernel)
+    return _kernel(kernel, _nrt=False)
+
+
+def inlined(kernel: Callable[..., Any]) -> Callable[..., Any]:
+    """A kernel that is compiled as part of each of its callers, and kept with them."""
+    return njit(inline="always")(kernel)

@@ -16,6 +16,8 @@ INTERPRETER = sys.executable
 # Snakemake puts the path of its interpreter into shell commands unquoted; here the folder may have any name.
 sys.executable = shlex.quote(sys.executable)
 
+from snakemake.iocontainers import Params
+
 from bezierplan.running import effort, forks
 from bezierplan.schema import checked
 from bezierplan.study import alternatives, experiments, jobs, page, reading, targets
@@ -28,6 +30,8 @@ def script(*given):
     starts for one job imports only what that job needs.
     """
     alone = len(workflow.dag_settings.target_jobs) == 1
+    # A script gets the words of a study as they are.
+    given = [targets.unhidden_params(each) if isinstance(each, Params) else each for each in given]
     (in_an_interpreter if alone else FORKS.script)(*given)
 
 
@@ -111,16 +115,34 @@ COMPARED = {key: study.compared().keys() for key, study in STUDIES.items()}
 LISTED = {key: study.tables.keys() - study.compared().keys() for key, study in STUDIES.items()}
 
 
+# What a module that uses this workflow puts before each path of results; it stands in no path that rules write.
+PREFIX = workflow.modifier.path_modifier.prefix or ""
+
+
+def placed(files):
+    """Files that a job reads. Those of a study stay where they are, wherever a module has its results."""
+    if isinstance(files, dict):
+        return {name: placed(each) for name, each in files.items()}
+    if isinstance(files, str):
+        return files if files.startswith("results/") else local(files)
+    return [placed(each) for each in files]
+
+
 def inputs(function):
     """Input files from `targets`, for the wildcards of a job."""
-    return unpack(lambda wildcards: function(STUDIES, **wildcards))
+    return unpack(lambda wildcards: placed(function(STUDIES, **wildcards)))
+
+
+def maps(wildcards):
+    """Map files of an experiment."""
+    return placed(targets.problem_maps(STUDIES, **wildcards))
 
 
 def params(function, *names):
-    """Params from `targets`, for the wildcards of a job."""
+    """Params from `targets`, for the wildcards of a job. Snakemake prints them into its report as they are, so no words in them are markup."""
 
     def param(name, wildcards):
-        return function(STUDIES, **wildcards)[name]
+        return targets.hidden(function(STUDIES, **wildcards)[name])
 
     return {name: partial(param, name) for name in names}
 

@@ -3,7 +3,7 @@
 
 rule worlds:
     input:
-        lambda wildcards: targets.problem_maps(STUDIES, **wildcards),
+        maps,
     output:
         f"{RESULTS}/problems/{{experiment}}.parquet",
     log:

@@ -49,22 +49,29 @@ rule verified:
         "results/{scale}/verified.log",
     threads: 2
     params:
-        **params(page.verified_params, "job", "code"),
+        **params(partial(page.verified_params, root=PREFIX), "job", "code"),
     script:
         "../scripts/verified.py"
+
+
+# A page that was cut short is missing.
+for scale in () if workflow.output_settings.dryrun else experiments.SCALES:
+    made = Path(PREFIX + page.file(scale))
+    if made.is_file() and not page.is_whole(made):
+        made.unlink()
 
 
 rule page:
     input:
         inputs(page.inputs),
     output:
-        # Not part of the report, which prints the params of what it shows without escaping the titles in them.
+        # Not part of the report, which has a page of its own.
         page="results/{scale}/index.html",
     log:
         "results/{scale}/page.log",
     # The last job of a workflow, so the others leave it the cores.
     threads: 2
     params:
-        **params(page.params, "job", "tried", "look", "code"),
+        **params(partial(page.params, root=PREFIX), "job", "tried", "look", "code"),
     script:
         "../scripts/page.py"

@@ -7,6 +7,6 @@ with log.job(snakemake) as output:
 
     from bezierplan.figures.page import job
 
-    folder = Path("results", snakemake.wildcards.scale)
+    folder = Path(snakemake.output.page).parent
     verified = snakemake.input.verified[0]
     job.write(snakemake.params.job, folder, list(snakemake.input.summary), output.page, snakemake.threads, verified)

@@ -1,10 +1,12 @@
 """The results of one experiment, read back for tables and figures."""
 
+from collections.abc import Iterator
 from pathlib import PurePath
 from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
+import pyarrow as pa
 import pyarrow.parquet as parquet
 
 from bezierplan.running import problems as problem_files
@@ -34,18 +36,47 @@ def read(runs: list[str], repeats: int, problems: str, bounds: str) -> Results:
     """The results in chunk files of runs, up to a number of repeats, with the problems and bounds of their experiment.
 
     Chunks always run whole, so a file may hold more repeats than requested. Raises ValueError, naming the run, if a feasible path is
-    shorter than the shortest path: then the checker or the bound is wrong.
+    shorter than the shortest path: then the checker or the bound is wrong; and naming the file, if one is damaged or not in its place.
     """
-    times = _read_tables([str(PurePath(file).with_suffix(".times.parquet")) for file in runs])
-    table = _read_tables(runs).merge(times, on="id", validate="one_to_one")
+    table = pd.concat(_chunks(runs), ignore_index=True)
     table = table[table["repeat"] < repeats].reset_index(drop=True)
-    found = joined(table, problem_files.read(problems), parquet.read_table(bounds).to_pandas())
+    bounded = _table(bounds)
+    for file, known in ((problems, _table(problems)), (bounds, bounded)):
+        if "problem" not in known or not set(table["problem"]) <= set(known["problem"]):
+            raise _misplaced(file, "not of the problems that the runs are of")
+    found = joined(table, problem_files.read(problems), bounded)
     return found._replace(worlds=worlds.read(problems))
 
 
-def _read_tables(files: list[str]) -> pd.DataFrame:
-    """The rows of Parquet files as one table."""
-    return pd.concat([parquet.read_table(file).to_pandas() for file in files], ignore_index=True)
+def _chunks(files: list[str]) -> Iterator[pd.DataFrame]:
+    """The rows of each chunk file with their times. Raises ValueError for a file that is not the one that belongs in its place."""
+    seen: set[str] = set()
+    for file in files:
+        rows, place = _table(file), PurePath(file).parts
+        for column, wanted in zip(("experiment", "method"), place[-3:-1]):
+            others = set(rows[column]) - {wanted} if column in rows else {"no runs"}
+            if others:
+                raise _misplaced(file, f"of {column} {min(map(str, others))}, not {wanted}")
+        if not seen.isdisjoint(rows["id"]) or rows["id"].duplicated().any():
+            raise _misplaced(file, "the runs of another chunk")
+        seen.update(rows["id"])
+        beside = str(PurePath(file).with_suffix(".times.parquet"))
+        times = _table(beside)
+        if "id" not in times or sorted(times["id"]) != sorted(rows["id"]):
+            raise _misplaced(beside, f"not the times of {PurePath(file).name}")
+        yield rows.merge(times, on="id", validate="one_to_one")
+
+
+def _table(file: str) -> pd.DataFrame:
+    """The rows of a Parquet file. Raises ValueError, naming it, for one that is cut off or none."""
+    try:
+        return parquet.read_table(file).to_pandas()
+    except (OSError, pa.ArrowException):
+        raise _misplaced(file, "not a whole Parquet file") from None
+
+
+def _misplaced(file: str, what: str) -> ValueError:
+    return ValueError(f"{file}: {what}; delete it and start again: the workflow reproduces it")
 
 
 def joined(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFrame) -> Results:

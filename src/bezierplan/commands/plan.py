@@ -1,8 +1,9 @@
 """One path on a map: `python -m bezierplan plan MAP --start X,Y --target X,Y`."""
 
-import sys
+import re
+import tempfile
 import time
-from argparse import ArgumentParser, Namespace, RawDescriptionHelpFormatter
+from argparse import Action, ArgumentParser, Namespace, RawDescriptionHelpFormatter
 from pathlib import Path as File
 from types import ModuleType
 from typing import Any
@@ -18,13 +19,31 @@ from bezierplan.running.columns import TAKEN
 from bezierplan.running.loans import lend
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, closest
+from bezierplan.schema.model import is_line
 from bezierplan.workspaces import files
 from bezierplan.workspaces.problem import Path, Problem, Workspace
+from bezierplan.workspaces.text_file import is_count, number
 
 KINDS = {".geojson": "polygons", ".json": "polygons", ".yaml": "ros_map", ".yml": "ros_map", ".map": "moving_ai", ".txt": "grid"}
 """Suffix of a map file -> the kind of workspace that it is read as."""
 
 OUT = (".svg", ".png", ".csv", ".geojson")
+
+APPLIES = {
+    "scenario": ("moving_ai",),
+    "cell": ("grid", "raster"),
+    "rule": ("raster",),
+    "robot_radius": ("ros_map",),
+    "most_pixels": ("ros_map",),
+}
+"""Options that count for some kinds of workspace only: with others they would do nothing."""
+_KIND_NAMES = {
+    "grid": "cells of a text",
+    "moving_ai": "a MovingAI grid",
+    "polygons": "polygons",
+    "raster": "polygons for a planner that needs cells",
+    "ros_map": "a ROS map",
+}
 
 # Cells along the longer side of a map of polygons, for planners that need cells, and the baseline's turning radius as a share of that side.
 _CELLS = 200
@@ -59,12 +78,36 @@ examples:
 """
 
 
+class _Once(Action):
+    """Stores a value; of an option that is given twice, argparse would drop the first without a word."""
+
+    def __call__(self, parser: ArgumentParser, namespace: Namespace, values: Any, option_string: str | None = None) -> None:
+        """Raises Fault for an option that was given before."""
+        seen = vars(namespace).setdefault("seen", set())
+        if self.dest in seen:
+            raise Fault(f"{option_string}: given twice; expected once")
+        seen.add(self.dest)
+        setattr(namespace, self.dest, values)
+
+
+def _joined(words: list[str]) -> list[str]:
+    """Words of a command line, in which coordinates that begin with a minus belong to their option: argparse takes them for another one."""
+    joined: list[str] = []
+    for word in words:
+        if joined and joined[-1] in ("--start", "--target") and re.match(r"-[0-9.]", word):
+            joined[-1] += f"={word}"
+        else:
+            joined.append(word)
+    return joined
+
+
 def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Plan, print, and write the requested files; a fault is reported in one line, with exit status 2."""
+    """Plan, print, and write the requested files. Raises ValueError for wrong input."""
+    parser.register("action", None, _Once)
     parser.formatter_class = RawDescriptionHelpFormatter
     parser.description, parser.epilog = MANUAL.strip(), EXAMPLES.strip()
     parser.add_argument("map", type=File, metavar="MAP", help="a map file")
-    parser.add_argument("--start", metavar="X,Y", help="where the path begins, in the map's unit; --start=-1,2 if it begins with a minus")
+    parser.add_argument("--start", metavar="X,Y", help="where the path begins, in the map's unit")
     parser.add_argument("--target", metavar="X,Y", help="where it ends")
     parser.add_argument("--scenario", metavar="FILE:NUMBER", help="start and target of a MovingAI scenario, numbered from 1")
     chosen = parser.add_mutually_exclusive_group()
@@ -73,26 +116,21 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     parser.add_argument("--settings", default="{}", metavar="'{NAME: VALUE, ...}'", help="settings in place of the planner's own")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="of the random numbers (default: 0)")
     parser.add_argument("--cell", type=float, metavar="SIDE", help=f"side of a cell (default: 1; of polygons the longer side / {_CELLS})")
-    parser.add_argument("--rule", choices=("overlap", "centre"), default="overlap", help="which cells obstacles occupy (default: overlap)")
-    parser.add_argument("--robot-radius", type=float, default=0.0, metavar="R", help="by how much the obstacles of a ROS map grow")
+    parser.add_argument("--rule", choices=("overlap", "centre"), help="which cells obstacles occupy (default: overlap)")
+    parser.add_argument("--robot-radius", type=float, metavar="R", help="by how much the obstacles of a ROS map grow")
     parser.add_argument("--most-pixels", type=int, metavar="N", help="the most pixels of a ROS map's image")
     parser.add_argument("--unit", metavar="NAME", help="the unit of length that is printed (default: m, of grids cell)")
     parser.add_argument(
         "--out", type=File, metavar="FILE", help="the path as a picture (.svg, .png), as points (.csv), or as a .geojson line"
     )
-    given = parser.parse_args(words)
-    try:
-        _plan(given)
-    except (ValueError, FileNotFoundError) as fault:
-        print(fault, file=sys.stderr)
-        sys.exit(2)
+    _plan(parser.parse_args(_joined(words)))
 
 
 def _plan(given: Namespace) -> None:
-    if given.out and given.out.suffix not in OUT:
-        raise Fault(f"--out: {given.out}; expected a file that ends in {', '.join(OUT)}")
-    if given.out and not given.out.parent.is_dir():
-        raise Fault(f"--out: {given.out}: no folder {given.out.parent}; expected one that exists")
+    if given.out:
+        _check_out(given.out)
+    if given.unit is not None and not is_line(given.unit):
+        raise Fault(f"--unit: {given.unit!r}; expected a name of one line")
     if given.seed < 0:
         raise Fault(f"--seed: {given.seed}; expected a whole number of at least 0")
     if given.scenario and (given.start or given.target):
@@ -122,7 +160,29 @@ def _plan(given: Namespace) -> None:
     if given.out and plan.path is None:
         raise Fault(f"--out: {given.out}: not written, {planner} found no path")
     if given.out:
-        _write(given.out, problem, plan.path, check, bound.points)
+        try:
+            _write(given.out, problem, plan.path, check, bound.points)
+        except OSError as error:  # such as a disk that is full by now
+            raise _unwritable(given.out, error) from None
+
+
+def _check_out(out: File) -> None:
+    """Raise Fault unless a file can be written: before planning, which may take long."""
+    if out.suffix.lower() not in OUT:
+        raise Fault(f"--out: {out}; expected a file that ends in {', '.join(OUT)}")
+    if not out.parent.is_dir():
+        raise Fault(f"--out: {out}: no folder {out.parent}; expected one that exists")
+    try:
+        if out.exists():
+            out.open("ab").close()
+        else:
+            tempfile.TemporaryFile(dir=out.parent).close()
+    except OSError as error:
+        raise _unwritable(out, error) from None
+
+
+def _unwritable(out: File, error: OSError) -> Fault:
+    return Fault(f"--out: {out}: cannot be written ({error.strerror or type(error).__name__})")
 
 
 def _answer(module: ModuleType, problem: Problem, planner: str, settings: dict[str, Any], seed: int) -> tuple[Plan, float]:
@@ -232,23 +292,24 @@ def _check_settings(planner: str, settings: dict[str, Any]) -> None:
 
 def _problem(given: Namespace, planner: str) -> Problem:
     """The map with start and target; as a grid if the planner needs cells."""
-    if given.map.suffix not in KINDS:
+    kind = KINDS.get(given.map.suffix.lower())
+    if not kind:
         raise Fault(f"{given.map}: unknown kind of map; expected a file that ends in {', '.join(KINDS)}")
-    kind = KINDS[given.map.suffix]
+    _check_numbers(given)
     served = getattr(planner_module(planner), "workspaces", None)
     described = {"kind": kind, "file": given.map.name, "unit": given.unit or ("m" if kind in ("polygons", "ros_map") else "cell")}
-    if kind == "polygons" and served is not None and kind not in served:
-        x_low, x_high, y_low, y_high = files.load(described, given.map.parent).bounds
+    drawn = kind == "polygons" and served is not None and kind not in served
+    _check_options(given, "raster" if drawn else kind)
+    if drawn:
+        x_low, x_high, y_low, y_high = _load(described, given.map).bounds
         cell = max(x_high - x_low, y_high - y_low) / _CELLS if given.cell is None else given.cell
-        described |= {"kind": "raster", "cell": _side(cell), "rule": given.rule}
+        described |= {"kind": "raster", "cell": cell, "rule": given.rule or "overlap"}
     elif kind == "grid":
-        described["cell"] = _side(1.0 if given.cell is None else given.cell)
+        described["cell"] = 1.0 if given.cell is None else given.cell
     elif kind == "ros_map":
-        if not 0 <= given.robot_radius < np.inf:
-            raise Fault(f"--robot-radius: {given.robot_radius:g}; expected a number of at least 0")
-        described |= {"robot_radius": given.robot_radius}
-        described |= {"most_pixels": given.most_pixels} if given.most_pixels is not None else {}
-    workspace = files.load(described, given.map.parent)
+        options = {name: getattr(given, name) for name in ("robot_radius", "most_pixels")}
+        described |= {name: value for name, value in options.items() if value is not None}
+    workspace = _load(described, given.map)
     met = "polygons" if described["kind"] == "polygons" else "grid"
     if served is not None and met not in served:
         raise Fault(f"--planner: {planner}: serves workspaces of kind {', '.join(served)}, and a map is {met}")
@@ -258,36 +319,57 @@ def _problem(given: Namespace, planner: str) -> Problem:
     return problems.build("", ends, workspace)
 
 
-def _side(cell: float) -> float:
-    if not 0 < cell < np.inf:
-        raise Fault(f"--cell: {cell:g}; expected a number above 0")
-    return cell
+def _check_numbers(given: Namespace) -> None:
+    """Raise Fault for a number that is none of a side, a radius or a count of pixels."""
+    if given.cell is not None and not 0 < given.cell < np.inf:
+        raise Fault(f"--cell: {given.cell:g}; expected a number above 0")
+    if given.robot_radius is not None and not 0 <= given.robot_radius < np.inf:
+        raise Fault(f"--robot-radius: {given.robot_radius:g}; expected a number of at least 0")
+    if given.most_pixels is not None and given.most_pixels < 1:
+        raise Fault(f"--most-pixels: {given.most_pixels}; expected a whole number of at least 1")
+
+
+def _check_options(given: Namespace, kind: str) -> None:
+    """Raise Fault for an option that would do nothing on a map of a kind."""
+    for name, kinds in APPLIES.items():
+        if getattr(given, name) is not None and kind not in kinds:
+            wanted = " or ".join(_KIND_NAMES[each] for each in kinds)
+            raise Fault(f"--{name.replace('_', '-')}: only for {wanted}; {given.map} is {_KIND_NAMES[kind]}")
+
+
+def _load(described: dict[str, Any], map_file: File) -> Workspace:
+    """The workspace of a map. Raises Fault, beginning with the map as it was given."""
+    try:
+        return files.load(described, map_file.parent)
+    except ValueError as error:
+        told = str(error).removeprefix("file: ").removeprefix(f"{described['file']}: ")
+        raise Fault(f"{map_file}: {told}") from None
 
 
 def _scenario(given: Namespace, described: dict, workspace: Workspace) -> dict:
     """Start and target of a scenario, as a problem describes them."""
     file, _, number = given.scenario.rpartition(":")
-    if not (file and number.isdecimal()) or described["kind"] != "moving_ai":
-        raise Fault(f"--scenario: {given.scenario}; expected FILE:NUMBER of a .scen file, with a .map file")
+    if not (file and is_count(number)):
+        raise Fault(f"--scenario: {given.scenario}; expected FILE:NUMBER of a .scen file, numbered from 1")
     return problems.scenario(described | {"scenarios": str(File(file).resolve())}, int(number), workspace, given.map.parent)
 
 
 def _point(end: str, text: str | None) -> tuple[float, float]:
     try:
-        x, y = map(float, (text or "").split(","))
+        x, y = (number(word.strip()) for word in (text or "").split(","))
     except ValueError:
         raise Fault(f"--{end}: {text or 'missing'}; expected X,Y, two numbers such as 2.5,10") from None
     return x, y
 
 
 def _write(out: File, problem: Problem, path: Path, check: checker.Check, shortest: np.ndarray) -> None:
-    """The path as a picture, as points with heading and curvature, or as a GeoJSON line."""
+    """The path as a picture, as points with their curvature, or as a GeoJSON line."""
     samples = curves.sample_matrix(path.curve, len(path.points), _SAMPLES) @ path.points
-    if out.suffix == ".csv":
+    if out.suffix.lower() == ".csv":
         kappa, _ = curves.curvature(path, _SAMPLES)
         rows = np.column_stack([samples, np.nan_to_num(kappa)])
         np.savetxt(out, rows, fmt="%.9g", delimiter=",", header="x,y,curvature", comments="")
-    elif out.suffix == ".geojson":
+    elif out.suffix.lower() == ".geojson":
         import json
 
         line = {"type": "LineString", "coordinates": samples.tolist()}

@@ -51,13 +51,13 @@ class Plan(NamedTuple):
 
 
 class Range(NamedTuple):
-    """Limits of a setting's value, both inclusive."""
+    """Limits of a setting's value, both inclusive. Infinity is a value only where it is given as a limit: few planners end with it."""
 
-    low: float = -math.inf
-    high: float = math.inf
+    low: float = -sys.float_info.max
+    high: float = sys.float_info.max
 
     def __str__(self) -> str:
-        if math.isinf(self.high):
+        if self.high >= sys.float_info.max:
             return f"at least {self.low:g}"
         return f"from {self.low:g} to {self.high:g}"
 
@@ -119,5 +119,6 @@ def setting_fault(annotation: Any, value: Any) -> str | None:
     if not isinstance(value, accepted) or (isinstance(value, bool) and annotation is not bool):
         return number
     if annotation is not bool and not limits.low <= value <= limits.high:
-        return f"{number} {limits}"
+        finite = "" if abs(value) < math.inf else "finite "
+        return f"a {finite}{number.removeprefix('a ')}" + ("" if limits == Range() else f" {limits}")
     return None

@@ -136,7 +136,7 @@ def plan(
     c2: Annotated[float, Range(0)],
     inertia: Annotated[float, Range(0)],
     inertia_damping: Annotated[float, Range(0, 1)],
-    velocity_limit: Annotated[float, Range(0)],
+    velocity_limit: Annotated[float, Range(0, math.inf)],
     bound_rule: BoundRule,
     random_numbers: RandomNumbers,
     update: Literal["asynchronous", "synchronous"],

@@ -166,24 +166,12 @@ def content_digest(*files: str) -> str:
     return hashlib.sha256(b"".join(hashlib.sha256(content).digest() for content in contents)).hexdigest()[:16]
 
 
-# numba tries them in this order; the others serve libraries with kernels of their own.
-LOCATORS = "bezierplan.running.kernel_cache.KernelCacheLocator,InTreeCacheLocator,UserWideCacheLocator"
+KERNELS = cache_folder() / "kernels"
+"""Folder of the compiled kernels of all modules."""
 
 
 @cache
 def kernel_folder(module: str, file: str) -> Path:
     """The folder of compiled kernels for the current state of a module, from this package or the user's own."""
     ours = module.split(".")[0] == ROOT and _module(module).file() is not None
-    return Path(os.environ["NUMBA_CACHE_DIR"]) / f"{Path(file).stem}-{source_digest(module if ours else file)}"
-
-
-def point_numba_cache() -> None:
-    """Set the folder for compiled kernels.
-
-    numba reads the variables once, on import; so an earlier import is corrected as well.
-    """
-    given = {"CACHE_DIR": str(cache_folder() / "kernels"), "CACHE_LOCATOR_CLASSES": LOCATORS}
-    for name, value in given.items():
-        os.environ[f"NUMBA_{name}"] = value
-        if "numba" in sys.modules:
-            setattr(sys.modules["numba"].config, name, value)
+    return KERNELS / f"{Path(file).stem}-{source_digest(module if ours else file)}"

@@ -1,65 +1,29 @@
-"""Where numba keeps compiled kernels: one folder for each state of the code from which a kernel is compiled. Of several processes that need
-the same kernel at the same time, one compiles it, and the others wait for it.
+"""Where compiled kernels of this package lie: one folder for each state of the code from which a kernel is compiled. Of several processes
+that need the same kernel at the same time, one compiles it, and the others wait for it.
 
-numba finds the class by the name set in `digest.point_numba_cache`.
+Only functions that `bezierplan.kernels` decorates are kept here. numba's own classes and settings stay as they are, so other libraries in
+the same process keep their compiled functions where they always do.
 """
 
+import contextlib
 import fcntl
+import inspect
 import math
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
+from functools import cache
 from pathlib import Path
 from types import FunctionType
 from typing import Any
 
-from numba.core.caching import Cache, IndexDataCacheFile, UserProvidedCacheLocator
+from numba.core.caching import CompileResultCacheImpl, FunctionCache, IndexDataCacheFile, NullCache, _CacheLocator
 from numba.core.compiler_lock import global_compiler_lock
-from numba.core.dispatcher import Dispatcher
+from numba.core.registry import CPUDispatcher
 from numba.core.types import unliteral
 
 from bezierplan.running import effort
 from bezierplan.running.digest import kernel_folder
-
-
-class KernelCacheLocator(UserProvidedCacheLocator):
-    """Keeps a kernel in a folder named after the digest of its module and of all modules of this package that it imports.
-
-    By itself, numba notices edits only in the kernel's own file, although constants and kernels of other modules are compiled into it; and
-    it recompiles after an edit of a comment.
-    """
-
-    def __init__(self, py_func: FunctionType, py_file: str) -> None:
-        super().__init__(py_func, py_file)
-        self._cache_path = str(kernel_folder(py_func.__module__, py_file))
-        # Nested functions can share a name.
-        self._disambiguator = str(self._lineno) if "<locals>" in py_func.__qualname__ else "0"
-
-    def get_source_stamp(self) -> str:
-        """The source of a cached kernel: the folder's name alone identifies it, wherever the folder lies."""
-        return Path(self._cache_path).name
-
-    def get_disambiguator(self) -> str:
-        """Distinguishes functions with the same name."""
-        return self._disambiguator
-
-
-def _or_else(read: Callable[..., Any], missing: Callable[[], Any]) -> Callable[..., Any]:
-    """A method that reads a file of the cache; a damaged file counts as a missing one, so the kernel is compiled and written again."""
-
-    def read_or_else(self: IndexDataCacheFile, *given: Any) -> Any:
-        try:
-            return read(self, *given)
-        except Exception:  # a damaged pickle raises almost anything
-            return missing()
-
-    return read_or_else
-
-
-# numba ends the process in both cases.
-IndexDataCacheFile._load_index = _or_else(IndexDataCacheFile._load_index, dict)
-IndexDataCacheFile.load = _or_else(IndexDataCacheFile.load, lambda: None)
-
 
 # Seconds between two looks at whether another process still compiles, and how long a process waits that holds a lock itself. A kernel calls
 # kernels of modules that its own imports, so locks are taken in one order; but a kernel can also be given any function as an argument, and
@@ -71,27 +35,108 @@ _held: list[Path] = []
 """Folders in which this process compiles, each for a kernel of the one before."""
 
 
-def compile_once(compiled: Callable[[Dispatcher, Any], Any]) -> Callable[[Dispatcher, Any], Any]:
-    """numba's method that loads a kernel or compiles and keeps it, for one process at a time where it has to compile."""
+class _Locator(_CacheLocator):
+    """Keeps a kernel in a folder named after the digest of its module and of all modules of this package that it imports.
 
-    def compile_alone(self: Dispatcher, signature: Any) -> Any:
+    By itself, numba notices edits only in the kernel's own file, although constants and kernels of other modules are compiled into it; and
+    it recompiles after an edit of a comment.
+    """
+
+    def __init__(self, py_func: FunctionType, folder: Path) -> None:
+        self._py_file = inspect.getfile(py_func)
+        self._folder = folder
+        # Nested functions can share a name.
+        self._disambiguator = str(py_func.__code__.co_firstlineno) if "<locals>" in py_func.__qualname__ else "0"
+
+    def get_cache_path(self) -> str:
+        """The folder."""
+        return str(self._folder)
+
+    def get_source_stamp(self) -> str:
+        """The source of a cached kernel: the folder's name alone identifies it, wherever the folder lies."""
+        return self._folder.name
+
+    def get_disambiguator(self) -> str:
+        """Distinguishes functions with the same name."""
+        return self._disambiguator
+
+
+class _File(IndexDataCacheFile):
+    """A file of the cache of which a damaged one counts as missing, so the kernel is compiled and written again; numba ends the process."""
+
+    def _load_index(self) -> dict:
+        try:
+            return super()._load_index()
+        except Exception:  # a damaged pickle raises almost anything
+            return {}
+
+    def load(self, key: Any) -> Any:
+        try:
+            return super().load(key)
+        except Exception:
+            return None
+
+
+class _Implementation(CompileResultCacheImpl):
+    """How the cache names a kernel's files, for the folder that is given instead of one that numba looks for."""
+
+    def __init__(self, py_func: FunctionType, folder: Path) -> None:
+        self._lineno = py_func.__code__.co_firstlineno
+        self._locator = _Locator(py_func, folder)
+        name = f"{Path(inspect.getfile(py_func)).stem}.{py_func.__qualname__}"
+        self._filename_base = self.get_filename_base(name, "")
+
+
+class KernelCache(FunctionCache):
+    """The compiled forms of one kernel, in the folder of its module."""
+
+    def __init__(self, py_func: FunctionType, folder: Path) -> None:
+        self._name, self._py_func = repr(py_func), py_func
+        self._impl = _Implementation(py_func, folder)
+        self._cache_path = str(folder)
+        self._cache_file = _File(self._cache_path, self._impl.filename_base, folder.name)
+        self.enable()
+
+    def keeps(self, signature: Any, codegen: Any) -> bool:
+        """Whether the kernel is kept for a signature."""
+        return self._index_key(signature, codegen) in self._cache_file._load_index()
+
+
+@cache
+def _can_be_written(folder: Path) -> bool:
+    with contextlib.suppress(OSError):
+        folder.mkdir(parents=True, exist_ok=True)
+        # numba's own test: a folder can have the mode of one that can be written, and be none.
+        import tempfile
+
+        tempfile.TemporaryFile(dir=folder).close()
+        return True
+    return False
+
+
+class Kernel(CPUDispatcher):
+    """A compiled function that is kept in this cache. Where no folder can be written, each process compiles it."""
+
+    def enable_caching(self) -> None:
+        """Keep compiled forms of this kernel."""
+        folder = kernel_folder(self.py_func.__module__, inspect.getfile(self.py_func))
+        if _can_be_written(folder):
+            self._cache = KernelCache(self.py_func, folder)
+
+    def compile(self, sig: Any) -> Any:
+        """Load the kernel, or compile and keep it, for one process at a time where it has to compile."""
         with global_compiler_lock:
-            cache = self._cache
-            ours = isinstance(cache, Cache) and isinstance(cache._impl.locator, KernelCacheLocator)
-            if ours and isinstance(signature, tuple):
+            if isinstance(sig, tuple):
                 # numba would compile a kernel once more for each constant that another kernel passes.
-                signature = tuple(map(unliteral, signature))
-            if not ours or signature in self.overloads or _is_kept(cache, signature, self.targetctx.codegen()):
+                sig = tuple(map(unliteral, sig))
+            if isinstance(self._cache, NullCache):
+                with effort.spending("compiling"):
+                    return super().compile(sig)
+            if sig in self.overloads or self._cache.keeps(sig, self.targetctx.codegen()):
                 with effort.spending("loading kernels"):
-                    return compiled(self, signature)
-            with effort.spending("compiling"), _alone(Path(cache.cache_path)):
-                return compiled(self, signature)
-
-    return compile_alone
-
-
-def _is_kept(cache: Cache, signature: Any, codegen: Any) -> bool:
-    return cache._index_key(signature, codegen) in cache._cache_file._load_index()
+                    return super().compile(sig)
+            with effort.spending("compiling"), _alone(Path(self._cache.cache_path)):
+                return super().compile(sig)
 
 
 @contextmanager
@@ -126,6 +171,3 @@ def _locked(lock: Any) -> bool:
     except OSError:
         return True
     return True
-
-
-Dispatcher.compile = compile_once(Dispatcher.compile)

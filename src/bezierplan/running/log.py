@@ -101,16 +101,29 @@ def full_disk(error: Exception, files: Any) -> str:
 
 
 def damaged(files: Iterable[str]) -> str:
-    """What to do about the first Parquet file that is cut off, or is no table of runs in the place of one; empty if there is none."""
+    """What to do about the first Parquet file that is cut off, or is no table of runs in the place of one, or the first csv file of results
+    that is none; empty if there is none.
+    """
     import pyarrow as pa
     import pyarrow.parquet as parquet
 
     for file in files:
+        if str(file).endswith(".csv") and "results" in Path(file).parts and not _is_text(Path(file)):
+            return f"{file}: not a csv file; delete it and start again: the workflow reproduces it"
         if str(file).endswith(".parquet"):
             try:
                 columns = parquet.read_schema(file).names
             except (OSError, pa.ArrowException):
                 return f"{file}: not a whole Parquet file; delete it and start again: the workflow reproduces it"
-            if "runs" in Path(file).parts and RUNS_COLUMN not in columns:
+            if "runs" in Path(file).parts[-4:] and RUNS_COLUMN not in columns:
                 return f"{file}: not a table of runs; delete it and start again: the workflow reproduces it"
     return ""
+
+
+def _is_text(file: Path) -> bool:
+    """Whether a file begins like a table of text: not empty, nothing binary, and no page."""
+    try:
+        begin = file.read_bytes()[:4096]
+    except OSError:
+        return False
+    return bool(begin.strip()) and b"\0" not in begin and not begin.startswith((b"PAR1", b"<"))

@@ -25,10 +25,16 @@ MOST_NODES = 200_000
 """Values in one YAML file, aliases counted as what they stand for."""
 
 
+LONGEST_MESSAGE, MESSAGE_END = 1000, 300
+"""Characters of the longest message, and how many of its end are shown of a longer one."""
+
+
 class Fault(ValueError):
-    """A problem in a file that the user must fix, in one line: no character from the file can break the line."""
+    """A problem in a file that the user must fix, in one line of bounded length: no character from the file can break the line."""
 
     def __init__(self, text: str) -> None:
+        if len(text) > LONGEST_MESSAGE:
+            text = f"{text[: LONGEST_MESSAGE - MESSAGE_END - 5]} ... {text[-MESSAGE_END:]}"
         super().__init__(plain(text))
 
 
@@ -75,7 +81,7 @@ def text_of(file: Path, place: str) -> str:
             raise Fault(f"{place}: cannot be read (not a regular file)")
         if found.st_size > LONGEST_FILE:
             raise Fault(f"{place}: {found.st_size} bytes; expected at most {LONGEST_FILE}")
-        return file.read_text(encoding="utf-8")
+        return file.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise Fault(f"{place}: cannot be read ({type(error).__name__})") from None
 

@@ -172,13 +172,15 @@ def _is_huge(given: Any) -> bool:
     return isinstance(given, int) and abs(given) >= 10**9
 
 
-def is_line(given: Any, longest: int) -> bool:
+LONGEST_LINE = 600
+"""Characters of a text."""
+
+
+def is_line(given: Any, longest: int = LONGEST_LINE) -> bool:
     """Whether it is one line of printable text that is not blank, with at most so many characters."""
     return isinstance(given, str) and bool(given.strip()) and len(given) <= longest and given.isprintable()
 
 
-LONGEST_LINE = 600
-"""Characters of a text."""
 LONGEST_LABEL, LONGEST_WORD = 80, 30
 """Characters of a text that is printed in a figure or in the head of a table, and of a word in it: lines are broken at blanks."""
 MOST = 1_000_000

@@ -8,10 +8,19 @@ from bezierplan.running.digest import content_digest, versioned_digest
 from bezierplan.study import jobs, targets
 from bezierplan.study.targets import Studies
 
+_END = b"</html>"
+
 
 def file(scale: str) -> str:
     """The page of a scale."""
     return f"results/{scale}/index.html"
+
+
+def is_whole(page_file: Path) -> bool:
+    """Whether a page ends as it should: one that was cut short is as new as its inputs, and would never be made again."""
+    with page_file.open("rb") as content:
+        content.seek(max(0, page_file.stat().st_size - len(_END) - 2))
+        return content.read().strip().endswith(_END)
 
 
 def inputs(given: Studies, scale: str) -> dict[str, list[str]]:
@@ -31,21 +40,25 @@ def verified_inputs(given: Studies, scale: str) -> dict[str, list[str]]:
     return {name: found[name] for name in ("runs", "problems", "traces")}
 
 
-def verified_params(given: Studies, scale: str) -> dict[str, Any]:
-    """Params of the check: `job`, the file of problems and the files of runs of each experiment."""
+def verified_params(given: Studies, scale: str, root: str = "") -> dict[str, Any]:
+    """Params of the check: `job`, the file of problems and the files of runs of each experiment. root: as in `params`."""
     job = []
     for key, names in _artefacts(given, scale).items():
         found = _runs(given, scale, key, names)
-        job += [[problems, [run for run in found["runs"] if _of(run) == Path(problems).stem]] for problems in found["problems"]]
+        for problems in found["problems"]:
+            job.append([root + problems, [root + run for run in found["runs"] if _of(run) == Path(problems).stem]])
     return {"job": job, "code": versioned_digest(str(targets.SCRIPTS / "verified.py"))}
 
 
-def params(given: Studies, scale: str) -> dict[str, Any]:
-    """Params of the page. Alternatives and readings are shown if they have been tried: the page does not ask for them."""
-    tried = {key: _tried(f"results/{scale}/{key}") for key in given}
+def params(given: Studies, scale: str, root: str = "") -> dict[str, Any]:
+    """Params of the page. Alternatives and readings are shown if they have been tried: the page does not ask for them.
+
+    root: what stands before the paths of results, with the slash at its end, in a workflow of which this one is a module.
+    """
+    tried = {key: _tried(f"{root}results/{scale}/{key}") for key in given}
     shown = _artefacts(given, scale)
     return {
-        "job": {"scale": scale, "studies": {key: _study(given, scale, key, names, tried[key]) for key, names in shown.items()}},
+        "job": {"scale": scale, "studies": {key: _study(given, scale, key, names, tried[key], root) for key, names in shown.items()}},
         "tried": content_digest(*(file for files in tried.values() for file in files.values())),
         "look": content_digest(*page.files()),
         "code": versioned_digest(str(targets.SCRIPTS / "page.py")),
@@ -107,9 +120,9 @@ def _add(found: dict[str, list[str]], more: dict[str, list[str]]) -> None:
         files[:] = dict.fromkeys([*files, *more[name]])
 
 
-def _study(given: Studies, scale: str, key: str, made: list[str], tried: dict[str, str]) -> dict[str, Any]:
+def _study(given: Studies, scale: str, key: str, made: list[str], tried: dict[str, str], root: str) -> dict[str, Any]:
     """What the page needs to know of a study beside its results. made: the names of its tables and figures."""
-    study, folder = given[key], f"results/{scale}/{key}"
+    study, folder = given[key], f"{root}results/{scale}/{key}"
     judged = scale != "smoke" and study.claims
     files = {"claims": f"{folder}/claims.csv", "checks": f"{folder}/claim_checks.csv"} if judged else {}
     audit = f"{folder}/audit.csv"
@@ -122,7 +135,7 @@ def _study(given: Studies, scale: str, key: str, made: list[str], tried: dict[st
         "figures": {name: described[name] for name in made if name in study.figures},
         "assumptions": [each.plain() for each in study.assumptions],
         "files": files | (tried if judged else {}),
-        "experiments": _experiments(given, scale, key, made),
+        "experiments": _experiments(given, scale, key, made, root),
     }
 
 
@@ -130,15 +143,15 @@ def _specs(study: Any, names: list[str]) -> dict[str, Any]:
     return {name: study.tables.get(name) or study.figures[name] for name in names}
 
 
-def _experiments(given: Studies, scale: str, key: str, made: list[str]) -> dict[str, dict[str, Any]]:
+def _experiments(given: Studies, scale: str, key: str, made: list[str], root: str) -> dict[str, dict[str, Any]]:
     """The experiments whose runs the page shows: methods other than baselines, repeats, and files."""
     study, found = given[key], _runs(given, scale, key, made)
     experiments = {}
     for problems, bounds in zip(found["problems"], found["bounds"], strict=True):
         name = Path(problems).stem
-        runs, traces = ([each for each in found[kind] if _of(each) == name] for kind in ("runs", "traces"))
+        runs, traces = ([f"{root}{each}" for each in found[kind] if _of(each) == name] for kind in ("runs", "traces"))
         methods = [method for method in study.methods_of(name) if method not in study.baselines]
-        files = {"runs": runs, "problems": problems, "bounds": bounds, "traces": traces}
+        files = {"runs": runs, "problems": f"{root}{problems}", "bounds": f"{root}{bounds}", "traces": traces}
         if runs:
             experiments[name] = {"methods": methods, "repeats": study.experiments[name].repeats[scale]} | files
     return experiments

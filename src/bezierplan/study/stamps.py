@@ -3,12 +3,17 @@ has changed.
 
 Most of a start would otherwise be spent on YAML, and on building every problem of every study. The name of a stamp is a digest of all files
 in the study's folder and of this package, so nothing can be stale.
+
+A stamp is a pickle, from which models come back five times as fast as from JSON through their checks. It is read only if nobody else can
+have written it, and only what a study consists of is made from it: no stamp can call a function.
 """
 
 import contextlib
 import hashlib
+import io
 import os
 import pickle
+import stat
 import sys
 from dataclasses import replace
 from functools import cache
@@ -16,7 +21,8 @@ from pathlib import Path
 
 import pydantic
 
-from bezierplan.running.digest import PACKAGE, cache_folder
+from bezierplan.running.digest import PACKAGE, ROOT, cache_folder
+from bezierplan.schema.model import Model
 from bezierplan.study.definition import Study
 
 STAMPS = cache_folder() / "studies"
@@ -49,12 +55,33 @@ def stamp_of(folder: Path, changed: str = "") -> Path | None:
     return STAMPS / digest.hexdigest()[:32]
 
 
+class _Unpickler(pickle.Unpickler):
+    """Makes models of this package, studies, and plain values."""
+
+    def find_class(self, module: str, name: str) -> type:
+        """The class of a name. Raises UnpicklingError for anything else that a pickle could call."""
+        if (module, name) in (("builtins", "frozenset"), ("builtins", "set"), ("pathlib", "PosixPath"), ("pathlib", "WindowsPath")):
+            return super().find_class(module, name)
+        found = super().find_class(module, name) if module.split(".")[0] == ROOT and "." not in name else None
+        if isinstance(found, type) and issubclass(found, Model | Study) and found.__module__ == module:
+            return found
+        raise pickle.UnpicklingError(f"{module}.{name}: no part of a study")
+
+
+def _is_ours(path: Path) -> bool:
+    """Whether a file or folder belongs to this user, and nobody else can write it."""
+    found = path.lstat()
+    return found.st_uid == os.getuid() and not found.st_mode & (stat.S_IWGRP | stat.S_IWOTH)
+
+
 def remembered(stamp: Path | None, folder: Path) -> Study | None:
-    """The study of a stamp, which now lies in a folder; None if there is none, or the stamp is damaged."""
+    """The study of a stamp, which now lies in a folder; None if there is none, or the stamp is damaged, or others could have written it."""
     try:
-        return replace(pickle.loads(stamp.read_bytes()), folder=folder) if stamp else None
+        if stamp and _is_ours(stamp.parent) and _is_ours(stamp):
+            return replace(_Unpickler(io.BytesIO(stamp.read_bytes())).load(), folder=folder)
     except Exception:  # a damaged pickle raises almost anything
         return None
+    return None
 
 
 def remember(stamp: Path | None, study: Study) -> None:
@@ -62,8 +89,11 @@ def remember(stamp: Path | None, study: Study) -> None:
     if stamp:
         with contextlib.suppress(OSError):
             stamp.parent.mkdir(parents=True, exist_ok=True)
+            # Whatever the user's mask says, others may not write here; in a folder that another user made, nothing is kept.
+            stamp.parent.chmod(0o700)
             part = stamp.with_suffix(f".{os.getpid()}")
             part.write_bytes(pickle.dumps(study))
+            part.chmod(0o600)
             part.replace(stamp)
 
 

@@ -9,6 +9,7 @@ calls, and digests of the content of maps and published numbers. So timestamps o
 
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 from bezierplan.running.digest import PACKAGE, content_digest, versioned_digest
 from bezierplan.study import alternatives, choices, definition, design, jobs
@@ -19,6 +20,31 @@ from bezierplan.study.definition import Study
 Studies = dict[str, Study]
 
 SCRIPTS = PACKAGE.parents[1] / "workflow" / "scripts"
+
+
+_HIDDEN = {ord(sign): chr(0xE000 + ord(sign)) for sign in "<>&"}
+"""Signs of markup -> characters for private use, which no text of a study contains: they cannot be printed."""
+_SHOWN = {ord(hidden): chr(sign) for sign, hidden in _HIDDEN.items()}
+
+
+def hidden(param: Any) -> Any:
+    """A param without signs of markup in its words: Snakemake prints params into the script of its report as they are, and a browser would
+    run what they say.
+    """
+    return _translated(param, _HIDDEN)
+
+
+def unhidden_params(params: Any) -> Any:
+    """Snakemake's params of a job, with the words as they were before `hidden`."""
+    return type(params)(toclone=params, custom_map=lambda param: _translated(param, _SHOWN))
+
+
+def _translated(value: Any, table: dict[int, str]) -> Any:
+    if isinstance(value, str):
+        return value.translate(table)
+    if isinstance(value, dict):
+        return {_translated(key, table): _translated(each, table) for key, each in value.items()}
+    return type(value)(_translated(each, table) for each in value) if isinstance(value, list | tuple) else value
 
 
 def _folder(scale: str, study: str, alternative: str | None = None) -> str:

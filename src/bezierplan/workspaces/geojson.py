@@ -52,18 +52,48 @@ def polygons_from_geojson(text: str, unit: str) -> Polygons:
 
 def _features(text: str) -> list:
     try:
-        features = json.loads(text)["features"]
-    except (ValueError, KeyError, TypeError) as error:
-        raise ValueError(f"not a GeoJSON feature collection ({type(error).__name__}: {error})") from None
+        content = json.loads(text, object_pairs_hook=_object, parse_constant=_no_number)
+    except ValueError as error:
+        raise ValueError(f"not a GeoJSON feature collection ({error})") from None
     except RecursionError:
         raise ValueError("not a GeoJSON feature collection: nested too deeply") from None
-    if not isinstance(features, list):
-        raise ValueError("not a GeoJSON feature collection: features is no list")
-    return features
+    if not isinstance(content, dict) or not isinstance(content.get("features"), list):
+        raise ValueError("not a GeoJSON feature collection: expected an object with a list of features")
+    _check_kind("the file", content, "FeatureCollection")
+    _check_lengths(content)
+    return content["features"]
+
+
+def _object(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    """A JSON object, in which each key may occur once: of two, json would silently drop the first."""
+    content = dict(pairs)
+    if len(content) < len(pairs):
+        names = [name for name, _ in pairs]
+        raise ValueError(f"{next(name for name in names if names.count(name) > 1)!r}: this key is given twice")
+    return content
+
+
+def _no_number(word: str) -> None:
+    raise ValueError(f"{word} is not a coordinate; expected finite numbers")
+
+
+def _check_kind(where: str, content: dict[str, Any], kind: str) -> None:
+    """Raise ValueError unless a GeoJSON object is of a kind, or says none."""
+    if content.get("type", kind) != kind:
+        raise ValueError(f"{where}: type: {str(content['type'])[:60]}; expected {kind}")
+
+
+def _check_lengths(content: dict[str, Any]) -> None:
+    """Raise ValueError if a file says that its coordinates are angles: older GeoJSON can name the system of coordinates."""
+    named = str(content.get("crs", "")).upper().replace("::", ":")
+    if any(name in named for name in ("CRS84", "EPSG:4326", "WGS84", "WGS 84")):
+        raise ValueError("crs: longitudes and latitudes, in degrees; expected x and y as lengths, in the workspace's unit")
 
 
 def _shape(number: int, feature: Any) -> tuple[str, str, Rings] | None:
     """Role, name for messages, and rings of a feature, without their last positions; None for a role that is not part of a workspace."""
+    if isinstance(feature, dict):
+        _check_kind(f"feature {number}", feature, "Feature")
     properties, geometry = (feature.get(key) if isinstance(feature, dict) else None for key in ("properties", "geometry"))
     if not isinstance(properties, dict) or "role" not in properties:
         raise ValueError(f"feature {number}: properties: role: missing; expected border or obstacle")

@@ -9,8 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bezierplan.workspaces import text_file
 from bezierplan.workspaces.arrays import read_only
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.limits import check_numbers
 from bezierplan.workspaces.polygons import Polygons
 
 # A coordinate this close below a grid line, in cells, counts as on it. Control points at cell centres put many samples of a curve exactly
@@ -119,7 +121,8 @@ def from_lines(lines: list[str], cell: float, unit: str) -> Grid:
 def heights_from_lines(lines: list[str], shape: tuple[int, int]) -> np.ndarray:
     """Heights (rows, columns) of a grid of that shape from text: one number per cell, separated by spaces, top row first.
 
-    Raises ValueError, naming the line, for a wrong number of rows or cells and for anything that is not a finite number.
+    Raises ValueError, naming the line, for a wrong number of rows or cells, and for anything that is not a finite number within the
+    limits of coordinates.
     """
     rows, columns = shape
     if len(lines) != rows:
@@ -131,11 +134,10 @@ def heights_from_lines(lines: list[str], shape: tuple[int, int]) -> np.ndarray:
             raise ValueError(f"line {number} has {len(words)} heights; expected {columns}, as many as the map has cells")
         for column, word in enumerate(words):
             try:
-                heights[rows - number, column] = float(word)
+                heights[rows - number, column] = text_file.number(word)
             except ValueError:
-                raise ValueError(f"line {number}: {word!r} is not a height; expected a number") from None
-            if not np.isfinite(heights[rows - number, column]):
-                raise ValueError(f"line {number}: {word!r} is not a height; expected a finite number")
+                raise ValueError(f"line {number}: {word[:40]!r} is not a height; expected a finite number") from None
+        check_numbers(heights[rows - number], f"line {number}")
     return heights
 
 

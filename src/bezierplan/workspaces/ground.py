@@ -12,9 +12,8 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
-from bezierplan.kernels import allocation_free, compiled
+from bezierplan.kernels import allocation_free, compiled, inlined
 from bezierplan.workspaces.grid import Grid
 
 # For a map with more cells than this no table of all edges is made: it would grow with the square of their number.
@@ -74,7 +73,7 @@ def _tables(ground):
     return met, energy
 
 
-@njit(cache=True, inline="always")
+@inlined
 def obstacles_met(ground: Ground, one: int, other: int) -> int:
     """Number of occupied cells that the edge between two cells meets, including the two (meledje, eq. 3: beta)."""
     if ground.met.size:
@@ -91,7 +90,7 @@ def path_met(path: np.ndarray, ground: Ground) -> int:
     return met
 
 
-@njit(cache=True, inline="always")
+@inlined
 def edge_energy(ground: Ground, one: int, other: int) -> float:
     """Cost of the edge from one cell to another: its length plus its climb divided by the friction (meledje, eq. 2: epsilon)."""
     if ground.energy.size:

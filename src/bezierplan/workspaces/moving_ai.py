@@ -11,7 +11,8 @@ from typing import NamedTuple
 import numpy as np
 
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.text_file import read_text
+from bezierplan.workspaces.text_file import is_count, lines_of, read_text
+from bezierplan.workspaces.text_file import number as number_of
 
 FREE, OCCUPIED = ".GS", "@OTW"
 
@@ -28,7 +29,7 @@ class Scenario(NamedTuple):
 
 def read(file: Path, unit: str) -> Grid:
     """The grid of a `.map` file, with cells of side 1. Raises ValueError, naming the line and what is expected."""
-    lines = read_text(file, largest=2 * MOST_CELLS).splitlines()
+    lines = lines_of(read_text(file, largest=2 * MOST_CELLS))
     _, rows, columns = header = [_header(lines, number, key) for number, key in enumerate(("type", "height", "width"), start=1)]
     if header[0] != "octile":
         raise ValueError(f"line 1: type {header[0]}; expected type octile")
@@ -42,19 +43,26 @@ def read(file: Path, unit: str) -> Grid:
     for number, line in enumerate(cells, start=5):
         if len(line) != columns:
             raise ValueError(f"line {number} has {len(line)} cells; expected {columns}, the width")
-        strange = line.strip(FREE + OCCUPIED).strip()
-        if strange and set(line) - set(FREE + OCCUPIED):
+        strange = line.strip(FREE + OCCUPIED)
+        if set(strange) - set(FREE + OCCUPIED):
             raise ValueError(f"line {number}: unknown character {strange[0]!r}; expected one of {FREE}{OCCUPIED}")
-    free = np.frombuffer("".join(cells).encode("ascii", "replace"), dtype=np.uint8).reshape(rows, columns)
+    free = np.frombuffer("".join(cells).encode(), dtype=np.uint8).reshape(rows, columns)
     return Grid(~np.isin(free, np.frombuffer(FREE.encode(), dtype=np.uint8))[::-1], 1.0, unit)
 
 
 def _header(lines: list[str], number: int, key: str) -> int | str:
     words = lines[number - 1].split() if len(lines) >= number else []
-    if len(words) != 2 or words[0] != key or (key != "type" and not (words[1].isdecimal() and int(words[1]) > 0)):
+    if len(words) != 2 or words[0] != key or (key != "type" and not is_count(words[1])):
         found = lines[number - 1][:40] if len(lines) >= number else "the file ends"
         raise ValueError(f"line {number}: {found!r}; expected {key} and {'octile' if key == 'type' else 'a whole number of at least 1'}")
     return words[1] if key == "type" else int(words[1])
+
+
+def _whole(word: str) -> int:
+    """A word as a whole number of at least 0. Raises ValueError."""
+    if word != "0" and not is_count(word):
+        raise ValueError
+    return int(word)
 
 
 def scenario(file: Path, number: int, grid: Grid, name: str) -> Scenario:
@@ -62,7 +70,7 @@ def scenario(file: Path, number: int, grid: Grid, name: str) -> Scenario:
 
     Raises ValueError, naming the line and what is expected, also for scenarios of a different map.
     """
-    lines = read_text(file, largest=2 * MOST_CELLS).splitlines()
+    lines = lines_of(read_text(file, largest=2 * MOST_CELLS))
     if not lines or lines[0].split()[:1] != ["version"]:
         raise ValueError("line 1: expected version 1")
     if not 1 <= number < len(lines):
@@ -71,8 +79,8 @@ def scenario(file: Path, number: int, grid: Grid, name: str) -> Scenario:
     words = lines[number].split()
     try:
         _, home, columns, rows, *ends = words
-        columns, rows, x, y, target_x, target_y = map(int, (columns, rows, *ends[:4]))
-        optimal = float(ends[4])
+        columns, rows, x, y, target_x, target_y = map(_whole, (columns, rows, *ends[:4]))
+        optimal = number_of(ends[4])
     except (ValueError, IndexError):
         raise ValueError(f"{place}: expected bucket, map, width, height, start x, start y, target x, target y, optimal length") from None
     if Path(home).name != name:

@@ -1,14 +1,15 @@
 """Occupancy maps in the format of ROS's map_server: an image and a YAML file that says what its pixels mean.
 
-YAML keys: image (a file next to it), resolution (units per pixel), origin [x, y, yaw] of the lower left pixel's corner, negate (0: dark
-pixels are occupied), occupied_thresh and free_thresh. A pixel is free if its occupancy is below free_thresh, occupied above
-occupied_thresh, and unknown in between; the last two both count as occupied here. The image's first row is the top of the map.
+YAML keys: image (a file beside it, or elsewhere in the folder of the maps), resolution (units per pixel), origin [x, y, yaw] of the lower
+left pixel's corner, negate (0: dark pixels are occupied), occupied_thresh and free_thresh. A pixel is free if its occupancy is below
+free_thresh, occupied above occupied_thresh, and unknown in between; the last two both count as occupied here. The image's first row is the
+top of the map.
 """
 
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from pathlib import Path
+from pathlib import Path, PureWindowsPath
 from typing import Any
 
 import numpy as np
@@ -23,19 +24,25 @@ MOST_PIXELS = 16_000_000
 
 _KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
 _THRESHOLDS = {"occupied_thresh": 0.65, "free_thresh": 0.196}
+_TRUTHS = {"0": False, "1": True, "false": False, "true": True, "no": False, "yes": True, "off": False, "on": True}
+"""What ROS reads as a truth value: YAML 1.1 has more of them than the YAML of this project."""
+
+SMALLEST_YAW = 1e-6
+"""A map that is turned by less, in radians, counts as not turned: over 1,000 m it is a millimetre."""
 
 
-def read(file: Path, unit: str, robot_radius: float = 0.0, most_pixels: int = MOST_PIXELS) -> Grid:
+def read(file: Path, folder: Path, unit: str, robot_radius: float = 0.0, most_pixels: int = MOST_PIXELS) -> Grid:
     """The grid of a map_server YAML file, one cell per pixel.
 
-    robot_radius: in units; cells whose centre is closer than that to the centre of an occupied cell also count as occupied.
+    folder: where the image must lie, also through links. robot_radius: in units; cells whose centre is closer than that to the centre of an
+    occupied cell also count as occupied.
 
     Raises ValueError, naming the key and what is expected.
     """
     content = _content(file)
     resolution = content["resolution"]
     check_thickness(resolution, "resolution:")
-    occupied = _occupied(image_of(file, content), content, most_pixels)
+    occupied = _occupied(image_of(file, folder, content), content, most_pixels)
     if robot_radius > 0 and occupied.any():
         from scipy.ndimage import distance_transform_edt
 
@@ -45,18 +52,23 @@ def read(file: Path, unit: str, robot_radius: float = 0.0, most_pixels: int = MO
     return grid
 
 
-def image_of(file: Path, content: dict[str, Any] | None = None) -> Path:
-    """The image of a map_server YAML file. Raises ValueError if there is none.
+def image_of(file: Path, folder: Path, content: dict[str, Any] | None = None) -> Path:
+    """The image of a map_server YAML file, a regular file in a folder, also through links. Raises ValueError if there is none.
 
     ROS's map_saver writes the path at which it saved the image. On another machine, the image of that name beside the YAML file is meant.
     """
     name = (content or _content(file))["image"]
-    image = file.parent / name
-    if not image.is_file():
-        image = file.parent / Path(name).name
-    if not image.is_file():
-        raise ValueError(f"image: {name}: no such file in {file.parent}; expected the image beside its YAML file")
-    return image
+    for image in (file.parent / name, file.parent / Path(name).name, file.parent / PureWindowsPath(name).name):
+        if _is_file_in(folder, image):
+            return image
+    raise ValueError(f"image: {name}: no such file in {file.parent}; expected the image beside its YAML file, not a link out of there")
+
+
+def _is_file_in(folder: Path, file: Path) -> bool:
+    try:
+        return file.is_file() and file.resolve().is_relative_to(folder.resolve())
+    except (OSError, ValueError):  # a name that no file can have
+        return False
 
 
 def _content(file: Path) -> dict[str, Any]:
@@ -72,12 +84,14 @@ def _content(file: Path) -> dict[str, Any]:
     _expect(0 <= content["occupied_thresh"] <= 1, "occupied_thresh", content["occupied_thresh"], "a number from 0 to 1")
     free = content["free_thresh"]
     _expect(0 <= free <= content["occupied_thresh"], "free_thresh", free, "a number from 0 to occupied_thresh")
-    _expect(content["negate"] in (0, 1), "negate", content["negate"], "0 or 1")
+    negate = _TRUTHS.get(str(content["negate"]).lower())
+    _expect(negate is not None, "negate", content["negate"], "0 or 1")
     _expect(content.get("mode", "trinary") == "trinary", "mode", content.get("mode"), "trinary")
     origin = content.get("origin")
-    _expect(isinstance(origin, list) and len(origin) == 3 and all(map(_is_number, origin)), "origin", origin, "[x, y, yaw]")
-    _expect(origin[2] == 0, "origin", origin, "a yaw of 0: a map that is not turned")
-    return content
+    _expect(isinstance(origin, list) and len(origin) == 3 and all(map(_is_number, origin[:2])), "origin", origin, "[x, y, yaw]")
+    turned = not _is_number(origin[2]) or abs(origin[2]) > SMALLEST_YAW
+    _expect(not turned, "origin", f"yaw {origin[2]}", "a yaw of 0: a map that is not turned")
+    return content | {"negate": negate}
 
 
 def _is_number(value: Any) -> bool:
@@ -97,13 +111,13 @@ def _occupied(file: Path, content: dict[str, Any], most_pixels: int) -> np.ndarr
         try:
             with Image.open(file) as image:
                 columns, rows = image.size
-                if columns * rows > most_pixels:
-                    raise _too_large(columns, rows, most_pixels)
-                light, known = _light(image)
-        except (OSError, SyntaxError) as error:
-            raise ValueError(f"image: {content['image']}: cannot be read as an image ({type(error).__name__})") from None
+                light, known = _light(image) if columns * rows <= most_pixels else (None, None)
         except MemoryError:
             raise ValueError(f"image: {columns:,} x {rows:,} pixels: more than there is memory for; expected a smaller image") from None
+        except Exception as error:  # of a damaged file each format raises another one
+            raise ValueError(f"image: {content['image']}: cannot be read as an image ({type(error).__name__})") from None
+    if light is None:
+        raise _too_large(columns, rows, most_pixels)
     share = light if content["negate"] else 1.0 - light
     return ~((share < content["free_thresh"]) & known)[::-1]
 

@@ -6,9 +6,8 @@ Each changes one inner node of a path in place and keeps the number of nodes.
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numba import njit
 
-from bezierplan.kernels import allocation_free
+from bezierplan.kernels import allocation_free, inlined
 from bezierplan.planners.parts.random_integers import below
 from bezierplan.workspaces.ground import Ground, edge_energy, free_neighbours, obstacles_met, path_met
 
@@ -99,7 +98,7 @@ def _best_neighbour(path, k, ground, rules, neighbours):
     return count
 
 
-@njit(cache=True, inline="always")
+@inlined
 def _cost_through(path, k, cell, ground, penalty):
     """Energy plus penalty of the two edges that node k would have if it were in the given cell."""
     met = obstacles_met(ground, path[k - 1], cell) + obstacles_met(ground, cell, path[k + 1])

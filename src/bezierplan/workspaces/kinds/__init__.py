@@ -24,6 +24,7 @@ from typing import Annotated, Any, ClassVar
 from pydantic import Field, PlainValidator
 from pydantic_core import PydanticCustomError
 
+from bezierplan.schema.checked import Fault
 from bezierplan.schema.model import (
     DEVICES,
     LONGEST_NAME,
@@ -149,8 +150,8 @@ def text(description: dict, key: str, folder: Path) -> str:
 
 @contextmanager
 def naming(file: str) -> Iterator[None]:
-    """Prefix the message of a ValueError with the name of a file, or with a key and the file."""
+    """Prefix the message of a ValueError with the name of a file, or with a key and the file, as one line."""
     try:
         yield
     except ValueError as error:
-        raise ValueError(f"{file}: {error}") from None
+        raise Fault(f"{file}: {error}") from None

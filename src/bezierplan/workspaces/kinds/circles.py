@@ -1,5 +1,6 @@
 """Circles in a rectangle."""
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -35,8 +36,8 @@ def load(description: dict, folder: Path) -> Circles:
         if radius <= 0:
             raise ValueError(f"circles: circle {i}: radius {radius:g}; expected above 0")
         check_thickness(radius, f"circles: circle {i}: radius")
-        if x + radius <= limits[0] or x - radius >= limits[1] or y + radius <= limits[2] or y - radius >= limits[3]:
-            raise ValueError(f"circles: circle {i}: outside the border; expected a circle of which some part is in it")
+        if math.dist((x, y), np.clip((x, y), limits[::2], limits[1::2])) >= radius:
+            raise ValueError(f"circles: circle {i}: lies outside the bounds; expected a circle that reaches into them")
         gaps = np.hypot(*(centres[i + 1 :] - (x, y)).T) - radii[i + 1 :] - radius
         gaps = np.append(gaps, [x - radius - limits[0], limits[1] - x - radius, y - radius - limits[2], limits[3] - y - radius])
         check_gaps(gaps, f"circles: circle {i}")

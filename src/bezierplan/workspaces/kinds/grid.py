@@ -10,6 +10,7 @@ from bezierplan.workspaces import grid
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.kinds import File, Size, Workspace, naming, text
 from bezierplan.workspaces.limits import check_numbers, check_thickness
+from bezierplan.workspaces.text_file import lines_of
 
 
 class Options(Workspace):
@@ -23,12 +24,12 @@ class Options(Workspace):
 def load(description: dict, folder: Path) -> Grid:
     """The cells of a file of . and #, the top row first; optionally with the heights of a file of numbers, likewise."""
     check_thickness(description["cell"], "cell:")
-    lines = text(description, "file", folder).splitlines()
+    lines = lines_of(text(description, "file", folder))
     with naming(description["file"]):
         flat = grid.from_lines(lines, float(description["cell"]), description["unit"])
         check_numbers(np.array(flat.bounds), f"cell: {description['cell']}: the border")
     if "heights" not in description:
         return flat
-    lines = text(description, "heights", folder).splitlines()
+    lines = lines_of(text(description, "heights", folder))
     with naming(description["heights"]):
         return replace(flat, heights=grid.heights_from_lines(lines, flat.occupied.shape))

@@ -24,14 +24,14 @@ class Options(Workspace):
 
 
 def load(description: dict, folder: Path) -> Grid:
-    """The image that a YAML file names, which lies next to it."""
+    """The image that a YAML file names, which lies in the same folder."""
     with naming(description["file"]):
         options = {key: description[key] for key in ("robot_radius", "most_pixels") if key in description}
-        return ros.read(folder / description["file"], description["unit"], **options)
+        return ros.read(folder / description["file"], folder, description["unit"], **options)
 
 
 def sources(description: dict, folder: Path) -> list[Path]:
     """The YAML file and its image. Raises ValueError if it names none."""
     file = folder / description["file"]
     with naming(description["file"]):
-        return [file, ros.image_of(file)]
+        return [file, ros.image_of(file, folder)]

@@ -1,5 +1,6 @@
 """Spheres in a box: three dimensions, which only panels of kind `spheres` show."""
 
+import math
 from pathlib import Path
 
 import numpy as np
@@ -29,4 +30,7 @@ def load(description: dict, folder: Path) -> Spheres:
     check_numbers(table, "spheres")
     for i, radius in enumerate(table[:, 3]):
         check_thickness(radius, f"spheres: sphere {i}: radius")
+    for i, (*centre, radius) in enumerate(table.tolist()):
+        if math.dist(centre, np.clip(centre, bounds[::2], bounds[1::2])) >= radius:
+            raise ValueError(f"spheres: sphere {i}: lies outside the bounds; expected a sphere that reaches into them")
     return Spheres(bounds, table[:, :3], table[:, 3], description["unit"])
