@@ -1,14 +1,18 @@
 """Experiments in worlds that move: a study of a reader's own, equal runs from equal seeds, faults in one line, and replaying a drive."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import pytest
+from matplotlib.figure import Figure
 from PIL import Image, ImageSequence
 
+from bezierplan.analysis import metrics, results, tables
 from bezierplan.commands import replay
 from bezierplan.figures import animation
+from bezierplan.figures.panels import lines
 from bezierplan.running import problems, rides, worlds
 from bezierplan.running.execution import Condition
 from bezierplan.running.simulation.motion_check import Motion
@@ -131,9 +135,10 @@ def test_files_of_problems_keep_the_world(tmp_path):
     worlds.write(made, workspaces, found, file)
     assert worlds.read(file)["across"].workspace(3).occupied[2, 3]
     assert not problems.read(file)["across"].workspace.occupied[2, 3]
-    bounds = rides.bounds_of(made, found).to_pylist()[0]
-    assert bounds["bound"] == 6.0
-    assert 6.0 < bounds["clairvoyant_arrival"] < math.inf
+    bounds = rides.bounds_of(made, found, {}).to_pylist()[0]
+    assert bounds["bound"] == bounds["least_arrival"] == 6.0
+    assert 6.0 < bounds["clairvoyant_arrival"] == bounds["best_arrival"] < math.inf
+    assert rides.bounds_of(made, found, {"across": 6.5}).to_pylist()[0]["best_arrival"] == 6.5
 
 
 @pytest.mark.parametrize(
@@ -183,3 +188,107 @@ def test_columns_of_a_drive_count_what_is_deeper_than_the_tolerance(tmp_path, mo
     monkeypatch.setattr(rides.motion_check, "check", lambda motion, world: verdict)
     row, _ = rides.row(job(study, "drives", "mine", "smoke", 0), Condition("across", {}), 0, ride, made["across"], found["across"])
     assert (row["clearance"], row["collision_steps"]) == (least, steps)
+
+
+def a_row(tmp_path, points, times, arrived=True):
+    """The row of a drive by some points at some times, in the room whose door moves at step 2.5."""
+    study = reading.load([written(tmp_path)])["mystudy"]
+    made, _, found = worlds.build_all(problems_job(study, "drives", "smoke"), study.folder)
+    ride = Ride(Motion(np.array(points), np.array(times)), arrived, 0.0, [Planned(0.0, None, 6.0, 0.0, 0.0, 1)])
+    described = job(study, "drives", "mine", "smoke", 0)
+    return rides.row(described, Condition("across", {}), 0, ride, made["across"], found["across"])[0]
+
+
+# The cell in the middle of the room becomes occupied at step 2.5, when the robot is there.
+THERE = (3.5, 2.5)
+
+
+@pytest.mark.parametrize(
+    ("points", "times", "stands"),
+    [
+        # It drives until it is hit, and stands from then on.
+        ([(0.5, 2.5), THERE, THERE], [0.0, 2.5, 9.0], False),
+        # It stands for the last half of a step before it is hit, and drives on.
+        ([(0.5, 2.5), THERE, THERE, (6.5, 2.5)], [0.0, 2.0, 2.5, 6.0], True),
+        # It is hit between two of its vertices.
+        ([(0.5, 2.5), (6.5, 2.5)], [0.0, 5.0], False),
+        ([(0.5, 2.5), THERE, THERE], [0.0, 2.0, 9.0], True),
+    ],
+)
+def test_a_robot_that_is_hit_was_standing_or_driving_before(points, times, stands, tmp_path):
+    row = a_row(tmp_path, points, times)
+    assert row["collision_at"] == pytest.approx(2.5)
+    assert row["hit_waiting"] is stands
+
+
+def test_the_least_last_plan_is_that_of_the_map_and_the_place_of_the_last_plan(tmp_path):
+    assert a_row(tmp_path, [(0.5, 2.5), (6.5, 2.5)], [0.0, 6.0])["last_optimum"] == pytest.approx(6.0)
+
+
+def drives_of(*rows):
+    """Runs (method, repeat, arrival) in one world, infeasible without an arrival."""
+    table = pd.DataFrame(rows, columns=["method", "repeat", "arrival"])
+    feasible = table["arrival"].notna()
+    same = {"experiment": "drives", "condition": "across", "problem": "across", "length": table["arrival"], "claimed_feasible": feasible}
+    ids = [f"mystudy/drives/across/{method}/{repeat}" for method, repeat in zip(table["method"], table["repeat"])]
+    return table.assign(id=ids, feasible=feasible, **same)
+
+
+def bounds_table(**values):
+    return pd.DataFrame([{"problem": "across", "bound": 6.0, "least_length": 6.0 - 1e-8} | values])
+
+
+@pytest.mark.parametrize(("arrival", "refused"), [(3.0, False), (2.9999, True)])
+def test_no_drive_arrives_before_any_robot_can(arrival, refused):
+    runs = drives_of(("mine", 0, arrival)).assign(length=6.0)
+    bounds = bounds_table(least_arrival=3.0, best_arrival=3.0)
+    if not refused:
+        assert len(results.joined(runs, {}, bounds).runs) == 1
+        return
+    with pytest.raises(ValueError, match=r"across/mine/0 is said to be feasible, but its arrival 2\.9999 lies below the bound 3"):
+        results.joined(runs, {}, bounds)
+
+
+def paired_runs():
+    """Two robots that both arrive in repeat 0 alone, and one that never does."""
+    runs = drives_of(("one", 0, 6.6), ("one", 1, 9.0), ("other", 0, 7.2), ("other", 1, np.nan), ("blind", 0, np.nan), ("blind", 1, np.nan))
+    return results.joined(runs, {}, bounds_table(least_arrival=6.0, best_arrival=6.6, octile_bound=np.nan))
+
+
+def test_delays_are_paired_over_the_worlds_that_all_methods_finish():
+    found = paired_runs()
+    both = results.select(found.runs, {"method": ["one", "other"]})
+    assert metrics.values(both, "paired_gap_arrival", {}).tolist() == pytest.approx([0.0, np.nan, 7.2 / 6.6 - 1, np.nan], nan_ok=True)
+    assert metrics.values(both, "paired_gap_least_arrival", {}).tolist() == pytest.approx([0.1, np.nan, 0.2, np.nan], nan_ok=True)
+    assert metrics.values(found.runs, "paired_gap_arrival", {}).isna().all()
+
+
+def test_an_entry_of_a_table_pairs_the_methods_that_it_names():
+    values = [
+        {"metric": "feasible", "statistic": "share", "label": "share", "decimals": 2},
+        {
+            "metric": "paired_gap_least_arrival",
+            "statistic": "median",
+            "label": "delay",
+            "decimals": 3,
+            "where": {"method": ["one", "other"]},
+        },
+    ]
+    table = tables.pivot(paired_runs(), {"index": ["method"], "columns": ["value"], "values": values}, {})
+    assert table["delay"].to_dict() == {"blind": "", "one": "0.100", "other": "0.200"}
+    assert table["share"].to_dict() == {"blind": "0.00", "one": "1.00", "other": "0.50"}
+    assert table["runs counted: delay"].to_dict() == {"blind": "", "one": "1 of 2", "other": "1 of 2"}
+
+
+@pytest.mark.parametrize("joined", [True, False])
+def test_each_point_shows_the_share_that_arrives(joined):
+    found = paired_runs()
+    runs = found.runs.assign(obstacles=5).pipe(results.select, {"method": ["one", "other"]})
+    panel = {"experiment": "drives", "x": "obstacles", "metric": "paired_gap_arrival", "statistic": "median", "hue": "method"}
+    panel |= {"repeats": [], "shares": True, "joined": joined}
+    options = {name: panel[name] for name in ("x", "metric", "statistic", "hue", "repeats", "shares", "joined")}
+    frame = lines.data(found._replace(runs=runs), **options)
+    axes = Figure().subplots()
+    note = lines.draw(axes, frame, SimpleNamespace(labels={}, unit="m"), panel)
+    assert [text.get_text() for text in axes.texts] == ["100 %", "50 %"]
+    assert note == "median of 1 of 2 runs a point; 50 to 100 % feasible"

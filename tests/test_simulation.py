@@ -7,13 +7,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bezierplan.planners import Plan
+from bezierplan.geometry.region import region
+from bezierplan.planners import Plan, rounded_shortest_path, shortest_path
 from bezierplan.running.simulation import cells, clairvoyant, evasion, hindsight, motion_check
 from bezierplan.running.simulation.circles import comes_near
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.robot import drive
-from bezierplan.running.simulation.ways import way
+from bezierplan.running.simulation.ways import drivable, way
 from bezierplan.workspaces import worlds
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Path, Problem
@@ -205,10 +206,109 @@ def test_what_a_robot_skips_of_its_way_is_out_of_reach(seed):
 def test_a_robot_in_a_cell_that_becomes_occupied_drives_back():
     maps = tuple(from_lines(lines, 1.0, "m") for lines in (["....", "....", "...."], ["....", "..#.", "...."]))
     motion = Motion(np.array([[0.5, 1.5], [2.5, 1.5]]), np.array([0.0, 2.0]))
-    back = cells.way_to_centre(motion, maps[1])
+    back = cells.way_to_start(motion, maps[1], "centre")
     assert back[0].tolist() == [2.5, 1.5]
     assert back[-1].tolist() == [1.5, 1.5]
-    assert cells.way_to_centre(motion, maps[0]).tolist() == [[2.5, 1.5], [2.5, 1.5]]
+    assert cells.way_to_start(motion, maps[0], "centre").tolist() == [[2.5, 1.5], [2.5, 1.5]]
+    # A plan may begin anywhere outside the cell.
+    assert cells.way_to_start(motion, maps[1], "position")[-1] == pytest.approx([2.0, 1.5], abs=0.01)
+    assert cells.way_to_start(motion, maps[0], "position").tolist() == [[2.5, 1.5], [2.5, 1.5]]
+
+
+def around(problem, state):
+    """A planner that goes through the upper row of cells."""
+    points = np.array([problem.start, (problem.start[0], 2.5), (problem.target[0], 2.5), problem.target])
+    length = float(np.hypot(*np.diff(points, axis=0).T).sum())
+    return Plan(Path("polyline", points), length, True, 1, np.array([length]), "exact", {}), state
+
+
+def change_on_the_spot():
+    """A robot that drives straight is in the middle of a cell when that becomes occupied, at step 2, after it drove without a pause."""
+    maps = tuple(from_lines(lines, 1.0, "m") for lines in (["....", "....", "...."], ["....", "..#.", "...."]))
+    world = ChangingCells(maps, np.array([2.0]), 1.0, 30)
+    return world, Problem("across", maps[0], (0.5, 1.5), (3.5, 1.5))
+
+
+def first_straight(problem, state):
+    return (around if problem.workspace.occupied.any() else straight)(problem, state)
+
+
+@pytest.mark.parametrize("start", ["centre", "position"])
+@pytest.mark.parametrize("replan", ["when_blocked", "when_changed", "every_step"])
+@pytest.mark.parametrize("waits", [True, False])
+def test_a_robot_that_a_cell_hits_drives_back_and_arrives(replan, start, waits):
+    world, problem = change_on_the_spot()
+    ride = drive(world, problem, BLIND._replace(replan=replan, start=start, waits=waits), first_straight)
+    assert ride.arrived
+    assert ride.waited == 0
+    back = np.interp(2.5, ride.motion.times, ride.motion.points[:, 0])
+    assert back == pytest.approx(2.0, abs=0.03)
+    assert motion_check.check(ride.motion, world).collision_at == 2.0
+
+
+def test_a_way_out_of_an_occupied_cell_ends_at_its_border():
+    grid = from_lines(["....", "..#.", "...."], 1.0, "m")
+    assert cells.way_out(grid, way(np.array([[2.5, 1.5], [1.5, 1.5], [0.5, 1.5]]))) == pytest.approx(0.5)
+    assert cells.way_out(grid, way(np.array([[0.5, 1.5], [3.5, 1.5]]))) == 0.0
+    # Touching is no way out that is needed.
+    assert cells.way_out(grid, way(np.array([[2.0, 1.5], [3.5, 1.5]]))) == 0.0
+    assert cells.way_out(grid, way(np.array([[2.5, 1.5], [2.6, 1.6]]))) == 0.0
+
+
+@pytest.mark.parametrize(("replan", "replans"), [("never", 0), ("when_blocked", 0), ("when_changed", 2)])
+def test_a_robot_plans_again_when_the_world_changes_beside_its_way(replan, replans):
+    lines = (["....", "....", "...."], ["#...", "....", "...."], ["....", "....", "...."])
+    maps = tuple(from_lines(each, 1.0, "m") for each in lines)
+    world = ChangingCells(maps, np.array([0.8, 2.0]), 1.0, 30)
+    ride = drive(world, Problem("across", maps[0], (0.5, 1.5), (3.5, 1.5)), BLIND._replace(replan=replan, waits=True), straight)
+    assert (ride.arrived, ride.replans) == (True, replans)
+    assert [plan.time for plan in ride.plans[1:]] == [0.8, 2.0][:replans]
+
+
+@pytest.mark.parametrize(("velocity", "replans"), [(0.0, 0), (0.1, 19)])
+def test_circles_that_move_change_the_world_at_every_step(velocity, replans):
+    world = circles((10, 2, 1, velocity, 0))
+    ride = drive(world, across(world), REPLANS._replace(replan="when_changed"), straight)
+    assert (ride.arrived, ride.replans) == (True, replans)
+
+
+def rounded(problem, state):
+    """A planner whose curves touch what they pass."""
+    return rounded_shortest_path.plan(problem, np.random.default_rng(0), turning_radius=1.0, offset=0.0), state
+
+
+@pytest.mark.parametrize("replan", ["never", "when_blocked", "every_step"])
+@pytest.mark.parametrize("planner", [rounded, lambda problem, state: (shortest_path.plan(problem, None), state)])
+def test_a_robot_drives_along_a_plan_that_touches_a_circle(planner, replan):
+    world = circles((10, 10.3, 2, 0, 0))
+    ride = drive(world, across(world), WAITS._replace(replan=replan), planner)
+    assert (ride.arrived, ride.waited) == (True, 0.0)
+    assert math.isnan(motion_check.check(ride.motion, world).collision_at)
+
+
+@pytest.mark.parametrize("replan", ["never", "when_blocked"])
+def test_a_robot_drives_along_a_curve_that_touches_a_cell(replan):
+    grid = from_lines([".........", ".........", "....#....", ".........", "........."], 1.0, "m")
+    world = ChangingCells((grid,), np.empty(0), 1.0, 60)
+    ride = drive(world, Problem("across", grid, (0.5, 2.5), (8.5, 2.5)), BLIND._replace(replan=replan, waits=True), rounded)
+    assert (ride.arrived, ride.waited) == (True, 0.0)
+    assert math.isnan(motion_check.check(ride.motion, world).collision_at)
+
+
+def test_chords_of_a_curve_that_enters_an_obstacle_stay():
+    """Only what touches is cut finer: a curve that enters would be cut without end."""
+    path = Path("bezier", np.array([[0.0, 10.0], [10.0, 12.0], [20.0, 10.0]]))
+    enters, passes = (region(circles((10, 10.5, radius, 0, 0)).obstacles(0)) for radius in (2.0, 0.1))
+    assert len(drivable(path, 0.5, passes)) <= len(drivable(path, 0.5, enters)) < 150
+
+
+def test_the_least_plan_from_a_place_goes_from_centre_to_centre():
+    grid = from_lines(["....", ".##.", "...."], 1.0, "m")
+    motion = Motion(np.array([[0.5, 0.5], [0.5, 1.75]]), np.array([0.0, 1.25]))
+    # To (0.5, 1.5), then past the corner at (1, 2), where all centres lie on one side of the straight way, or through (1.5, 2.5).
+    expected = 0.25 + math.dist((0.5, 1.5), (1.5, 2.5)) + math.dist((1.5, 2.5), (2.5, 2.5)) + 1.0
+    assert cells.least_plan(motion, grid, (3.5, 2.5)) == pytest.approx(expected)
+    assert math.isnan(cells.least_plan(motion, grid, (3.4, 2.5)))
 
 
 def test_the_free_length_of_a_way_ends_at_an_occupied_cell():
@@ -232,6 +332,49 @@ def test_it_waits_or_drives_round_whichever_is_earlier():
     found = clairvoyant.earliest(world, across(world))
     assert 20 < found.arrival < 26
     assert found.length >= clairvoyant.least_way(world, across(world)).length == 20.0
+
+
+def random_world(seed):
+    rng = np.random.default_rng(seed)
+    places, radii = rng.uniform(4, 16, (8, 2)), rng.uniform(0.8, 2.0, (8, 1))
+    return circles(*np.hstack([places, radii, rng.uniform(-0.5, 0.5, (8, 2))]), end=60)
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_a_schedule_found_is_free_and_not_before_the_bound(seed):
+    world = random_world(seed)
+    problem = across(world, start=(0.0, 0.0), target=(20.0, 20.0))
+    found = clairvoyant.earliest(world, problem)
+    assert clairvoyant.reachable(world, problem)
+    search = clairvoyant._search(world, problem)
+    lattice = clairvoyant._on_lattice(*search, world.end, True)
+    on_lattice = lattice[1].sum() + np.hypot(*np.diff(lattice[0], axis=0).T).sum()
+    points, waits = clairvoyant._pulled(*lattice, search.centres, world.radii, np.array(world.bounds), world.pace)
+    legs = np.hypot(*np.diff(points, axis=0).T)
+    times = np.cumsum(np.column_stack([waits[:-1], legs]).ravel())
+    motion = Motion(np.repeat(points, 2, axis=0)[:-1], np.concatenate([[0.0], times]))
+    assert math.isnan(motion_check.check(motion, world).collision_at)
+    assert found.arrival <= times[-1] <= on_lattice
+    assert clairvoyant.least_way(world, problem).length <= found.arrival * (1 + 1e-12)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_no_way_over_two_points_is_much_earlier_than_what_is_found(seed):
+    world = random_world(seed)
+    problem = across(world, start=(0.0, 0.0), target=(20.0, 20.0))
+    rng, found = np.random.default_rng(seed), clairvoyant.earliest(world, problem).arrival
+    for _ in range(1000):
+        middle = np.sort(rng.uniform(0, 20, (2, 2)), axis=0) if rng.random() < 0.5 else rng.uniform(0, 20, (1, 2))
+        points = np.concatenate([[problem.start], middle, [problem.target]])
+        times = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+        if times[-1] < found * 0.999:
+            assert not math.isnan(motion_check.check(Motion(points, times), world).collision_at)
+
+
+def test_beside_a_circle_that_stands_still_it_is_nearly_as_early_as_the_bound():
+    world = circles((10, 10, 2, 0, 0))
+    bound = clairvoyant.least_way(world, across(world)).length
+    assert bound <= clairvoyant.earliest(world, across(world)).arrival < 1.003 * bound
 
 
 def test_a_wall_that_opens_makes_it_wait_and_one_that_closes_makes_it_hurry():

@@ -19,7 +19,8 @@ rule worlds:
 
 rule clairvoyant:
     input:
-        rules.worlds.output,
+        problems=f"{RESULTS}/problems/{{experiment}}.parquet",
+        runs=lambda wildcards: targets.drives(STUDIES, **wildcards),
     output:
         f"{RESULTS}/problems/{{experiment}}.bounds.parquet",
     log:
@@ -28,7 +29,7 @@ rule clairvoyant:
         study=studies_of(MOVING),
     priority: of_bounds
     params:
-        **targets.bounds_params("clairvoyant"),
+        **params(targets.clairvoyant_params, "repeats", "code"),
     script:
         "../scripts/clairvoyant.py"
 

@@ -1,4 +1,4 @@
-"""Compute what a robot could reach that knew the future of its world, for each problem of an experiment."""
+"""Compute for each problem of an experiment what no robot can beat, and the best that any reached, or could knowing the future."""
 
 from bezierplan.running import log
 
@@ -7,5 +7,6 @@ with log.job(snakemake) as output:
 
     from bezierplan.running import problems, rides, worlds
 
-    file = snakemake.input[0]
-    parquet.write_table(rides.bounds_of(problems.read(file), worlds.read(file)), output[0])
+    file = snakemake.input.problems
+    arrivals = rides.first_arrivals(snakemake.input.runs, snakemake.params.repeats)
+    parquet.write_table(rides.bounds_of(problems.read(file), worlds.read(file), arrivals), output[0])

@@ -137,7 +137,7 @@ def collided(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
 
 
 def avoidable_waiting(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Whether (n,) a drive first collides while the robot waits, and could have escaped when it could know."""
+    """Whether (n,) a drive first collides while the robot stands, and could have escaped when it could know."""
     return runs["avoidable"] & runs["hit_waiting"]
 
 
@@ -152,8 +152,24 @@ def warning(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
 
 
 def gap_arrival(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
-    """Time of arrival over the earliest one found with the future known, minus 1 (n,)."""
-    return runs["arrival"] / runs["clairvoyant_arrival"] - 1
+    """Time of arrival over the earliest one of any drive of the experiment and of the search that knows the future, minus 1 (n,)."""
+    return runs["arrival"] / runs["best_arrival"] - 1
+
+
+def gap_least_arrival(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Time of arrival over that before which no robot arrives, minus 1 (n,)."""
+    return runs["arrival"] / runs["least_arrival"] - 1
+
+
+def finished_by_all(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Whether (n,) all methods among the runs have a feasible run in a run's condition and repeat."""
+    arrived = runs["method"].where(runs["feasible"].astype(bool))
+    return arrived.groupby([runs["condition"], runs["repeat"]]).transform("nunique") == runs["method"].nunique()
+
+
+def paired(measure: Callable[..., pd.Series], runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """A measure (n,) of the runs in whose condition and repeat all methods among the runs have a feasible one; NaN of others."""
+    return measure(runs, problems).where(finished_by_all(runs, problems))
 
 
 def gap_best(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:

@@ -36,7 +36,8 @@ def read(runs: list[str], repeats: int, problems: str, bounds: str) -> Results:
     """The results in chunk files of runs, up to a number of repeats, with the problems and bounds of their experiment.
 
     Chunks always run whole, so a file may hold more repeats than requested. Raises ValueError, naming the run, if a feasible path is
-    shorter than the shortest path: then the checker or the bound is wrong; and naming the file, if one is damaged or not in its place.
+    shorter than the shortest path, or a drive arrives before any robot can: then the checker or the bound is wrong; and naming the file, if
+    one is damaged or not in its place.
     """
     table = pd.concat(_chunks(runs), ignore_index=True)
     table = table[table["repeat"] < repeats].reset_index(drop=True)
@@ -83,12 +84,21 @@ def joined(runs: pd.DataFrame, problems: dict[str, Problem], bounds: pd.DataFram
     """Runs with the bounds of their problems, as from `problems.bounds_of`. Raises ValueError as `read` does."""
     bounds = bounds.set_index("problem")
     runs = runs.join(bounds.drop(columns="least_length", errors="ignore"), on="problem")
-    impossible = runs["feasible"] & (runs["length"] < runs["problem"].map(bounds["least_length"]))
+    least = runs["problem"].map(bounds["least_length"])
+    _refuse(runs, runs["length"] < least, "length", "bound")
+    if "least_arrival" in runs and "arrival" in runs:
+        # The allowance of the length, at the pace of the world.
+        _refuse(runs, runs["arrival"] < runs["least_arrival"] * (least / runs["bound"]), "arrival", "least_arrival")
+    return Results(runs, problems, bounds)
+
+
+def _refuse(runs: pd.DataFrame, below: pd.Series, column: str, bound: str) -> None:
+    """Raise ValueError, naming the run, if a feasible one lies below a bound."""
+    impossible = runs["feasible"] & below
     if impossible.any():
         run = runs[impossible].iloc[0]
-        lengths = f"its length {run['length']:.12g} lies below the bound {run['bound']:.12g}"
-        raise ValueError(f"run {run['id']} is said to be feasible, but {lengths}")
-    return Results(runs, problems, bounds)
+        values = f"its {column} {run[column]:.12g} lies below the bound {run[bound]:.12g}"
+        raise ValueError(f"run {run['id']} is said to be feasible, but {values}")
 
 
 def read_all(runs: list[str], repeats: dict[str, int], problems: list[str], bounds: list[str]) -> dict[str, Results]:

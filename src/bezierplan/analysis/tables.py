@@ -54,8 +54,15 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
     runs = select(results.runs, spec.get("where", {})).sort_values("id", ignore_index=True)
     entries = spec["values"]
     described = [metrics.METRICS[entry["metric"]] for entry in entries]
-    wanted = {entry["metric"] for entry in entries} | {metric.gap for metric in described}
+    wanted = {metric.gap for metric in described} | {entry["metric"] for entry, metric in zip(entries, described) if not metric.among_rows}
     measured = {name: _measured(runs, name, results, spec).to_numpy() for name in sorted(wanted)}
+    # What compares methods compares those that the entry's `where` leaves.
+    taken = [
+        _measured(select(runs, entry.get("where", {})), entry["metric"], results, spec).reindex(runs.index).to_numpy()
+        if metric.among_rows
+        else measured[entry["metric"]]
+        for entry, metric in zip(entries, described)
+    ]
     named = {name for metric in described for name in (metric.bound, metric.least) if isinstance(name, str)}
     bounds = {name: runs[name].to_numpy(dtype=float) for name in named}
     feasible, claimed = runs["feasible"].to_numpy(), runs["claimed_feasible"].to_numpy()
@@ -75,8 +82,8 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
             }
             own = place[asked[value][place]]
             cell = {"value": value, "metric": entry["metric"], "decimals": entry.get("decimals"), "asked": len(own)}
-            own = own[~np.isnan(measured[entry["metric"]][own])]  # a run without a value counts nowhere
-            numbers = measured[entry["metric"]][own]
+            own = own[~np.isnan(taken[value][own])]  # a run without a value counts nowhere
+            numbers = taken[value][own]
             # Tuples, because pandas would expand lists of arrays.
             groups = None if units is None else tuple(np.sort(numbers[units[own] == unit]) for unit in np.unique(units[own]))
             for statistic in _statistics(entry):

@@ -85,7 +85,8 @@ def _redriven(described: dict, condition: execution.Condition, repeat: int, stud
     ride = rides.run(described, condition, repeat, problem, from_json(to_json(world)))
     row, _ = rides.row(described, condition, repeat, ride, problem, world)
     named, moving = {condition.problem: problem}, {condition.problem: world}
-    joined = results.joined(pd.DataFrame([row]), named, rides.bounds_of(named, moving).to_pandas())
+    arrivals = {condition.problem: row["arrival"]} if row["feasible"] else {}
+    joined = results.joined(pd.DataFrame([row]), named, rides.bounds_of(named, moving, arrivals).to_pandas())
     return joined._replace(worlds=moving, jobs={described["method"]: described})
 
 

@@ -37,7 +37,19 @@ path_curve, path_points: the path, its control points flat as x0, y0, x1, y1, ..
 """
 
 DRIVE_RESULTS = dict.fromkeys(
-    ("arrival", "steps", "travelled", "first_plan", "last_plan", "replans", "waits", "collision_steps", "known_at", "clearance_least"),
+    (
+        "arrival",
+        "steps",
+        "travelled",
+        "first_plan",
+        "last_plan",
+        "last_optimum",
+        "replans",
+        "waits",
+        "collision_steps",
+        "known_at",
+        "clearance_least",
+    ),
     "number",
 ) | {"hit_waiting": "flag", "avoidable": "flag"}
 
@@ -48,7 +60,17 @@ JOINED = dict.fromkeys(("straight_line", "bound", "least_length", "octile_bound"
 """Columns that are joined to a runs table when it is read: of `problems.bounds_of`, and the times."""
 
 DRIVE_JOINED = dict.fromkeys(
-    ("clairvoyant_arrival", "clairvoyant_length", "replan_mean_s", "replan_95_s", "replan_max_s", "replans_late"), "number"
+    (
+        "least_arrival",
+        "best_arrival",
+        "clairvoyant_arrival",
+        "clairvoyant_length",
+        "replan_mean_s",
+        "replan_95_s",
+        "replan_max_s",
+        "replans_late",
+    ),
+    "number",
 )
 """Columns that are joined to the table of drives: of `rides.bounds_of`, and the times of plans."""
 

@@ -11,8 +11,9 @@ plan plus the length of that plan. And:
     steps            time until the end of the drive, in steps
     travelled        length of the way driven, in units
     first_plan       length of the first plan, in units; last_plan: of the last one
+    last_optimum     least length that a last plan from cell centre to cell centre could have (`cells.least_plan`)
     replans          plans after the first; waits: time spent waiting, in steps
-    collision_steps  steps in which it was in an obstacle; hit_waiting: whether it was waiting when it first collided
+    collision_steps  steps in which it was in an obstacle; hit_waiting: whether it stood when it first collided
     known_at         first step from which on it could know of its first collision; avoidable: whether it could still have escaped then
                      (`simulation.hindsight`)
     clearance_least  least distance to an obstacle, in units, negative inside a circle
@@ -27,18 +28,19 @@ from typing import Any
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.parquet as parquet
 
 from bezierplan.planners import planner_module
 from bezierplan.running import execution, watchdog
 from bezierplan.running import problems as problem_files
 from bezierplan.running.execution import Condition
 from bezierplan.running.loans import lend_once
-from bezierplan.running.simulation import hindsight, motion_check
+from bezierplan.running.simulation import cells, hindsight, motion_check
 from bezierplan.running.simulation.clairvoyant import earliest, least_way
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.robot import Ride, drive
 from bezierplan.workspaces.problem import Path, Problem
-from bezierplan.workspaces.worlds import World, from_json, to_json
+from bezierplan.workspaces.worlds import ChangingCells, World, from_json, to_json
 
 
 def run(job: dict, condition: Condition, repeat: int, problem: Problem, world: World) -> Ride:
@@ -74,7 +76,8 @@ def row(job: dict, condition: Condition, repeat: int, ride: Ride, problem: Probl
     least = float(verdict.clearance.min())
     lengths = [plan.length for plan in ride.plans]
     driven = [float(np.interp(plan.time, times, done)) for plan in ride.plans]
-    leg = int(np.clip(np.searchsorted(times, verdict.collision_at, side="right"), 1, len(times) - 1)) if collided else 0
+    # The leg that leads to the collision: what the robot did before, not what it does once it is hit.
+    leg = int(np.clip(np.searchsorted(times, verdict.collision_at, side="left"), 1, len(times) - 1)) if collided else 0
     known = hindsight.known_at(ride.motion, verdict.collision_at, world, _policy(job)) if collided else math.nan
     moments = np.append(np.arange(0, math.ceil(times[-1])), times[-1])
     # Without regard to what the robot believes: the motion itself leads from start to target.
@@ -100,9 +103,10 @@ def row(job: dict, condition: Condition, repeat: int, ride: Ride, problem: Probl
         "travelled": travelled,
         "first_plan": lengths[0],
         "last_plan": lengths[-1],
+        "last_optimum": _last_optimum(ride, world, problem),
         "replans": ride.replans,
         "waits": float(ride.waited),
-        "collision_steps": int((verdict.clearance < -verdict.tolerance).sum()) if least < 0 else int(collided),
+        "collision_steps": int((verdict.clearance < -motion_check.TOUCHING).sum()) if least < 0 else int(collided),
         "hit_waiting": collided and bool(np.array_equal(points[leg], points[leg - 1])),
         "known_at": known,
         "avoidable": hindsight.avoidable(ride.motion, known, world, problem),
@@ -118,6 +122,14 @@ def row(job: dict, condition: Condition, repeat: int, ride: Ride, problem: Probl
         "plan_points": [plan.path.points.ravel().tolist() if plan.path else [] for plan in ride.plans],
     }
     return found, trace
+
+
+def _last_optimum(ride: Ride, world: World, problem: Problem) -> float:
+    """`cells.least_plan` for the last plan of a drive; nan among circles."""
+    if not isinstance(world, ChangingCells):
+        return math.nan
+    time = ride.plans[-1].time
+    return cells.least_plan(motion_check.between(ride.motion, 0.0, time), world.workspace(time), problem.target)
 
 
 def run_chunk(problems: dict[str, Problem], worlds: dict[str, World], job: dict) -> tuple[pa.Table, pa.Table, pa.Table]:
@@ -167,14 +179,33 @@ def _replan_times(ride: Ride, step_seconds: float) -> dict[str, float]:
     return {"replan_mean_s": seconds.mean(), "replan_95_s": quantile, "replan_max_s": seconds.max(), "replans_late": late}
 
 
-def bounds_of(problems: dict[str, Problem], worlds: dict[str, World]) -> pa.Table:
+def bounds_of(problems: dict[str, Problem], worlds: dict[str, World], arrivals: dict[str, float]) -> pa.Table:
     """One row per problem: straight_line; bound, the length of the shortest way through places that are free at some time, with
-    least_length and bound_path (`problems.bounds_of`); octile_bound, nan; clairvoyant_arrival, in steps, and clairvoyant_length, in units,
-    of the earliest schedule found by a search that knows the future.
+    least_length and bound_path (`problems.bounds_of`); octile_bound, nan. And, in steps and units:
+
+        least_arrival        the bound over the pace: no robot arrives earlier
+        clairvoyant_arrival  of the earliest schedule found by a search that knows the future; clairvoyant_length, of its way
+        best_arrival         the earlier one of that and of the first arrival of a drive (arrivals, by problem; left out if there is none)
     """
     rows = []
     for name, problem in problems.items():
-        schedule = earliest(worlds[name], problem)
-        bound = problem_files.bound_row(name, problem, least_way(worlds[name], problem), math.nan)
-        rows.append(bound | {"clairvoyant_arrival": schedule.arrival, "clairvoyant_length": schedule.length})
+        schedule, least = earliest(worlds[name], problem), least_way(worlds[name], problem)
+        arrival = {
+            "least_arrival": least.length / worlds[name].pace,
+            "clairvoyant_arrival": schedule.arrival,
+            "clairvoyant_length": schedule.length,
+            "best_arrival": min(schedule.arrival, arrivals.get(name, math.inf)),
+        }
+        rows.append(problem_files.bound_row(name, problem, least, math.nan) | arrival)
     return pa.Table.from_pylist(rows)
+
+
+def first_arrivals(files: list[str], repeats: int) -> dict[str, float]:
+    """The first arrival without a collision, in steps, of the drives in some files, up to a number of repeats, by problem."""
+    first: dict[str, float] = {}
+    for file in files:
+        drives = parquet.read_table(file, columns=["problem", "repeat", "feasible", "arrival"]).to_pylist()
+        for each in drives:
+            if each["feasible"] and each["repeat"] < repeats:
+                first[each["problem"]] = min(first.get(each["problem"], math.inf), each["arrival"])
+    return first

@@ -76,8 +76,9 @@ Margins = Annotated[
 class Policy(Model):
     """What a robot does when its world changes."""
 
-    replan: Literal["never", "every_step", "when_blocked"] = Field(
-        description="when the robot plans again: never, at every `every`-th step, or when_blocked, that is when the rest of its way is"
+    replan: Literal["never", "every_step", "when_blocked", "when_changed"] = Field(
+        description="when the robot plans again: never, at every `every`-th step, when_blocked, that is when the rest of its way is, or "
+        "when_changed, that is when the world has changed: cells at some moments, circles that move at every step"
     )
     every: Count = Field(1, description="of every_step: after how many steps, a whole number of at least 1; left out: 1")
     warm: Flag = Field(

@@ -113,6 +113,16 @@ def run_params(given: Studies, scale: str, study: str, experiment: str, method: 
     }
 
 
+def drives(given: Studies, scale: str, study: str, experiment: str) -> list[str]:
+    """All drives of an experiment."""
+    return _chunks(given[study], scale, experiment, given[study].methods_of(experiment))
+
+
+def clairvoyant_params(given: Studies, scale: str, study: str, experiment: str) -> dict:
+    """Params of the job that computes the bounds of problems whose worlds move."""
+    return {"repeats": given[study].experiments[experiment].repeats[scale], "code": _code("clairvoyant")}
+
+
 def moving(given: Studies, moves: bool) -> dict[str, list[str]]:
     """The experiments whose runs are simulated drives, or the others, by study."""
     return {key: [name for name in study.experiments if study.moves(name) == moves] for key, study in given.items()}

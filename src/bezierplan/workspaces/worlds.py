@@ -53,6 +53,10 @@ class MovingCircles:
         field = Circles(self.walls, circles.centres, circles.radii, self.unit)
         return random_field.from_circles(field)
 
+    def obstacles(self, step: int) -> Circles:
+        """What the robot must not enter at a step."""
+        return Circles(self.bounds, self.at(step), self.radii, self.unit)
+
 
 @dataclass(frozen=True)
 class ChangingCells:
@@ -79,6 +83,10 @@ class ChangingCells:
 
     def workspace(self, time: float, margin: float = 0.0) -> Grid:
         """What planners see at a time. Cells have no margin."""
+        return self.maps[self.index(time)]
+
+    def obstacles(self, time: float) -> Grid:
+        """What the robot must not enter at a time."""
         return self.maps[self.index(time)]
 
 

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
 # Where lines do not join points, the groups at one x take this share of the distance to the next.
 _SPREAD = 0.7
 
+# Shares above points take this part of a panel's height.
+_ROOM = 0.15
+
 # At most so many values, evenly spaced, each get a tick.
 _FEW = 5
 
@@ -42,6 +45,7 @@ class Options(TablePanel):
     hue: Column = Field(None, description="a column of the runs table or of the data: a line for each of its values")
     statistic: Literal["mean", "median", "share"] = Field("mean", description="of runs: mean (left out: this), median or share")
     repeats: listed(Repeat) = Field((), description="a list of whole numbers: single runs that are drawn besides")
+    shares: Flag = Field(False, description="of runs: whether each point shows the share of its runs that is feasible, true or false")
     joined: Flag = Field(True, description="whether lines join points, true or false: false where x is a name in numbers, without order")
 
     @model_validator(mode="after")
@@ -59,14 +63,16 @@ def data(
     statistic: Literal["mean", "median", "share"],
     hue: str | None,
     repeats: Sequence[int],
+    shares: bool,
     joined: bool,
 ) -> pd.DataFrame:
     """One row per point; columns: hue (if one is given) and x, both by their own names; part (statistic, repeat or value), value.
 
     For runs: the columns of `summary` for the statistic, and repeat, the number of a single run. For a table: the column `metric`, as is.
 
-    x: a numeric column. hue: a column, with a line for each of its values. repeats: the single runs to draw as well. joined: whether lines
-    join points. Raises ValueError if a single repeat has several runs at one place, and KeyError for an unknown metric or column.
+    x: a numeric column. hue: a column, with a line for each of its values. repeats: the single runs to draw as well. shares: whether points
+    show the share of feasible runs. joined: whether lines join points. Raises ValueError if a single repeat has several runs at one place,
+    and KeyError for an unknown metric or column.
     """
     import pandas as pd
 
@@ -158,9 +164,15 @@ def runs_note(frame: pd.DataFrame, statistic: str, where: str) -> str:
     """The number of runs behind a statistic, from the columns of `summary`, and the share of them that is feasible."""
     fewest, most = frame["runs"].min(), frame["runs"].max()
     share = 100 * frame["feasible_runs"] / frame["runs"]
-    low, high = f"{share.min():.0f}", f"{share.max():.0f}"
-    counted = f"{fewest:g}" if fewest == most else f"{fewest:g} to {most:g}"
-    return f"{statistic} of {counted} runs a {where}; {low if low == high else f'{low} to {high}'} % feasible"
+    counted = _range(fewest, most)
+    if "n" in frame and (frame["n"] < frame["feasible_runs"]).any():
+        counted = f"{_range(frame['n'].min(), frame['n'].max())} of {counted}"
+    return f"{statistic} of {counted} runs a {where}; {_range(round(share.min()), round(share.max()))} % feasible"
+
+
+def _range(low: float, high: float) -> str:
+    """A range of whole numbers, as printed."""
+    return f"{low:g}" if low == high else f"{low:g} to {high:g}"
 
 
 def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
@@ -169,18 +181,26 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     of_runs = "experiment" in panel
     statistic = panel["statistic"] if of_runs else ""
     groups = [None] if hue is None else style.in_order(frame[hue], panel)
+    values = np.unique(frame[x])
+    apart = min(np.diff(values), default=1)
     for number, (group, look) in enumerate(zip(groups, style.lines(groups))):
         own = frame if hue is None else frame[frame[hue] == group]
         label = statistic if hue is None else style.printed(group, hue, scene.labels)
         if of_runs and not panel["joined"]:
-            aside = _SPREAD * ((number + 0.5) / len(groups) - 0.5)
+            aside = _SPREAD * apart * ((number + 0.5) / len(groups) - 0.5)
             _draw_apart(axes, own[own["part"] == "statistic"], x, aside, look | {"label": label})
+            if panel["shares"]:
+                _write_shares(axes, own, x, aside)
         elif of_runs:
             _draw_statistic(axes, own[own["part"] == "statistic"], x, look | {"label": label})
             _draw_repeats(axes, own[own["part"] == "repeat"], x, None if hue is None else look["color"])
+            if panel["shares"]:
+                _write_shares(axes, own, x, 0.0)
         else:
             axes.plot(own[x], own["value"], label=label or None, **_joined(look, len(own)))
-    values = np.unique(frame[x])
+    if of_runs and panel["shares"]:
+        low, high = axes.get_ylim()
+        axes.set_ylim(low, high + _ROOM * (high - low))
     if not panel["joined"] or (len(values) <= _FEW and len(set(np.diff(values))) <= 1):
         axes.set_xticks(values)
     elif (frame[x] % 1 == 0).all():
@@ -202,6 +222,15 @@ def _draw_apart(axes: Axes, frame: pd.DataFrame, x: str, aside: float, look: dic
     places = frame[x] + aside
     axes.vlines(places, frame["low95"], frame["high95"], color=look["color"], linewidth=0.8, zorder=2, label="95 % interval")
     axes.plot(places, frame["value"], zorder=3, **look | {"linestyle": ""})
+
+
+def _write_shares(axes: Axes, frame: pd.DataFrame, x: str, aside: float) -> None:
+    """Above each point, or the end of its interval, the share of its runs that is feasible, in per cent."""
+    own = frame[(frame["part"] == "statistic") & frame["value"].notna()]
+    top = own[["value", "high95"]].max(axis=1)
+    for place, height, feasible, runs in zip(own[x] + aside, top, own["feasible_runs"], own["runs"]):
+        text = {"xytext": (0, 3), "textcoords": "offset points", "ha": "center", "va": "bottom", "rotation": 90, "fontsize": "xx-small"}
+        axes.annotate(f"{100 * feasible / runs:.0f} %", (place, height), zorder=4, **text)
 
 
 def _draw_repeats(axes: Axes, frame: pd.DataFrame, x: str, colour: str | None) -> None:

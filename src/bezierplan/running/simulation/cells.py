@@ -1,35 +1,40 @@
 """A robot among cells that change: from one moment of change to the next along a way, until there is something to decide."""
 
+import itertools
 import math
+from typing import Literal
 
 import numpy as np
 
-from bezierplan.geometry import checker
-from bezierplan.geometry.region import region
+from bezierplan.geometry import checker, shortest_paths
+from bezierplan.geometry.region import blocks, from_origin, region
+from bezierplan.running.simulation import ways
 from bezierplan.running.simulation.circles import ARRIVED, BLOCKED, DUE, ENDED, STOPPED
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.ways import Way
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import ChangingCells
 
 
 def follow(world: ChangingCells, way: Way, time: float, policy: Policy) -> tuple[int, np.ndarray, np.ndarray]:
-    """Follow a way from its beginning, which has just been planned, from a time on, in steps.
+    """Follow a way from its beginning, which has just been planned, from a time on, in steps. If it begins in a cell that has become
+    occupied, the robot first drives out of that.
 
     Returns why it ends, and times (n,) with the lengths of way (n,) reached at them; between them the robot moves uniformly or waits.
     """
-    s, fresh = 0.0, True
+    s, fresh, out = 0.0, True, way_out(world.workspace(time), way)
     times, reached = [time], [s]
     checks = policy.replan == "when_blocked"
     while True:
-        free = free_length(world.workspace(time), way, s) if checks or policy.waits else math.inf
-        if not fresh and policy.replan == "every_step":
+        free = free_length(world.workspace(time), way, max(s, out)) if checks or policy.waits else math.inf
+        if not fresh and policy.replan in ("every_step", "when_changed"):
             return DUE, np.array(times), np.array(reached)
         if not fresh and checks and free < way.length:
             return BLOCKED, np.array(times), np.array(reached)
         fresh = False
-        limit = way.length if free >= way.length or not policy.waits else max(s, free - policy.brake)
+        limit = way.length if free >= way.length or not policy.waits else max(s, out, free - policy.brake)
         following = next_event(world, time, policy)
         arrival = time + (limit - s) / world.pace
         if arrival <= following:
@@ -59,34 +64,71 @@ def next_event(world: ChangingCells, time: float, policy: Policy) -> float:
 def free_length(grid: Grid, way: Way, s: float) -> float:
     """The length of a way, from a length s of it on, at which it first enters an occupied cell; infinite if it does not."""
     points = way.part(s, way.length)
-    collision_at, _ = checker.first_collision(np.stack([points[:-1], points[1:]], axis=1) - np.array(grid.origin), region(grid))
+    obstacles = region(grid)
+    collision_at, _ = checker.first_collision(from_origin(np.stack([points[:-1], points[1:]], axis=1), obstacles), obstacles)
     if math.isinf(collision_at):
         return math.inf
     lengths = np.concatenate([[s], s + np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
     return float(np.interp(collision_at, np.arange(len(lengths)), lengths))
 
 
+def way_out(grid: Grid, way: Way) -> float:
+    """The length of a way after which it first leaves the occupied cells; 0 if it does not begin in one, or does not leave them."""
+    cells = region(grid)
+    if not blocks(cells, tuple(way.points[0])):
+        return 0.0
+    for begin, (one, other) in zip(way.at, itertools.pairwise(way.points)):
+        ends = grid.in_cells(np.array([one, other]))
+        cuts = np.unique(np.concatenate([[0.0, 1.0], *map(_crossings, *ends)]))
+        for enters, leaves in itertools.pairwise(cuts):
+            if not blocks(cells, tuple(one + (enters + leaves) / 2 * (other - one))):
+                return float(begin + enters * math.dist(one, other))
+    return 0.0
+
+
+def _crossings(begin: float, end: float) -> np.ndarray:
+    """The shares of a way from one coordinate to another, in cells, at which it crosses a grid line."""
+    lines = np.arange(math.floor(min(begin, end)) + 1, math.ceil(max(begin, end)))
+    return (lines - begin) / (end - begin) if len(lines) else np.empty(0)
+
+
 # A robot drives back in parts of this length, in units.
 _BACK = 0.01
 
 
-def way_to_centre(motion: Motion, grid: Grid) -> np.ndarray:
-    """Points (n, 2) from where a motion ends to the centre of that cell; if the cell is occupied, back along the motion to a free one."""
+def way_to_start(motion: Motion, grid: Grid, start: Literal["position", "centre"]) -> np.ndarray:
+    """Points (n, 2) from where a motion ends to where a plan begins: there, or at the centre of its cell; if that place is occupied, back
+    along the motion to a free one. Only where the motion ends if there is none.
+    """
     place = motion.points[-1]
-    centre = _centre(grid, place)
-    if centre is not None:
-        return np.array([place, centre])
+    begin = _start(grid, place, start)
+    if begin is not None:
+        return np.array([place, begin])
     back = motion.points[::-1]
     lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(back, axis=0).T))])
     for s in np.arange(_BACK, lengths[-1], _BACK):
         place = np.array([np.interp(s, lengths, back[:, axis]) for axis in range(2)])
-        centre = _centre(grid, place)
-        if centre is not None:
-            return np.concatenate([back[lengths < s], [place, centre]])
+        begin = _start(grid, place, start)
+        if begin is not None:
+            return np.concatenate([back[lengths < s], [place, begin]])
     return motion.points[-1:]
 
 
-def _centre(grid: Grid, place: np.ndarray) -> np.ndarray | None:
-    """The centre of a place's cell, or None if that is occupied."""
+def least_plan(motion: Motion, grid: Grid, target: tuple[float, float]) -> float:
+    """The least length, in units, of a plan from where a motion ends that goes to the centre of the cell there, as `way_to_start` says, and
+    from cell centre to cell centre to the target. Infinite if there is none; nan if the target is no centre, or the map too large.
+    """
+    approach = way_to_start(motion, grid, "centre")
+    try:
+        rest = shortest_paths.centre_path(Problem("rest", grid, tuple(approach[-1].tolist()), target)).length
+    except ValueError:
+        return math.nan
+    return ways.way(approach).length + rest
+
+
+def _start(grid: Grid, place: np.ndarray, start: Literal["position", "centre"]) -> np.ndarray | None:
+    """Where a plan begins for a robot at a place, or None if that is occupied."""
+    if start == "position":
+        return None if blocks(region(grid), tuple(place)) else place
     row, column = grid.cell_of(*place)
     return None if grid.occupied[row, column] else np.array(grid.centre(row * grid.occupied.shape[1] + column))

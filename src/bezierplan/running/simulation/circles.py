@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bezierplan.kernels import allocation_free, compiled
+from bezierplan.running.simulation.motion_check import TOUCHING
 from bezierplan.running.simulation.policy import Policy
 from bezierplan.running.simulation.ways import Way
 from bezierplan.workspaces.worlds import MovingCircles, positions
@@ -19,6 +20,7 @@ class _Rules(NamedTuple):
     """A policy for the kernels."""
 
     every: int
+    plans: bool
     checks: bool
     brakes: bool
     looks_after: bool
@@ -33,13 +35,16 @@ def follow(world: MovingCircles, way: Way, step: int, policy: Policy) -> tuple[i
 
     Returns why it ends, and the lengths of way (steps + 1,) at this and every following step; the last one may be reached before its step.
     """
+    # A circle that moves changes the world at every step. Touching is allowed.
+    changes = policy.replan == "when_changed" and bool(world.velocities.any())
     rules = _Rules(
-        every=policy.every if policy.replan == "every_step" else 0,
+        every=policy.every if policy.replan == "every_step" else int(changes),
+        plans=policy.replan != "never",
         checks=policy.replan == "when_blocked",
         brakes=policy.waits,
         looks_after=policy.sees == "after",
         foresees=policy.knows == "velocities",
-        check_margin=float(policy.check_margin),
+        check_margin=policy.check_margin - TOUCHING,
         brake=float(policy.brake),
         horizon=float(policy.horizon),
     )
@@ -63,8 +68,8 @@ def _follow(points, at, step, circles, pace, end, rules):
                 return DUE, reached[: n + 1]
             if rules.checks and comes_near(points, at, s, min(s + rules.horizon, total), seen, drift, radii, rules.check_margin, pace):
                 return BLOCKED, reached[: n + 1]
-        if rules.brakes and comes_near(points, at, s, min(s + rules.brake, total), seen, drift, radii, 0.0, pace):
-            if rules.checks or rules.every > 0:
+        if rules.brakes and comes_near(points, at, s, min(s + rules.brake, total), seen, drift, radii, -TOUCHING, pace):
+            if rules.plans:
                 return STOPPED, reached[: n + 1]
         else:
             s = min(s + pace, total)

@@ -1,11 +1,14 @@
-"""What a robot could reach that knew the future of its world: the earliest arrival found by a search over safe intervals.
+"""What a robot could reach that knew the future of its world: a bound below every arrival, and the earliest arrival that a search finds.
 
-A place has safe intervals, during which nothing is there; a robot that reaches it in one of them can stay until it ends. So the earliest
-arrival in each interval of each place is all that a search must keep (Phillips and Likhachev, SIPP, ICRA 2011).
+The bound, `least_way`, is the shortest way among what stands still all the time. The search goes over safe intervals. A place has safe
+intervals, during which nothing is there; a robot that reaches it in one of them can stay until it ends. So the earliest arrival in each
+interval of each place is all that a search must keep (Phillips and Likhachev, SIPP, ICRA 2011).
 
-Among circles the places are the points of a lattice, and a straight drive after a wait is tried as well; every schedule found is exactly
-free, but a robot that is not bound to the lattice may be earlier. Among cells the places are start, target and the corners of all maps, and
-drives lead in any direction: where a map only gains obstacles, and once, no robot of any kind is earlier.
+Every schedule found is exactly free, so the search bounds the best arrival from above. Among circles the places are the points of a
+lattice. A place is reached from a neighbour or straight from the neighbour's predecessor (Yakovlev and Andreychuk, AA-SIPP, ICAPS 2017),
+and the way found is pulled taut off the lattice; ways with one bend, and a straight drive after a wait, are tried as well. Another robot
+may still be earlier. Among cells the places are start, target and the corners of all maps, and drives lead in any direction: where a map
+only gains obstacles, and once, no robot of any kind is earlier.
 """
 
 import heapq
@@ -31,7 +34,7 @@ class Schedule(NamedTuple):
 
 
 def least_way(world: World, problem: Problem) -> shortest_paths.Bound:
-    """The shortest way through places that are free at some time: no robot's way is shorter."""
+    """The shortest way through places that are free at some time: no robot's way is shorter, and at its pace no robot arrives earlier."""
     if isinstance(world, ChangingCells):
         always = np.all([each.occupied for each in world.maps], axis=0)
         return shortest_paths.shortest_path(problem._replace(workspace=replace(world.maps[0], occupied=always)))
@@ -46,6 +49,15 @@ def earliest(world: World, problem: Problem) -> Schedule:
     return _among_cells(world, problem) if isinstance(world, ChangingCells) else _among_circles(world, problem)
 
 
+def reachable(world: World, problem: Problem) -> bool:
+    """Whether the search finds a schedule, of any arrival before the world's end."""
+    if isinstance(world, ChangingCells):
+        return math.isfinite(_among_cells(world, problem).arrival)
+    if problem.start == problem.target or len(_on_lattice(*_search(world, problem), world.end, False)[0]):
+        return True
+    return math.isfinite(_straight(world, problem, math.inf))
+
+
 # Circles
 
 
@@ -58,66 +70,98 @@ def _among_circles(world: MovingCircles, problem: Problem) -> Schedule:
     straight = math.dist(problem.start, problem.target)
     if straight == 0:
         return Schedule(0.0, 0.0)
-    found = Schedule(*_on_lattice(*_lattice(world, problem), np.array(problem.start), np.array(problem.target), world.pace, world.end))
+    search = _search(world, problem)
+    found, bounds = Schedule(math.inf, math.inf), np.array(world.bounds, dtype=float)
+    points, waits = _on_lattice(*search, world.end, True)
+    while len(points):
+        points, waits = _pulled(points, waits, search.centres, world.radii, bounds, world.pace)
+        length = float(np.hypot(*np.diff(points, axis=0).T).sum())
+        found = Schedule(float(waits.sum()) + length / world.pace, length)
+        points, waits = _with_one_bend(*search, found.arrival)
+    arrival = _straight(world, problem, found.arrival)
+    return Schedule(arrival, straight) if arrival < found.arrival else found
+
+
+def _straight(world: MovingCircles, problem: Problem, before: float) -> float:
+    """Arrival of the first straight drive after a wait of whole steps that is free and arrives before a time; infinite if there is none."""
+    ends, duration = np.array([problem.start, problem.target]), math.dist(problem.start, problem.target) / world.pace
     for wait in range(world.end):
-        arrival = wait + straight / world.pace
-        if arrival >= found.arrival:
+        arrival = wait + duration
+        if arrival >= before:
             break
-        ends = np.array([problem.start, problem.target])
         points, times = (ends[[0, 0, 1]], [0.0, float(wait), arrival]) if wait else (ends, [0.0, arrival])
         if math.isnan(check(Motion(points, np.array(times)), world).collision_at):
-            return Schedule(arrival, straight)
-    return found
+            return arrival
+    return math.inf
 
 
-def _lattice(world: MovingCircles, problem: Problem) -> tuple:
-    """Origin (2,), counts (2,), centres (steps + 1, n, 2) and radii of a lattice through the start whose straight moves take one step."""
+class _Search(NamedTuple):
+    """A search among circles. origin (2,) and counts (2,): of a lattice through the start whose straight moves take one step. centres:
+    (steps + 2, n, 2), of the circles. radii (n,). start, target: (2,). pace: in units per step.
+    """
+
+    origin: np.ndarray
+    counts: np.ndarray
+    centres: np.ndarray
+    radii: np.ndarray
+    start: np.ndarray
+    target: np.ndarray
+    pace: float
+
+
+def _search(world: MovingCircles, problem: Problem) -> _Search:
     x_low, x_high, y_low, y_high = world.bounds
-    pace = world.pace
-    before = np.floor((np.array(problem.start) - [x_low, y_low]) / pace + 1e-9)
-    after = np.floor(([x_high, y_high] - np.array(problem.start)) / pace + 1e-9)
+    pace, start = world.pace, np.array(problem.start)
+    before = np.floor((start - [x_low, y_low]) / pace + 1e-9)
+    after = np.floor(([x_high, y_high] - start) / pace + 1e-9)
     walls = np.array(world.walls, dtype=float)
     centres = np.array([positions(world.centres, world.velocities, walls, step) for step in range(world.end + 2)])
-    return np.array(problem.start) - before * pace, (before + after + 1).astype(np.int64), centres, world.radii
+    counts = (before + after + 1).astype(np.int64)
+    return _Search(start - before * pace, counts, centres, world.radii, start, np.array(problem.target), pace)
 
 
 @compiled
-def _on_lattice(origin, counts, centres, radii, start, target, pace, end):
-    """Arrival and length of the earliest schedule on the lattice."""
+def _on_lattice(origin, counts, centres, radii, start, target, pace, end, any_angle):
+    """Points (n, 2) of the earliest schedule found with its bends on the lattice, and the waits (n,) at each; none if it found none.
+
+    any_angle: whether a place is reached from its predecessor's predecessor as well.
+    """
     columns, rows = counts
     begins = _safe_intervals(origin, columns, rows, centres, radii, pace, end)
-    # `best` and `lengths` hold what is reached: to fill them before takes longer than the search, which reaches few intervals.
+    # `best` and `parents` hold what is reached: to fill them before takes longer than the search, which reaches few intervals.
     reached = np.zeros(begins.shape, dtype=np.bool_)
-    best, lengths = np.empty(begins.shape), np.empty(begins.shape)
-    node = round((start[1] - origin[1]) / pace) * columns + round((start[0] - origin[0]) / pace)
+    best, parents, since = np.empty(begins.shape), np.empty(begins.shape, dtype=np.int64), np.empty(begins.shape, dtype=np.int64)
+    first_node = round((start[1] - origin[1]) / pace) * columns + round((start[0] - origin[0]) / pace)
     # Where a circle comes during the first step, the robot must leave at once.
-    hurried = node if begins[node, 0] < 0 else -1
-    reached[node, 0], best[node, 0], lengths[node, 0] = True, 0.0, 0.0
-    heap = [(math.hypot(target[0] - start[0], target[1] - start[1]) / pace, 0.0, node, 0)]
+    hurried = begins[first_node, 0] < 0
+    reached[first_node, 0], best[first_node, 0], parents[first_node, 0], since[first_node, 0] = True, 0.0, -1, 0
+    heap = [(math.hypot(target[0] - start[0], target[1] - start[1]) / pace, 0.0, first_node, 0)]
     while len(heap) > 0:
         _, time, node, interval = heapq.heappop(heap)
         if node < 0:
-            node = -1 - node
-            last_x, last_y = origin[0] + node % columns * pace, origin[1] + node // columns * pace
-            return time, lengths[node, interval] + math.hypot(target[0] - last_x, target[1] - last_y)
+            return _traced(time, -1 - node, interval, origin, columns, target, pace, best, parents, since)
         if time > best[node, interval]:
             continue
-        leave = interval
-        while leave < end and begins[node, leave] == interval and not (node == hurried and interval == 0):
-            leave += 1
         x, y = origin[0] + node % columns * pace, origin[1] + node // columns * pace
+        leave = _leave(begins, node, interval, end, hurried and node == first_node)
         home = math.hypot(target[0] - x, target[1] - y)
-        if home < 1.5 * pace:
-            # Here and below, an integer in the place of a float would compile the kernel a second time.
-            depart = _departure(x, y, target[0], target[1], time, float(leave), home / pace, centres, radii)
+        # Here and below, an integer in the place of a float would compile the kernel a second time.
+        if any_angle or home < 1.5 * pace:
+            latest = float(leave) if home < 1.5 * pace else time
+            depart = _departure(x, y, target[0], target[1], time, latest, home / pace, centres, radii)
             if depart < np.inf:
                 heapq.heappush(heap, (depart + home / pace, depart + home / pace, -1 - node, interval))
+        parent, parent_interval = parents[node, interval] if any_angle else -1, since[node, interval]
+        if parent >= 0:
+            parent_x, parent_y = origin[0] + parent % columns * pace, origin[1] + parent // columns * pace
+            parent_leave = _leave(begins, parent, parent_interval, end, hurried and parent == first_node)
         for dx in range(-1, 2):
             for dy in range(-1, 2):
                 column, row = node % columns + dx, node // columns + dy
                 if (dx == 0 and dy == 0) or not (0 <= column < columns and 0 <= row < rows):
                     continue
                 other = row * columns + column
+                other_x, other_y = origin[0] + column * pace, origin[1] + row * pace
                 duration = math.hypot(dx, dy)
                 # Each safe interval of the other place that this one can reach.
                 step = int(time + duration)
@@ -130,19 +174,143 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end):
                     while until < end and begins[other, until] == into:
                         until += 1
                     step = until
-                    first = max(time, into - duration)
                     known = best[other, into] if reached[other, into] else np.inf
-                    if first + duration >= known:
-                        continue
-                    other_x, other_y = origin[0] + column * pace, origin[1] + row * pace
-                    last = min(leave, until - duration)
-                    depart = _departure(x, y, other_x, other_y, first, last, duration, centres, radii)
-                    if depart + duration < known:
-                        reached[other, into], best[other, into] = True, depart + duration
-                        lengths[other, into] = lengths[node, interval] + duration * pace
+                    arrival, before, before_interval = known, node, interval
+                    if parent >= 0:
+                        direct = math.hypot(other_x - parent_x, other_y - parent_y) / pace
+                        first, last = max(best[parent, parent_interval], into - direct), min(parent_leave, until - direct)
+                        if first + direct < arrival:
+                            depart = _departure(parent_x, parent_y, other_x, other_y, first, last, direct, centres, radii)
+                            if depart + direct < arrival:
+                                arrival, before, before_interval = depart + direct, parent, parent_interval
+                    first, last = max(time, into - duration), min(leave, until - duration)
+                    if first + duration < arrival:
+                        depart = _departure(x, y, other_x, other_y, first, last, duration, centres, radii)
+                        if depart + duration < arrival:
+                            arrival, before, before_interval = depart + duration, node, interval
+                    if arrival < known:
+                        reached[other, into], best[other, into] = True, arrival
+                        parents[other, into], since[other, into] = before, before_interval
                         rest = math.hypot(target[0] - other_x, target[1] - other_y) / pace
-                        heapq.heappush(heap, (depart + duration + rest, depart + duration, other, into))
-    return np.inf, np.inf
+                        heapq.heappush(heap, (arrival + rest, arrival, other, into))
+    return np.empty((0, 2)), np.empty(0)
+
+
+@allocation_free
+def _leave(begins, node, interval, end, hurried):
+    """The step at which a place's safe interval ends; 0 if the robot must leave its first one at once."""
+    leave = interval
+    while leave < end and begins[node, leave] == interval and not (hurried and interval == 0):
+        leave += 1
+    return leave
+
+
+@compiled
+def _traced(arrival, node, interval, origin, columns, target, pace, best, parents, since):
+    """Points and waits, as of `_on_lattice`, of the schedule that goes from a place in an interval to the target, from its predecessors."""
+    count, at, during = 2, node, interval
+    while parents[at, during] >= 0:
+        at, during, count = parents[at, during], since[at, during], count + 1
+    points, times = np.empty((count, 2)), np.empty(count)
+    points[count - 1, 0], points[count - 1, 1], times[count - 1] = target[0], target[1], arrival
+    for k in range(count - 2, -1, -1):
+        points[k, 0], points[k, 1] = origin[0] + node % columns * pace, origin[1] + node // columns * pace
+        times[k] = best[node, interval]
+        node, interval = parents[node, interval], since[node, interval]
+    waits = np.zeros(count)
+    for k in range(count - 1):
+        waits[k] = max(times[k + 1] - times[k] - math.hypot(points[k + 1, 0] - points[k, 0], points[k + 1, 1] - points[k, 1]) / pace, 0.0)
+    return points, waits
+
+
+@compiled
+def _with_one_bend(origin, counts, centres, radii, start, target, pace, before):
+    """Points (3, 2) and waits (3,), as of `_on_lattice`, of the earliest schedule with one bend on the lattice and no wait that arrives
+    before a time, in steps; none if there is none. The search misses it where it reaches a place of the way earlier by another one.
+    """
+    columns, rows = counts
+    found, points, waits = before - _EARLIER, np.empty((3, 2)), np.zeros(3)
+    tried = np.empty((3, 2))
+    tried[0, 0], tried[0, 1], tried[2, 0], tried[2, 1] = start[0], start[1], target[0], target[1]
+    for node in range(columns * rows):
+        tried[1, 0], tried[1, 1] = origin[0] + node % columns * pace, origin[1] + node // columns * pace
+        length = math.hypot(tried[1, 0] - start[0], tried[1, 1] - start[1]) + math.hypot(target[0] - tried[1, 0], target[1] - tried[1, 1])
+        if length / pace < found and _arrival(tried, waits, 3, centres, radii, pace) < np.inf:
+            found = length / pace
+            for i in range(3):
+                points[i, 0], points[i, 1] = tried[i, 0], tried[i, 1]
+    if found < before - _EARLIER:
+        return points, waits
+    return points[:0], waits[:0]
+
+
+# A way is pulled taut in shifts from the first to the last length, in paces, in so many directions.
+_FIRST_SHIFT, _LAST_SHIFT = 2.0, 0.005
+_SHIFTS = 16
+
+# A change must make a schedule this much earlier, in steps.
+_EARLIER = 1e-6
+
+
+@compiled
+def _pulled(points, waits, centres, radii, bounds, pace):
+    """Points (m, 2) and waits (m,), as of `_on_lattice`, of a schedule from a free one, with points left out, points shifted and waits cut
+    for as long as that makes it earlier and leaves it free. It changes what it is given. bounds (4,): as in `MovingCircles`.
+    """
+    n = len(points)
+    arrival = _arrival(points, waits, n, centres, radii, pace)
+    tried, tried_waits = np.empty_like(points), np.empty_like(waits)
+    shift = _FIRST_SHIFT * pace
+    while shift >= _LAST_SHIFT * pace:
+        better = False
+        k = 0
+        while k < n - 1:
+            # To leave out the point, to wait less before it is left, and to shift it.
+            for attempt in range(-2, _SHIFTS):
+                if k == 0 and attempt != -1:
+                    continue
+                for i in range(n):
+                    j = i + 1 if attempt == -2 and i >= k else i
+                    if j < n:
+                        tried[i, 0], tried[i, 1], tried_waits[i] = points[j, 0], points[j, 1], waits[j]
+                m = n - 1 if attempt == -2 else n
+                if attempt == -1:
+                    tried_waits[k] = max(waits[k] - shift / pace, 0.0)
+                elif attempt >= 0:
+                    angle = 2.0 * math.pi * attempt / _SHIFTS
+                    tried[k, 0] = min(max(points[k, 0] + shift * math.cos(angle), bounds[0]), bounds[1])
+                    tried[k, 1] = min(max(points[k, 1] + shift * math.sin(angle), bounds[2]), bounds[3])
+                found = _arrival(tried, tried_waits, m, centres, radii, pace)
+                if found < arrival - _EARLIER:
+                    n, arrival, better = m, found, True
+                    for i in range(n):
+                        points[i, 0], points[i, 1], waits[i] = tried[i, 0], tried[i, 1], tried_waits[i]
+                    if attempt == -2:
+                        k -= 1
+                        break
+            k += 1
+        if not better:
+            shift /= 2.0
+    return points[:n], waits[:n]
+
+
+@allocation_free
+def _arrival(points, waits, count, centres, radii, pace):
+    """When a schedule of so many points arrives, in steps; infinite if it collides or is late."""
+    time = 0.0
+    for k in range(count - 1):
+        x, y, next_x, next_y = points[k, 0], points[k, 1], points[k + 1, 0], points[k + 1, 1]
+        if time + waits[k] >= len(centres) - 1:
+            return np.inf
+        if waits[k] > 0.0 and not _is_free(x, y, x, y, time, waits[k], centres, radii):
+            return np.inf
+        time += waits[k]
+        duration = math.hypot(next_x - x, next_y - y) / pace
+        if duration > 0.0:
+            if time + duration >= len(centres) - 1 or not _is_free(x, y, next_x, next_y, time, duration, centres, radii):
+                return np.inf
+            time += duration
+    return time
 
 
 @compiled

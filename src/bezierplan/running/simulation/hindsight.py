@@ -52,8 +52,8 @@ def _met(place: np.ndarray, time: float, world: MovingCircles) -> int:
 
 
 def avoidable(motion: Motion, since: float, world: World, problem: Problem) -> bool:
-    """Whether a robot that knew the future could, from where this one was at a step, have arrived without a collision. True is certain; a
-    way off the lattice of the search can be missed. False for a step that is nan.
+    """Whether a robot that knew the future could, from where this one was at a step, have arrived without a collision. True is certain; the
+    search can miss a way. False for a step that is nan.
     """
     if math.isnan(since):
         return False
@@ -65,4 +65,4 @@ def avoidable(motion: Motion, since: float, world: World, problem: Problem) -> b
         later = replace(world, maps=world.maps[first:], moments=world.moments[first:] - since, end=end)
     else:
         later = replace(world, centres=world.centres + world.velocities * since, end=end)
-    return math.isfinite(clairvoyant.earliest(later, problem._replace(start=place)).arrival)
+    return clairvoyant.reachable(later, problem._replace(start=place))

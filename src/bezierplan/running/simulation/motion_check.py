@@ -15,6 +15,9 @@ from bezierplan.geometry.region import region
 from bezierplan.kernels import allocation_free, compiled
 from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World, positions
 
+TOUCHING = 2 * checker.TOLERANCE
+"""A robot no deeper in an obstacle than this, in units, touches it: so deep can a path be that the checker calls free."""
+
 
 class Motion(NamedTuple):
     """A timed polyline. points: (n, 2), in units. times: (n,) ascending, in steps."""
@@ -44,12 +47,12 @@ def check(motion: Motion, world: World) -> Verdict:
 
 def _among_circles(motion: Motion, world: MovingCircles) -> Verdict:
     walls = np.array(world.walls, dtype=float)
-    found, clearance = _approach(motion.points, motion.times, world.centres, world.velocities, walls, world.radii, checker.TOLERANCE)
+    found, clearance = _approach(motion.points, motion.times, world.centres, world.velocities, walls, world.radii, TOUCHING)
     x_low, x_high, y_low, y_high = world.bounds
     x, y = motion.points.T
     outside = np.max([x_low - x, x - x_high, y_low - y, y - y_high], axis=0)
     # The field is convex, so a way leaves it only at a vertex.
-    left = motion.times[outside > checker.TOLERANCE].min(initial=math.inf)
+    left = motion.times[outside > TOUCHING].min(initial=math.inf)
     collision_at = min(found, left)
     depth = max(-clearance.min(initial=math.inf), outside.max(), 0.0)
     return Verdict(

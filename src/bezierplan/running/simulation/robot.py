@@ -15,10 +15,10 @@ from bezierplan.running.simulation.circles import ARRIVED, STOPPED
 from bezierplan.running.simulation.evasion import refuge
 from bezierplan.running.simulation.motion_check import Motion
 from bezierplan.running.simulation.policy import Policy
-from bezierplan.running.simulation.ways import Way, polyline, way
+from bezierplan.running.simulation.ways import Way, drivable, way
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path, Problem
-from bezierplan.workspaces.worlds import ChangingCells, World
+from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World
 
 Planner = Callable[[Problem, Any], tuple[Plan, Any]]
 """A planner with its settings and random numbers: of a problem and, for a warm start, what it returned second with its last plan."""
@@ -141,28 +141,29 @@ def _plan(
     motion = log.motion()
     approach, evaluations, began = motion.points[-1:], 0, clock.process_time()
     looked = time if isinstance(world, ChangingCells) else round(time) + (policy.sees == "after")
-    if policy.start == "centre":
-        approach = cells.way_to_centre(motion, world.workspace(time))
+    if policy.start == "centre" or isinstance(world, ChangingCells):
+        approach = cells.way_to_start(motion, world.workspace(time), policy.start)
     margins = policy.plan_margins if not isinstance(world, ChangingCells) else (0.0,)
+    obstacles = region(world.obstacles(looked))
     for margin in margins:
         place = tuple(map(float, approach[-1]))
         seen = Problem(problem.name, world.workspace(looked, margin), place, problem.target)
         if place == problem.target:
             return Planned(time, None, 0.0, margin, clock.process_time() - began, 0), way(approach), state
-        if not (_is_free(seen, place) and _is_free(seen, problem.target)):
+        if not (_is_free(world, seen, place) and _is_free(world, seen, problem.target)):
             continue
         plan, found = planner(seen, state)
         evaluations += plan.evaluations
         if plan.path is not None and plan.claimed_feasible:
-            along = way(np.concatenate([approach, polyline(plan.path, policy.spacing)]))
+            along = way(np.concatenate([approach, drivable(plan.path, policy.spacing, obstacles)]))
             return Planned(time, plan.path, along.length, margin, clock.process_time() - began, evaluations), along, found
     return Planned(time, None, math.inf, math.nan, clock.process_time() - began, evaluations), None, state
 
 
-def _is_free(problem: Problem, place: tuple[float, float]) -> bool:
-    """Whether a place is free in the workspace that a planner sees."""
-    grid = problem.workspace
-    if isinstance(grid, Grid):
-        cell = grid.cell_of(*place)
-        return cell is not None and not grid.occupied[cell]
-    return not blocks(region(grid), place)
+def _is_free(world: World, problem: Problem, place: tuple[float, float]) -> bool:
+    """Whether a place is free in the workspace that a planner sees. Where that is drawn as cells, all of the place's cell must be."""
+    seen = problem.workspace
+    if isinstance(world, MovingCircles) and isinstance(seen, Grid):
+        cell = seen.cell_of(*place)
+        return cell is not None and not seen.occupied[cell]
+    return not blocks(region(seen), place)

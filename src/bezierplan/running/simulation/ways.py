@@ -1,12 +1,17 @@
 """Ways that a robot follows: polylines with arc length."""
 
+import itertools
 import math
 from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.geometry import curves
+from bezierplan.geometry import checker, curves
+from bezierplan.geometry.region import Region, blocks, from_origin
 from bezierplan.workspaces.problem import Path
+
+# A chord this short, in units, is not halved: beside a circle of radius 2 it is as deep in it as the checker calls free.
+_SHORTEST = 1e-4
 
 
 class Way(NamedTuple):
@@ -47,3 +52,35 @@ def polyline(path: Path, spacing: float) -> np.ndarray:
     points = curves.sample_matrix(path.curve, len(path.points), samples) @ path.points
     points[[0, -1]] = path.points[list(curves.ends(path.curve))]
     return points
+
+
+def drivable(path: Path, spacing: float, obstacles: Region) -> np.ndarray:
+    """`polyline` with further points: a chord of a curve that touches an obstacle can enter it. Such a chord, between two free points, is
+    halved until no part of it does.
+    """
+    points = polyline(path, spacing)
+    if path.curve == "polyline" or _free(points, obstacles):
+        return points
+    return _halved(path, np.linspace(0.0, len(curves.bezier_pieces(path)), len(points)), points, obstacles)
+
+
+def _halved(path: Path, at: np.ndarray, points: np.ndarray, obstacles: Region) -> np.ndarray:
+    """Points (m, 2) of a path: those given (n, 2), at parameters (n,) as in `curves.point_at`, and more where chords enter an obstacle."""
+    found = [points[0]]
+    open_ = list(itertools.pairwise(zip(at, points)))[::-1]
+    while open_:
+        one, other = open_.pop()
+        chord = np.array([one[1], other[1]])
+        if math.dist(*chord) < _SHORTEST or _free(chord, obstacles) or any(blocks(obstacles, tuple(end)) for end in chord):
+            found.append(other[1])
+            continue
+        between = (one[0] + other[0]) / 2
+        middle = (between, curves.point_at(path, between))
+        open_ += [(middle, other), (one, middle)]
+    return np.array(found)
+
+
+def _free(points: np.ndarray, obstacles: Region) -> bool:
+    """Whether a polyline (n, 2) is free."""
+    chords = np.stack([points[:-1], points[1:]], axis=1)
+    return math.isinf(checker.first_collision(from_origin(chords, obstacles), obstacles)[0])
