@@ -8,6 +8,7 @@ from fields import assert_path_fits, drawn
 
 from bezierplan.geometry import cell_length, curves, shortest_paths
 from bezierplan.planners import abc_ep, planner_settings, setting_fault
+from bezierplan.planners.parts.settings import filled
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid, from_lines
@@ -37,6 +38,11 @@ def field(*circles, side=100):
     table = np.array(circles, dtype=float).reshape(-1, 3)
     grid = random_field.from_circles(Circles((0, side, 0, side), table[:, :2], table[:, 2], "cell"))
     return Problem("test", grid, (0.0, 0.0), (float(side), float(side)))
+
+
+def settings(**changes):
+    """As kernels read them; changes are in cells."""
+    return filled(abc_ep.Settings, SETTINGS | changes)
 
 
 def plan(problem, seed=0, **changes):
@@ -136,7 +142,7 @@ def test_reach_scales_with_the_smaller_side():
     assert np.median(lengths[1]) == pytest.approx(2 * np.median(lengths[0]), rel=0.02)
     # The next point of an empty field lies as far away as the colony may look, on the way to the target.
     for side, reach in ((100, 0.1), (200, 0.1), (100, 0.3)):
-        colony = abc_ep._Colony(20, 50, 5, reach * side, step_weight=0.0, visited_weight=0.0, most_points=200)
+        colony = settings(cycles=50, reach=reach * side, step_weight=0.0, visited_weight=0.0)
         grid, path = field(side=side).workspace, np.array([[0.5, 0.5], [0.0, 0.0]])
         abc_ep._next_point(np.random.default_rng(0), grid.occupied, np.array([side + 0.5] * 2), path, 1, colony)
         assert path[1] == pytest.approx(0.5 + reach * side, rel=0.02)
@@ -145,8 +151,8 @@ def test_reach_scales_with_the_smaller_side():
 def test_reach_is_a_share_of_the_smaller_side(monkeypatch):
     colonies = []
 
-    def search(colony_rng, evolution_rng, occupied, start, target, colony, evolution):
-        colonies.append((colony.reach, evolution.spread))
+    def search(colony_rng, evolution_rng, occupied, start, target, rules):
+        colonies.append((rules.reach, rules.spread))
         return np.array([start, target]), np.zeros(1)
 
     monkeypatch.setattr(abc_ep, "_search", search)
@@ -178,7 +184,7 @@ def test_cost_is_the_way_there_and_on_and_the_cones_around_points_chosen():
     path = np.array([[0.5, 0.5], [8.5, 6.5], [10.5, 10.5], [0.0, 0.0]])
     target = np.array([40.5, 40.5])
     point = np.array([13.9, 14.1])
-    colony = abc_ep._Colony(20, 10, 5, reach=10.0, step_weight=0.5, visited_weight=2.0, most_points=200)
+    colony = settings(reach=10.0)
     # The cones have their height in the middle of the point's cell.
     cones = max(0, 10 - math.dist((8.5, 6.5), (13.5, 14.5))) + max(0, 10 - math.dist((10.5, 10.5), (13.5, 14.5)))
     expected = 0.5 * math.dist((10.5, 10.5), point) + math.dist(point, target) + 2 * cones
@@ -206,7 +212,7 @@ def colony_of(places, costs, monkeypatch, cycles):
 
     for name, changed in (("_draw", placed), ("_cost", priced), ("roulette", chosen)):
         monkeypatch.setattr(abc_ep, name, changed)
-    colony = abc_ep._Colony(len(places), cycles, 10**9, reach=40.0, step_weight=0.5, visited_weight=2.0, most_points=200)
+    colony = settings(sources=len(places), cycles=cycles, trial_limit=10**9, reach=40.0)
     path = np.array([[50.5, 50.5], [0.0, 0.0]])
     occupied = np.zeros((101, 101), dtype=bool)
     abc_ep._next_point.py_func(np.random.default_rng(5), occupied, np.array([90.0, 90.0]), path, 1, colony)
@@ -244,7 +250,7 @@ def test_children_keep_the_lengths_of_their_legs():
     legs[0, 0] = abc_ep._leg(grid.occupied, points[0], 0, 1e6)
     count = 2
     differences = []
-    evolution = abc_ep._Evolution(20, 150, 0.5, 0.2, spread=2.5, insertion_spread=0.3, opponents=5, blocked_penalty=1e6)
+    evolution = settings(move_share=0.5, spread=2.5)
     for _ in range(room - 2):
         new = abc_ep._mutated(rng, grid.occupied, points[0], legs[0], count, points[1], legs[1], evolution)
         measured = [abc_ep._leg(grid.occupied, points[1], p, 1e6) for p in range(new - 1)]

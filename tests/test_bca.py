@@ -239,7 +239,7 @@ def test_no_generation_leaves_the_best_of_the_first():
     assert plan(generations=0).objective == plan(generations=5).history[0]
 
 
-@pytest.mark.parametrize("fitness", bca.Fitness.__args__)
+@pytest.mark.parametrize("fitness", tuple(bca.Fitness.__members__))
 def test_start_equal_to_target_is_answered_without_a_search(fitness):
     found = plan(start=(3.0, 4.0), target=(3.0, 4.0), fitness=fitness)
     assert (found.objective, found.evaluations, len(found.history)) == (0, 1, 1)

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from bezierplan.geometry import curves
 from bezierplan.planners import chaotic_pso, planner_settings, setting_fault
 from bezierplan.planners.parts import chaotic_maps, penalised
+from bezierplan.planners.parts.settings import filled
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem
@@ -200,8 +201,8 @@ UNUSED = np.random.default_rng(0)
 
 def swarm(where, x):
     """The swarm of no iterations that starts at x (particles, 6)."""
-    field, rules = np.full(6, 10.0), chaotic_pso._Rules(10, 1.5, 1.5, 1.0, 1.0, 0, 0, False, 0, True)
-    objective = chaotic_pso._objective(where, chaotic_pso.Settings(**SETTINGS))
+    field, rules = np.full(6, 10.0), filled(chaotic_pso.Settings, SETTINGS | {"stall_limit": 10, "chaotic_term": "none"})
+    objective = chaotic_pso._objective(where, rules)
     return chaotic_pso.Swarm(*chaotic_pso._swarm(UNUSED, x, np.empty((0, 1, 1)), -field, field, field, objective, rules), 0, 0)
 
 
@@ -462,7 +463,7 @@ def among(*obstacles, start=(-4.0, 0.0), target=(4.0, 0.0)):
 
 
 def violation_of(task, x, y, **changed):
-    objective = chaotic_pso._objective(task, chaotic_pso.Settings(**(SETTINGS | changed)))
+    objective = chaotic_pso._objective(task, filled(chaotic_pso.Settings, SETTINGS | changed))
     return penalised.violation(np.array([x, y], dtype=float), objective, np.empty(len(x)))
 
 

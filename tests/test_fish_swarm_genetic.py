@@ -3,18 +3,19 @@
 import itertools
 
 import numpy as np
-from test_lattice_planners import environment, plan
+from test_lattice_planners import SETTINGS, environment, plan
 
 from bezierplan.planners import fish_swarm_genetic
-from bezierplan.planners.fish_swarm_genetic import _ARRIVED, _DEAD, _SWIMMING, _follow, _release, _Swarm
+from bezierplan.planners.fish_swarm_genetic import _ARRIVED, _DEAD, _SWIMMING, Settings, _follow, _release
 from bezierplan.planners.parts import cell_paths
+from bezierplan.planners.parts.settings import filled
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.lattice import lattice
 
 COLUMNS = 12
 GRID = Grid(np.zeros((COLUMNS, COLUMNS), dtype=bool), 1.0, "unit")
 PLACES = lattice(GRID, (0.0, 0.0), (12.0, 12.0), "one")
-SWARM = _Swarm(5, 8, 6.0, 0.618, 5, 200)
+SWARM = filled(Settings, SETTINGS["fish_swarm_genetic"] | {"fish": 5})
 
 
 def cell(row, column):
@@ -64,8 +65,8 @@ def test_a_fish_does_not_follow_into_a_cell_that_it_has_visited():
 def released(wanted=100, releases=200, seed=0, **changes):
     problem = environment(1)
     places = lattice(problem.workspace, problem.start, problem.target, "one")
-    swarm = _Swarm(20, 8, 6.0, 0.618, 5, 200)._replace(**changes)
-    return places, *_release(np.random.default_rng(seed), places, swarm, wanted, releases)
+    swarm = SWARM._replace(fish=20, population=wanted, releases=releases, **changes)
+    return places, *_release(np.random.default_rng(seed), places, swarm)
 
 
 def test_fish_that_arrive_give_as_many_paths_as_wanted():
@@ -98,7 +99,7 @@ def test_the_compiled_releases_agree_with_their_plain_python(monkeypatch):
     compiled = released(wanted=10, seed=4)[1:]
     monkeypatch.setattr(fish_swarm_genetic, "_release", _release.py_func)
     places = released()[0]
-    plain = _release.py_func(np.random.default_rng(4), places, _Swarm(20, 8, 6.0, 0.618, 5, 200), 10, 200)
+    plain = _release.py_func(np.random.default_rng(4), places, SWARM._replace(fish=20, population=10, releases=200))
     for (one, size), (other, other_size) in zip(zip(*compiled[:2], strict=True), zip(*plain[:2], strict=True), strict=True):
         assert one[:size].tolist() == other[:other_size].tolist()
 

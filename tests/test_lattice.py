@@ -2,7 +2,6 @@
 
 import math
 from itertools import product
-from typing import get_args
 
 import numpy as np
 import pytest
@@ -15,7 +14,7 @@ from bezierplan.workspaces.grid import Grid, from_lines
 from bezierplan.workspaces.lattice import Corners, lattice, neighbours, points
 from bezierplan.workspaces.problem import Path
 
-RULES = get_args(Corners)
+RULES = tuple(Corners.__members__)
 OPEN = Grid(np.zeros((4, 5), dtype=bool), 2.0, "unit")
 
 

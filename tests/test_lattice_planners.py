@@ -9,6 +9,7 @@ import pytest
 from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
 from bezierplan.planners import ant_colony, planner_module
+from bezierplan.planners.parts.settings import filled
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 
@@ -68,9 +69,7 @@ SEALED = from_lines(["....", "..##", "..#."][::-1], 2.0, "unit")
 
 def colony_rules(**changes):
     """The settings of an ant colony as its search takes them."""
-    settings = COLONY | changes
-    named = {name: settings[name] for name in ant_colony.Rules._fields if name in settings}
-    return ant_colony.Rules(best_only=settings["trail_update"] == "ant_colony_system", **named)
+    return filled(ant_colony.Settings, COLONY | changes)
 
 
 def environment(number):

@@ -16,6 +16,7 @@ from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import region
 from bezierplan.planners import node_genetic, planner_settings, setting_fault
 from bezierplan.planners.parts.node_mutation import mutate
+from bezierplan.planners.parts.settings import filled
 from bezierplan.workspaces import files
 from bezierplan.workspaces import ground as ground_of_cells
 from bezierplan.workspaces.grid import Grid, from_lines
@@ -51,27 +52,9 @@ SETTINGS = {
     "friction": 1.0,
 }
 OPERATORS = ("random", "random_repair", "ref12", "ref21", "proposed")
-# As far as operators and first paths read them; words are places in the lists of the planner.
-RULES = node_genetic.Rules(
-    mutation=0,
-    population=2,
-    generations=0,
-    stall=1,
-    initial=0,
-    most_nodes=1,
-    selection=0,
-    crossover_probability=1.0,
-    one_cut=True,
-    mutation_probability=1.0,
-    each_node=False,
-    any_node=True,
-    beside_obstacle=False,
-    keep_better=False,
-    same_signs=False,
-    whole_path=False,
-    penalty=15.0,
-    elitism=0,
-    best_so_far=False,
+RULES = filled(
+    node_genetic.Settings,
+    SETTINGS | {"mutation": "random", "population": 2, "generations": 0, "stall": 1, "most_nodes": 1, "mutation_probability": 1.0},
 )
 BLOCK = from_lines(["......", "..##..", "..##..", "......"], 1.0, "cell")
 
@@ -361,21 +344,21 @@ def test_a_node_beside_an_obstacle_encounters_it():
     path = [0, 3, 11, 23]
     for seed in range(20):
         by_edge, by_neighbour = (
-            mutated(path, BLOCK, "proposed", seed, any_node=False, beside_obstacle=beside)[0] for beside in (False, True)
+            mutated(path, BLOCK, "proposed", seed, without_obstacle="none", obstacle_node=node)[0] for node in ("edge", "neighbour")
         )
         assert by_edge == path
         assert by_neighbour[1] != 3
         assert by_neighbour[2] == 11
     far = from_lines(["........", "........", "........", "......##"], 1.0, "cell")
-    assert mutated([0, 8, 31], far, "proposed", any_node=False, beside_obstacle=True)[0] == [0, 8, 31]
+    assert mutated([0, 8, 31], far, "proposed", without_obstacle="none", obstacle_node="neighbour")[0] == [0, 8, 31]
 
 
 def test_reference_21_leaves_a_path_that_is_blocked_elsewhere_if_it_tests_the_whole():
     # The last edge passes the block, so that no new node makes the path feasible.
     path = [0, 1, 6, 12, 11]
     assert met(12, 11, BLOCK) > 0
-    changed = [mutated(path, BLOCK, "ref21", seed, whole_path=False)[0] != path for seed in range(40)]
-    whole = [mutated(path, BLOCK, "ref21", seed, whole_path=True)[0] for seed in range(40)]
+    changed = [mutated(path, BLOCK, "ref21", seed, ref21_test="edges")[0] != path for seed in range(40)]
+    whole = [mutated(path, BLOCK, "ref21", seed, ref21_test="path")[0] for seed in range(40)]
     assert any(changed)
     for after in whole:
         assert after == path or sum(met(a, b, BLOCK) for a, b in itertools.pairwise(after)) == 0
@@ -397,7 +380,7 @@ def test_roulette_draws_by_the_reciprocal_of_the_objective():
 
 def mutated(path, grid, mutation, seed=0, **changes):
     """A path after one mutation, and how many paths were evaluated."""
-    rules = RULES._replace(mutation=OPERATORS.index(mutation), **changes)
+    rules = filled(node_genetic.Settings, SETTINGS | {"mutation": mutation} | changes)
     path = np.array(path)
     drawn = np.setdiff1d(np.flatnonzero(~grid.occupied), [path[0], path[-1]])
     tried = mutate(np.random.default_rng(seed), path, drawn, ground_of(grid, 1.0), rules, np.empty(8, dtype=np.int64))
@@ -471,7 +454,7 @@ def test_the_proposed_mutation_changes_a_node_before_an_obstacle():
     seen = 0
     for seed, path in enumerate(random_paths(grid)):
         blocked = [k for k in range(1, len(path) - 1) if met(path[k], path[k + 1], grid) > 0]
-        after, tried = mutated(path, grid, "proposed", seed, any_node=False)
+        after, tried = mutated(path, grid, "proposed", seed, without_obstacle="none")
         assert (tried > 0) <= bool(blocked)
         if changed(path, after):
             assert changed(path, after)[0] in blocked
@@ -483,22 +466,22 @@ def test_a_feasible_path_is_changed_as_by_reference_12_or_not_at_all():
     path = [0, 1, 4, 23]
     assert sum(met(a, b, BLOCK) for a, b in itertools.pairwise(path)) == 0
     for seed in range(20):
-        assert mutated(path, BLOCK, "proposed", seed, any_node=False) == (path, 0)
+        assert mutated(path, BLOCK, "proposed", seed, without_obstacle="none") == (path, 0)
         assert mutated(path, BLOCK, "proposed", seed) == mutated(path, BLOCK, "ref12", seed)
 
 
-@pytest.mark.parametrize("same_signs", [False, True])
-def test_reference_21_steps_towards_the_target_along_free_edges(same_signs):
+@pytest.mark.parametrize("direction", ["forward", "same_signs"])
+def test_reference_21_steps_towards_the_target_along_free_edges(direction):
     grid = random_grid(5, share=0.15)
     columns = grid.occupied.shape[1]
     target = np.array(divmod(grid.occupied.size - 1, columns))
     moved = 0
     for seed, path in enumerate(random_paths(grid)):
-        after, _ = mutated(path, grid, "ref21", seed, same_signs=same_signs)
+        after, _ = mutated(path, grid, "ref21", seed, direction=direction)
         for k in changed(path, after):
             moved += 1
             way = target - divmod(after[k], columns)
-            assert (np.sign(way) == 1).all() if same_signs else way @ target > 0
+            assert (np.sign(way) == 1).all() if direction == "same_signs" else way @ target > 0
             assert after[k] in around(path[k], grid)
             assert met(after[k - 1], after[k], grid) == met(after[k], after[k + 1], grid) == 0
     assert moved > 3

@@ -116,7 +116,7 @@ FAULTS = {
         [CELLS, "--start", "0.5,0.5", "--target", "15.5,0.5", "--planner", "chaotic_pso"],
         "serves workspaces of kind circles, polygons, and a map is grid",
     ),
-    "setting": ([GAPS, *ENDS, "--settings", "{radius: 1}"], "--settings: radius: no setting of rounded_shortest_path"),
+    "setting": ([GAPS, *ENDS, "--settings", "{radius: 1}"], "--settings: radius: unknown"),
     "value": ([GAPS, *ENDS, "--settings", "{turning_radius: -1}"], "--settings: turning_radius: -1; expected a number at least 0"),
     "settings": ([GAPS, *ENDS, "--settings", "fast"], "--settings: fast: expected '{name: value, ...}'"),
     "out": ([GAPS, *ENDS, "--out", "path.pdf"], "--out: path.pdf; expected a file that ends in .svg, .png"),

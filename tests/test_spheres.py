@@ -16,6 +16,7 @@ from bezierplan.geometry import checker, curves, shortest_paths, spheres
 from bezierplan.geometry.region import region
 from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import penalised
+from bezierplan.planners.parts.settings import filled
 from bezierplan.study import jobs, reading
 from bezierplan.workspaces import files
 from bezierplan.workspaces.circles import Circles
@@ -150,7 +151,7 @@ def test_in_the_plane_objectives_are_equal_to_the_last_bit(free, table):
     lifted = Problem("", Spheres(BOX, np.insert(circles[:, :2], 2, 0.0, axis=1), circles[:, 2], "unit"), (-4.0, 0.0, 0.0), (4.0, 1.0, 0.0))
     found = []
     for task, position in ((flat, free.T.ravel()), (lifted, np.append(free.T.ravel(), np.zeros(3)))):
-        objective = chaotic_pso._objective(task, chaotic_pso.Settings(**SETTINGS))
+        objective = chaotic_pso._objective(task, filled(chaotic_pso.Settings, SETTINGS))
         curve, scratch = np.empty((len(task.start), SETTINGS["samples"])), np.empty(SETTINGS["samples"])
         length = penalised.length(position, objective, curve, scratch)
         found.append((length, *penalised.violation(curve, objective, scratch)))
@@ -160,7 +161,7 @@ def test_in_the_plane_objectives_are_equal_to_the_last_bit(free, table):
 def test_the_violation_of_a_sphere_is_the_mean_depth_as_a_share_of_its_radius():
     """Points at the centre, halfway along each axis, on the surface, and outside along z alone."""
     task = Problem("", among((0, 0, 0, 2)), (-4.0, 0.0, 0.0), (4.0, 0.0, 0.0))
-    objective = chaotic_pso._objective(task, chaotic_pso.Settings(**SETTINGS))
+    objective = chaotic_pso._objective(task, filled(chaotic_pso.Settings, SETTINGS))
     curve = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 2], [0, 0, 3.0]]).T.copy()
     assert penalised.violation(curve, objective, np.empty(6)) == (pytest.approx((1 + 3 * 0.5) / 6), 4)
 

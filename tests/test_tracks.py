@@ -11,6 +11,7 @@ from bezierplan.figures import sheet
 from bezierplan.figures.panels import landscape, tracks
 from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import penalised
+from bezierplan.planners.parts.settings import filled
 from bezierplan.running import execution, problems
 from bezierplan.schema import checked
 from bezierplan.workspaces.circles import Circles
@@ -65,7 +66,7 @@ def test_ways_are_those_of_the_runs(found):
     ways = [tracks.data(found, by="homotopy", runs=1, point=point).query("part == 'way'") for point in range(5)]
     points = np.stack([way[["x", "y"]].to_numpy() for way in ways], axis=1)
     run = found.runs.set_index("id").loc[ways[0]["run"].iloc[0]]
-    again = chaotic_pso._objective(FIELD, chaotic_pso.Settings(**JOB["settings"]))
+    again = chaotic_pso._objective(FIELD, filled(chaotic_pso.Settings, JOB["settings"]))
     curve, scratch = np.empty((2, SETTINGS["samples"])), np.empty(SETTINGS["samples"])
     for best, position in zip(run["history"], points[:, 1:-1]):
         length = penalised.length(position.T.ravel(), again, curve, scratch)

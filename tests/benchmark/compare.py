@@ -36,6 +36,7 @@ from pyswarms.single import GlobalBestPSO
 
 from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import penalised
+from bezierplan.planners.parts.settings import filled
 from bezierplan.study import reading
 from bezierplan.workspaces import files
 from bezierplan.workspaces.problem import Problem
@@ -50,7 +51,7 @@ PARTICLES, ITERATIONS, DIMENSIONS = SETTINGS["particles"], SETTINGS["iterations"
 EVALUATIONS = PARTICLES * (ITERATIONS + 1)
 LOW, HIGH = np.repeat(np.reshape(PROBLEM.workspace.bounds, (2, 2)).T, DIMENSIONS // 2, axis=1)
 LIMIT = SETTINGS["velocity_limit"] * (HIGH - LOW)
-OBJECTIVE = chaotic_pso._objective(PROBLEM, chaotic_pso.Settings(**SETTINGS))
+OBJECTIVE = chaotic_pso._objective(PROBLEM, filled(chaotic_pso.Settings, SETTINGS))
 
 
 @njit(cache=True)

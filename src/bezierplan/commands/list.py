@@ -1,8 +1,9 @@
-"""List the contents of studies."""
+"""List the contents of studies, or what the settings of their planners mean."""
 
 from argparse import ArgumentParser
 
 from bezierplan.commands import add_studies
+from bezierplan.planners import planner_module, planner_settings
 from bezierplan.study import reading
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import SCALES
@@ -11,9 +12,20 @@ from bezierplan.study.experiments import SCALES
 def main(parser: ArgumentParser, words: list[str]) -> None:
     """Print the contents of the configured studies, or of those named."""
     add_studies(parser)
-    names = parser.parse_args(words).studies
-    for study in reading.load(reading.read_config({"studies": names} if names else {})).values():
-        print("\n".join(lines(study)))
+    parser.add_argument("--settings", action="store_true", help="each planner's settings: accepted values, meaning, unit, source")
+    words = parser.parse_args(words)
+    for study in reading.load(reading.read_config({"studies": words.studies} if words.studies else {})).values():
+        print("\n".join(settings(study) if words.settings else lines(study)))
+
+
+def settings(study: Study) -> list[str]:
+    """The settings of a study's planners, one per line."""
+    planners = dict.fromkeys(map(study.planner, study.methods))
+    return [
+        f"{study.key}: {planner}: {name:24} {declared}" + (f"; {declared.meaning}" if declared.meaning else "")
+        for planner in planners
+        for name, declared in planner_settings(planner_module(planner)).items()
+    ]
 
 
 def lines(study: Study) -> list[str]:

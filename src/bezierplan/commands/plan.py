@@ -13,7 +13,7 @@ import numpy as np
 from bezierplan.analysis.measures import CURVATURE_SAMPLES
 from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
-from bezierplan.planners import Plan, known_planners, planner_module, planner_settings, setting_fault
+from bezierplan.planners import Plan, known_planners, planner_module
 from bezierplan.running import answer, interface, problems, watchdog
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.loans import lend
@@ -143,7 +143,7 @@ def _plan(given: Namespace) -> None:
     if planner == "rounded_shortest_path":
         x_low, x_high, y_low, y_high = problem.workspace.bounds
         settings = {"turning_radius": _TURNING_SHARE * max(x_high - x_low, y_high - y_low), "offset": 0.0} | settings
-    _check_settings(planner, settings)
+    interface.check_settings(planner_module(planner), settings, "--settings")
     module = planner_module(planner)
     if hasattr(module, "serves"):
         interface.asked(module.serves, f"--planner: {planner}", problem)
@@ -246,9 +246,7 @@ def _planner(given: Namespace) -> tuple[str, dict[str, Any]]:
             raise Fault(f"--planner: {planner}: unknown{closest(planner, known_planners())}")
         interface.loaded(planner, f"--planner: {planner}")
         preset = {} if planner == "rounded_shortest_path" or planner.endswith(".py") else _preset(planner)
-    for name in own:
-        if name not in planner_settings(planner_module(planner)):
-            raise Fault(f"--settings: {name}: no setting of {planner}{closest(name, planner_settings(planner_module(planner)))}")
+    interface.refuse_unknown(planner_module(planner), own, "--settings")
     return planner, preset | own
 
 
@@ -276,18 +274,6 @@ def _preset(planner: str) -> dict[str, Any]:
             if study.planner(method) == planner:
                 return study.resolved(method)
     return {}
-
-
-def _check_settings(planner: str, settings: dict[str, Any]) -> None:
-    module = planner_module(planner)
-    for name, annotation in planner_settings(module).items():
-        if name not in settings:
-            raise Fault(f"--settings: {name}: missing; {planner} needs it")
-        wanted = setting_fault(annotation, settings[name])
-        if wanted:
-            raise Fault(f"--settings: {name}: {settings[name]!r}; expected {wanted}")
-    if hasattr(module, "check"):
-        interface.asked(module.check, "--settings", settings)
 
 
 def _problem(given: Namespace, planner: str) -> Problem:

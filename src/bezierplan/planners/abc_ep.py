@@ -14,9 +14,10 @@ import numpy as np
 
 from bezierplan.geometry.cell_length import is_free_leg
 from bezierplan.kernels import allocation_free, compiled
-from bezierplan.planners import Plan, Range
+from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.genetic import roulette
 from bezierplan.planners.parts.random_integers import integer
+from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -28,6 +29,26 @@ exact = True
 _UNSEEN = 1e9
 
 
+class Settings(NamedTuple):
+    """Settings of colony and evolution; the papers give none, these are textbook ones."""
+
+    sources: Annotated[int, Range(2), About("sources of the colony, each with an employed and an onlooker bee")]
+    cycles: Annotated[int, Range(0), About("cycles of the colony for one point")]
+    trial_limit: Annotated[int, Range(1), About("failed trials after which a source is redrawn")]
+    reach: Annotated[float, Range(0, 1), About("half the side of the square around the last point, as a share of the smaller side")]
+    step_weight: Annotated[float, Range(0), About("weight of a point's distance from the last one; that to the target has weight 1")]
+    visited_weight: Annotated[float, Range(0), About("weight of cones around the points chosen so far, as high and wide as the reach")]
+    most_points: Annotated[int, Range(0), About("points chosen before the search is abandoned")]
+    population: Annotated[int, Range(1), About("copies of the path that evolve, each with one child a generation")]
+    generations: Annotated[int, Range(0), About("generations")]
+    move_share: Annotated[float, Range(0, 1), About("share of children in which an inner point moves by a Gaussian step")]
+    removal_share: Annotated[float, Range(0, 1), About("share of children without one of the inner points; the rest get a leg's midpoint")]
+    spread: Annotated[float, Range(0), About("standard deviation of a move, as a share of the smaller side")]
+    insertion_spread: Annotated[float, Range(0), About("standard deviation of a midpoint, as a share of the spread")]
+    opponents: Annotated[int, Range(1), About("drawn for each of parents and children; those not worse than most of them survive")]
+    blocked_penalty: Annotated[float, Range(0), About("added for each leg that touches an occupied cell", unit=UNITS)]
+
+
 def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     shares = settings["move_share"] + settings["removal_share"]
@@ -35,101 +56,52 @@ def check(settings: dict) -> None:
         raise ValueError(f"move_share: with removal_share {shares:g}; expected at most 1, the rest inserts points")
 
 
-def plan(
-    problem: Problem,
-    rng: np.random.Generator,
-    *,
-    sources: Annotated[int, Range(2)],
-    cycles: Annotated[int, Range(0)],
-    trial_limit: Annotated[int, Range(1)],
-    reach: Annotated[float, Range(0, 1)],
-    step_weight: Annotated[float, Range(0)],
-    visited_weight: Annotated[float, Range(0)],
-    most_points: Annotated[int, Range(0)],
-    population: Annotated[int, Range(1)],
-    generations: Annotated[int, Range(0)],
-    move_share: Annotated[float, Range(0, 1)],
-    removal_share: Annotated[float, Range(0, 1)],
-    spread: Annotated[float, Range(0)],
-    insertion_spread: Annotated[float, Range(0)],
-    opponents: Annotated[int, Range(1)],
-    blocked_penalty: Annotated[float, Range(0)],
-) -> Plan:
-    """Shortest polyline found; its objective is its length in units, infinite if there is no path.
+@with_settings(Settings)
+def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
+    """Shortest polyline found.
 
-    The colony: sources, each with an employed and an onlooker bee, for the given number of cycles; a source that failed to improve
-    trial_limit times is redrawn. reach: half the side of the square around the last point, as a share of the workspace's smaller side. The
-    cost of a point is step_weight times its distance from the last point, plus its distance to the target, plus visited_weight times the
-    height there of cones around the points chosen so far, each as high and as wide as the reach. most_points: number of points chosen
-    before the search is abandoned.
+    Parameters
+    ----------
+    problem : Problem
+        On a grid.
+    rng : numpy.random.Generator
+        The only source of random numbers.
 
-    Evolution: each member of a population of copies has one child per generation, which moves an inner point (move_share) by a Gaussian
-    step in both coordinates, drops one (removal_share), or inserts the midpoint of a leg. spread: standard deviation of a move, as a share
-    of the smaller side; insertion_spread: that of a midpoint, as a share of the spread. opponents: drawn for each of parents and children;
-    those that are not worse than most of them survive. blocked_penalty: in units, for each leg that touches an occupied cell.
+    Returns
+    -------
+    Plan
+        Its objective is its length in units, infinite if there is no path. Extra columns: first_length, the length of the path before
+        evolution, in units; turns, the number of inner points of the final path.
 
-    Extra columns: first_length, the length of the path before evolution, in units; turns, the number of inner points of the final path.
+    References
+    ----------
+    elhoseny2017, Tables 2, 3 and 6; tharwat2018, Figure 22; Contreras-Cruz, Ayala-Ramirez and Hernandez-Belmonte (2015).
     """
     grid = problem.workspace
     start, target = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
     smaller_side = min(grid.occupied.shape) - 1  # between the centres of the outermost cells
     if problem.start == problem.target:
-        generations = 0
-    colony = _Colony(sources, cycles, trial_limit, reach * smaller_side, float(step_weight), float(visited_weight), most_points)
-    evolution = _Evolution(
-        population,
-        generations,
-        float(move_share),
-        float(removal_share),
-        spread * smaller_side,
-        float(insertion_spread),
-        opponents,
-        blocked_penalty / grid.cell,
-    )
-    points, history = _search(*rng.spawn(2), grid.occupied, start, target, colony, evolution)
+        settings = settings._replace(generations=0)
+    rules = in_cells(settings, grid.cell)._replace(reach=settings.reach * smaller_side, spread=settings.spread * smaller_side)
+    points, history = _search(*rng.spawn(2), grid.occupied, start, target, rules)
     history *= grid.cell
     extra = {"first_length": float(history[0]), "turns": max(0, len(points) - 2)}
     if len(points) == 0:
         return Plan(None, np.inf, claimed_feasible=False, evaluations=1, history=history, stop="no way", extra=extra)
     points = grid.in_units(points)
     points[[0, -1]] = problem.start, problem.target
-    evaluations = 1 + population * generations
+    evaluations = 1 + settings.population * settings.generations
     path = Path("polyline", points)
     return Plan(path, history[-1], claimed_feasible=True, evaluations=evaluations, history=history, stop="generations", extra=extra)
 
 
-class _Colony(NamedTuple):
-    """Settings of `plan` for the colony; reach in cells."""
-
-    sources: int
-    cycles: int
-    trial_limit: int
-    reach: float
-    step_weight: float
-    visited_weight: float
-    most_points: int
-
-
-class _Evolution(NamedTuple):
-    """Settings of `plan` for the evolution; spread and blocked_penalty in cells."""
-
-    population: int
-    generations: int
-    move_share: float
-    removal_share: float
-    spread: float
-    insertion_spread: float
-    opponents: int
-    blocked_penalty: float
-
-
 @compiled
-def _search(colony_rng, evolution_rng, occupied, start, target, colony, evolution):
+def _search(colony_rng, evolution_rng, occupied, start, target, rules):
     """Points (points, 2) of the path, empty if the colony found none, and the shortest length so far (generations + 1,)."""
-    path = _first_path(colony_rng, occupied, start, target, colony)
+    path = _first_path(colony_rng, occupied, start, target, rules)
     if len(path) == 0:
         return path, np.full(1, np.inf)
-    return _evolve(evolution_rng, occupied, _cut_short(occupied, path), evolution)
+    return _evolve(evolution_rng, occupied, _cut_short(occupied, path), rules)
 
 
 # ---------------------------------------------------------------------------------------------------------------------
@@ -137,49 +109,49 @@ def _search(colony_rng, evolution_rng, occupied, start, target, colony, evolutio
 
 
 @compiled
-def _first_path(rng, occupied, start, target, colony):
+def _first_path(rng, occupied, start, target, rules):
     """A free path (points, 2), point by point until the target is in sight; empty if no free point is found or most_points do not
     suffice.
     """
-    path = np.empty((colony.most_points + 2, 2))
+    path = np.empty((rules.most_points + 2, 2))
     path[0, 0], path[0, 1] = start  # an assignment of a whole row takes seconds to compile
-    for count in range(1, colony.most_points + 2):
+    for count in range(1, rules.most_points + 2):
         last = path[count - 1]
         if is_free_leg(occupied, last[0], last[1], target[0], target[1]):
             path[count, 0], path[count, 1] = target
             return path[: count + 1].copy()
-        if count <= colony.most_points and _next_point(rng, occupied, target, path, count, colony) >= _UNSEEN:
+        if count <= rules.most_points and _next_point(rng, occupied, target, path, count, rules) >= _UNSEEN:
             break
     return np.empty((0, 2))
 
 
 @compiled
-def _next_point(rng, occupied, target, path, count, colony):
+def _next_point(rng, occupied, target, path, count, rules):
     """Append the best point that a colony finds after the first `count` points of a path, in place. Returns its cost."""
     low, high = np.empty(2), np.empty(2)
     for k in range(2):
-        low[k] = max(0.5, path[count - 1, k] - colony.reach)
-        high[k] = min(occupied.shape[1 - k] - 0.5, path[count - 1, k] + colony.reach)
-    sources = colony.sources
+        low[k] = max(0.5, path[count - 1, k] - rules.reach)
+        high[k] = min(occupied.shape[1 - k] - 0.5, path[count - 1, k] + rules.reach)
+    sources = rules.sources
     x, cost, failed = np.empty((sources, 2)), np.empty(sources), np.zeros(sources, dtype=np.int64)
     point = np.empty(2)
     best, best_cost = path[count], np.inf
     for i in range(sources):
         _draw(rng, low, high, x[i])
-        cost[i] = _cost(occupied, target, path, count, x[i], colony)
+        cost[i] = _cost(occupied, target, path, count, x[i], rules)
 
-    for cycle in range(colony.cycles + 1):
+    for cycle in range(rules.cycles + 1):
         # The best point is recorded before its source can be redrawn.
         for i in range(sources):
             if cost[i] < best_cost:
                 best[0], best[1] = x[i, 0], x[i, 1]
                 best_cost = cost[i]
-        if cycle == colony.cycles:
+        if cycle == rules.cycles:
             break
         for i in range(sources):
-            if failed[i] >= colony.trial_limit:  # a scout
+            if failed[i] >= rules.trial_limit:  # a scout
                 _draw(rng, low, high, x[i])
-                cost[i] = _cost(occupied, target, path, count, x[i], colony)
+                cost[i] = _cost(occupied, target, path, count, x[i], rules)
                 failed[i] = 0
         for turn in range(2):
             if turn == 1:
@@ -192,7 +164,7 @@ def _next_point(rng, occupied, target, path, count, colony):
                 point[0], point[1] = x[i, 0], x[i, 1]
                 point[k] += (2 * rng.random() - 1) * (x[i, k] - x[other, k])
                 point[k] = min(max(point[k], low[k]), high[k])
-                tried = _cost(occupied, target, path, count, point, colony)
+                tried = _cost(occupied, target, path, count, point, rules)
                 if tried < cost[i]:
                     x[i, k] = point[k]
                     cost[i] = tried
@@ -210,7 +182,7 @@ def _draw(rng, low, high, point):
 
 
 @allocation_free
-def _cost(occupied, target, path, count, point, colony):
+def _cost(occupied, target, path, count, point, rules):
     """Cost of the next point: the distance to it, the distance from it to the target, and cones over the cells around the points chosen
     before.
     """
@@ -220,11 +192,11 @@ def _cost(occupied, target, path, count, point, colony):
     height = 0.0
     column, row = np.floor(point[0]) + 0.5, np.floor(point[1]) + 0.5
     for chosen in range(1, count):
-        height += max(0.0, colony.reach - _length(path[chosen, 0], path[chosen, 1], column, row))
+        height += max(0.0, rules.reach - _length(path[chosen, 0], path[chosen, 1], column, row))
     return (
-        colony.step_weight * _length(last[0], last[1], point[0], point[1])
+        rules.step_weight * _length(last[0], last[1], point[0], point[1])
         + _length(point[0], point[1], target[0], target[1])
-        + colony.visited_weight * height
+        + rules.visited_weight * height
     )
 
 
@@ -253,12 +225,12 @@ def _cut_short(occupied, path):
 
 
 @compiled
-def _evolve(rng, occupied, path, evolution):
+def _evolve(rng, occupied, path, rules):
     """The cheapest path of the last generation (points, 2), and the lowest cost so far (generations + 1,).
 
     Every path keeps the lengths of its legs, plus the penalty where they are blocked: a mutation changes at most two of them.
     """
-    population, generations = evolution.population, evolution.generations
+    population, generations = rules.population, rules.generations
     room = len(path) + generations
     points, legs = np.empty((2 * population, room, 2)), np.empty((2 * population, room))
     counts, cost = np.full(2 * population, len(path)), np.empty(2 * population)
@@ -267,7 +239,7 @@ def _evolve(rng, occupied, path, evolution):
         for p in range(len(path)):
             points[i, p, 0], points[i, p, 1] = path[p, 0], path[p, 1]
         for p in range(len(path) - 1):
-            legs[i, p] = _leg(occupied, points[i], p, evolution.blocked_penalty)
+            legs[i, p] = _leg(occupied, points[i], p, rules.blocked_penalty)
         cost[i] = legs[i, : len(path) - 1].sum()
     history = np.empty(generations + 1)
     history[0] = cost[0]
@@ -275,32 +247,32 @@ def _evolve(rng, occupied, path, evolution):
     for generation in range(generations):
         for i in range(population):
             parent, child = slots[i], slots[population + i]
-            counts[child] = _mutated(rng, occupied, points[parent], legs[parent], counts[parent], points[child], legs[child], evolution)
+            counts[child] = _mutated(rng, occupied, points[parent], legs[parent], counts[parent], points[child], legs[child], rules)
             cost[child] = legs[child, : counts[child] - 1].sum()
-        _rank(slots, _wins(rng, cost, evolution.opponents), cost)
+        _rank(slots, _wins(rng, cost, rules.opponents), cost)
         history[generation + 1] = cost[slots[0]]
     return points[slots[0], : counts[slots[0]]], history
 
 
 @allocation_free
-def _mutated(rng, occupied, points, legs, count, child, child_legs, evolution):
+def _mutated(rng, occupied, points, legs, count, child, child_legs, rules):
     """Make a child of a path, in place: an inner point is moved or dropped, or a midpoint is inserted. Returns the child's number of
     points.
     """
     kind = rng.random()
-    if count == 2 or kind >= evolution.move_share + evolution.removal_share:
+    if count == 2 or kind >= rules.move_share + rules.removal_share:
         changed = integer(rng, 1, count)  # the child's new point; the parent's points after it move up by one
         kept = changed
         for k in range(2):
             child[changed, k] = 0.5 * (points[changed - 1, k] + points[changed, k])
-        _shift(rng, occupied, child[changed], evolution.spread * evolution.insertion_spread)
+        _shift(rng, occupied, child[changed], rules.spread * rules.insertion_spread)
         behind = changed + 1
-    elif kind < evolution.move_share:
+    elif kind < rules.move_share:
         changed = integer(rng, 1, count - 1)
         kept = changed + 1
         for k in range(2):
             child[changed, k] = points[changed, k]
-        _shift(rng, occupied, child[changed], evolution.spread)
+        _shift(rng, occupied, child[changed], rules.spread)
         behind = changed + 1
     else:
         changed = integer(rng, 1, count - 1)
@@ -313,7 +285,7 @@ def _mutated(rng, occupied, points, legs, count, child, child_legs, evolution):
         child[p + behind - kept, 0], child[p + behind - kept, 1] = points[p, 0], points[p, 1]
         child_legs[p + behind - kept] = legs[p]
     for p in range(changed - 1, behind):
-        child_legs[p] = _leg(occupied, child, p, evolution.blocked_penalty)
+        child_legs[p] = _leg(occupied, child, p, rules.blocked_penalty)
     return count + behind - kept
 
 

@@ -5,19 +5,43 @@ all ants of an iteration lay trails (Dorigo, Maniezzo and Colorni 1996). With `a
 ants may also erode trails and take the most attractive step outright (Dorigo and Gambardella 1997).
 """
 
-from typing import Annotated, Literal, NamedTuple
+from enum import IntEnum
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from bezierplan.kernels import allocation_free, compiled
-from bezierplan.planners import Plan, Range
+from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.cell_paths import length, put, step_between
 from bezierplan.planners.parts.random_integers import integer
+from bezierplan.planners.parts.settings import with_settings
 from bezierplan.workspaces.lattice import Corners, Lattice, lattice, points
 from bezierplan.workspaces.problem import Path, Problem
 
 workspaces = ("grid",)
 exact = True
+
+
+TrailUpdate = IntEnum("TrailUpdate", "ant_system ant_colony_system", start=0)
+
+
+class Settings(NamedTuple):
+    """Settings of a colony; ma2020 names the method and gives none (Dorigo, Maniezzo and Colorni 1996; Dorigo and Gambardella 1997)."""
+
+    corners: Annotated[Corners, About("how many of the two cells beside a diagonal step may be occupied")]
+    ants: Annotated[int, Range(1), About("ants of an iteration")]
+    iterations: Annotated[int, Range(1), About("iterations")]
+    trail_weight: Annotated[float, Range(0), About("exponent of the trail in the attraction of a step")]
+    heuristic_weight: Annotated[float, Range(0), About("exponent of the heuristic, 1 over the distance to the target in cells")]
+    target_heuristic: Annotated[float, Range(0), About("heuristic of the target itself")]
+    initial_trail: Annotated[float, Range(0), About("trail on every step at first")]
+    evaporation: Annotated[float, Range(0, 1), About("share of a trail lost per iteration")]
+    deposit: Annotated[float, Range(0), About("added, divided by a path's length in cells, to each of its steps, both ways")]
+    trail_update: Annotated[
+        TrailUpdate, About("all ants lay trails, or only steps of the best path so far evaporate and receive deposit times evaporation")
+    ]
+    exploitation: Annotated[float, Range(0, 1), About("probability q0 of taking the most attractive step")]
+    local_evaporation: Annotated[float, Range(0, 1), About("share by which an ant moves the trail of its step back to the initial one")]
 
 
 class Colony(NamedTuple):
@@ -33,81 +57,50 @@ class Colony(NamedTuple):
     sizes: np.ndarray
 
 
-def plan(
-    problem: Problem,
-    rng: np.random.Generator,
-    *,
-    corners: Corners,
-    ants: Annotated[int, Range(1)],
-    iterations: Annotated[int, Range(1)],
-    trail_weight: Annotated[float, Range(0)],
-    heuristic_weight: Annotated[float, Range(0)],
-    target_heuristic: Annotated[float, Range(0)],
-    initial_trail: Annotated[float, Range(0)],
-    evaporation: Annotated[float, Range(0, 1)],
-    deposit: Annotated[float, Range(0)],
-    trail_update: Literal["ant_system", "ant_colony_system"],
-    exploitation: Annotated[float, Range(0, 1)],
-    local_evaporation: Annotated[float, Range(0, 1)],
-) -> Plan:
-    """Shortest path over the 8-connected lattice of a grid; its objective is its length in units, infinite if there is no path.
+@with_settings(Settings)
+def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
+    """Shortest path over the 8-connected lattice of a grid.
 
-    corners: how many of the two cells beside a diagonal step may be occupied. An ant draws its next cell from the unvisited neighbours, in
-    proportion to trail**trail_weight * heuristic**heuristic_weight. The heuristic is 1 over the distance to the target in cells, and
-    target_heuristic for the target itself. An ant with no neighbour left dies. initial_trail: the trail on every step at first.
-    evaporation: share of a trail lost per iteration. deposit: an ant adds it, divided by its path's length in cells, to each step of its
-    path, both ways.
+    An ant draws its next cell from the unvisited neighbours, in proportion to trail**trail_weight * heuristic**heuristic_weight. An ant
+    with no neighbour left dies.
 
-    trail_update: ant_system, or ant_colony_system, in which only the steps of the best path so far evaporate and receive the deposit,
-    multiplied by the evaporation. exploitation: probability q0 of taking the most attractive step. local_evaporation: share by which an ant
-    moves the trail of its step back towards the initial one.
+    Parameters
+    ----------
+    problem : Problem
+        On a grid.
+    rng : numpy.random.Generator
+        The only source of random numbers.
 
-    Raises ValueError if start or target is not in a free cell.
+    Returns
+    -------
+    Plan
+        Its objective is its length in units, infinite if there is no path.
+
+    Raises
+    ------
+    ValueError
+        If start or target is not in a free cell.
+
+    References
+    ----------
+    ma2020, Section 4.1, reference 28.
     """
     grid = problem.workspace
-    rules = Rules(
-        ants=ants,
-        iterations=iterations,
-        trail_weight=float(trail_weight),
-        heuristic_weight=float(heuristic_weight),
-        target_heuristic=float(target_heuristic),
-        initial_trail=float(initial_trail),
-        evaporation=float(evaporation),
-        deposit=float(deposit),
-        best_only=trail_update == "ant_colony_system",
-        exploitation=float(exploitation),
-        local_evaporation=float(local_evaporation),
-    )
-    colony = search(lattice(grid, problem.start, problem.target, corners), rng, rules)
+    corners = Corners(settings.corners).name
+    colony = search(lattice(grid, problem.start, problem.target, corners), rng, settings)
     found = len(colony.best) > 0
     return Plan(
         path=Path("polyline", points(grid, problem.start, problem.target, colony.best)) if found else None,
         objective=colony.history[-1] * grid.cell,
         claimed_feasible=found,
-        evaluations=ants * len(colony.history),
+        evaluations=settings.ants * len(colony.history),
         history=colony.history * grid.cell,
         stop="iterations" if found else "no path",
         extra={},
     )
 
 
-class Rules(NamedTuple):
-    """Settings of `plan`; best_only: the trail update is ant_colony_system."""
-
-    ants: int
-    iterations: int
-    trail_weight: float
-    heuristic_weight: float
-    target_heuristic: float
-    initial_trail: float
-    evaporation: float
-    deposit: float
-    best_only: bool
-    exploitation: float
-    local_evaporation: float
-
-
-def search(places: Lattice, rng: np.random.Generator, rules: Rules) -> Colony:
+def search(places: Lattice, rng: np.random.Generator, rules: Settings) -> Colony:
     """The search behind `plan`. One iteration if start and target lie in the same cell."""
     distance = np.hypot(places.row - places.row[places.target], places.column - places.column[places.target])
     distance[places.target] = 1.0
@@ -139,7 +132,7 @@ def _colony(rng, lattice, heuristic, rules):
         if iteration == rules.iterations - 1:
             break
 
-        if rules.best_only:
+        if rules.trail_update == TrailUpdate.ant_colony_system:
             for k in range(1, best_size):
                 _lay(lattice, trail, best[k - 1], best[k], 1.0 - rules.evaporation, rules.evaporation * rules.deposit / best_length)
         else:

@@ -4,13 +4,15 @@ Its reference 30 (SmartPATH) gives the scheme: ants find the first paths, and a 
 two parents share a cell, the first child gets the shorter head and the shorter tail; the second child is the second parent.
 """
 
-from typing import Annotated, Literal
+from enum import IntEnum
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
-from bezierplan.planners import Plan, Range, ant_colony
+from bezierplan.planners import About, Plan, Range, ant_colony
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import check_pairs
+from bezierplan.planners.parts.settings import with_settings
 from bezierplan.workspaces.lattice import Corners, lattice, points
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -18,81 +20,81 @@ workspaces = ("grid",)
 exact = True
 
 
+Mutation = IntEnum("Mutation", {"one_cell": cell_paths.ONE_CELL, "reconnect": cell_paths.RECONNECT})
+
+
+class Settings(NamedTuple):
+    """Settings of the genetic algorithm, beside those of the colony; ma2020 gives none."""
+
+    population: Annotated[int, Range(2), About("paths of a generation")]
+    generations: Annotated[int, Range(0), About("generations after the first")]
+    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents")]
+    mutation_probability: Annotated[float, Range(0, 1), About("of a child")]
+    mutation: Annotated[
+        Mutation, About("an inner cell becomes another one next to the same two, or a section is reconnected through a random cell")
+    ]
+    longest_join: Annotated[int, Range(2), About("most cells of a reconnected section")]
+    elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a child")]
+
+
 def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     check_pairs(settings["population"])
 
 
-def plan(
-    problem: Problem,
-    rng: np.random.Generator,
-    *,
-    corners: Corners,
-    ants: Annotated[int, Range(1)],
-    iterations: Annotated[int, Range(1)],
-    trail_weight: Annotated[float, Range(0)],
-    heuristic_weight: Annotated[float, Range(0)],
-    target_heuristic: Annotated[float, Range(0)],
-    initial_trail: Annotated[float, Range(0)],
-    evaporation: Annotated[float, Range(0, 1)],
-    deposit: Annotated[float, Range(0)],
-    trail_update: Literal["ant_system", "ant_colony_system"],
-    exploitation: Annotated[float, Range(0, 1)],
-    local_evaporation: Annotated[float, Range(0, 1)],
-    population: Annotated[int, Range(2)],
-    generations: Annotated[int, Range(0)],
-    crossover_probability: Annotated[float, Range(0, 1)],
-    mutation_probability: Annotated[float, Range(0, 1)],
-    mutation: Literal["one_cell", "reconnect"],
-    longest_join: Annotated[int, Range(2)],
-    elitism: Annotated[int, Range(0, 1)],
-) -> Plan:
-    """Shortest path over the 8-connected lattice of a grid; its objective is its length in units, infinite if there is no path.
+@with_settings(ant_colony.Settings, Settings)
+def plan(problem: Problem, rng: np.random.Generator, ants: ant_colony.Settings, settings: Settings) -> Plan:
+    """Shortest path over the 8-connected lattice of a grid.
 
-    corners to local_evaporation: as in `ant_colony`. The first population consists of the best path of all ants and the paths of the last
-    iteration's ants, repeated in turn. crossover_probability: of a pair of parents. mutation_probability: of a child; mutation: a random
-    inner cell of its path is replaced by another one next to the same two cells (one_cell), or a section is reconnected through a random
-    cell, within longest_join cells (reconnect). Children lose their loops. elitism: whether the best so far replaces a child.
+    The first population consists of the best path of all ants and the paths of the last iteration's ants, repeated in turn. Children lose
+    their loops.
 
-    The history covers the iterations of the ants, then the generations. Raises ValueError if start or target is not in a free cell.
+    Parameters
+    ----------
+    problem : Problem
+        On a grid.
+    rng : numpy.random.Generator
+        The only source of random numbers.
+
+    Returns
+    -------
+    Plan
+        Its objective is its length in units, infinite if there is no path. The history covers the iterations of the ants, then the
+        generations.
+
+    Raises
+    ------
+    ValueError
+        If start or target is not in a free cell.
+
+    References
+    ----------
+    ma2020, Section 4.1, reference 30.
     """
     grid = problem.workspace
-    places = lattice(grid, problem.start, problem.target, corners)
+    places = lattice(grid, problem.start, problem.target, Corners(ants.corners).name)
     first, moves = rng.spawn(2)
-    colony_rules = ant_colony.Rules(
-        ants=ants,
-        iterations=iterations,
-        trail_weight=float(trail_weight),
-        heuristic_weight=float(heuristic_weight),
-        target_heuristic=float(target_heuristic),
-        initial_trail=float(initial_trail),
-        evaporation=float(evaporation),
-        deposit=float(deposit),
-        best_only=trail_update == "ant_colony_system",
-        exploitation=float(exploitation),
-        local_evaporation=float(local_evaporation),
-    )
-    colony = ant_colony.search(places, first, colony_rules)
+    colony = ant_colony.search(places, first, ants)
     best, history = colony.best, colony.history
     found = len(best) > 0
     if found and places.start != places.target:
         rules = cell_paths.Rules(
-            float(crossover_probability),
+            settings.crossover_probability,
             True,
-            float(mutation_probability),
-            cell_paths.ONE_CELL if mutation == "one_cell" else cell_paths.RECONNECT,
-            longest_join,
+            settings.mutation_probability,
+            settings.mutation,
+            settings.longest_join,
             0,
             True,
-            elitism,
+            settings.elitism,
         )
-        best, later = cell_paths.evolve(moves, places, *_first_population(colony, population), generations, rules)
+        best, later = cell_paths.evolve(moves, places, *_first_population(colony, settings.population), settings.generations, rules)
         history = np.concatenate([history, later[1:]])
     return Plan(
         path=Path("polyline", points(grid, problem.start, problem.target, best)) if found else None,
         objective=history[-1] * grid.cell,
         claimed_feasible=found,
-        evaluations=ants * len(colony.history) + population * (len(history) - len(colony.history)),
+        evaluations=ants.ants * len(colony.history) + settings.population * (len(history) - len(colony.history)),
         history=history * grid.cell,
         stop="generations" if found else "no path",
         extra={},

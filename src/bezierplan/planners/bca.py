@@ -8,28 +8,31 @@ Every form of the fitness is expressed as a cost, its reciprocal: the roulette u
 """
 
 import math
+from enum import IntEnum
 from functools import cache
-from typing import Annotated, Literal, NamedTuple, get_args
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free, compiled
-from bezierplan.planners import Plan, Range
+from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.genetic import check_pairs, complement_bit, redraw_gene, roulette, swap_tails
 from bezierplan.planners.parts.random_integers import integer
+from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
 from bezierplan.workspaces.grid import ON_LINE, Grid
 from bezierplan.workspaces.problem import Path, Problem
 
 extra = ("bad_samples", "safety_term")
 workspaces = ("grid",)
 
-CurveKind = Literal["bezier", "piecewise_quadratic"]
-Fitness = Literal["length", "repaired", "literal_weights", "hard_safety", "reciprocal_literal", "as_printed"]
-FitnessFeasible = Literal["collision_free", "clearance"]
-Mutation = Literal["bit_flip", "cell", "per_gene"]
-_LENGTH, _REPAIRED, _LITERAL_WEIGHTS, _HARD_SAFETY, _RECIPROCAL_LITERAL, _AS_PRINTED = range(6)
-_BIT_FLIP, _CELL, _PER_GENE = range(3)
+PAPER = "ma2020"
+
+CurveKind = IntEnum("CurveKind", "bezier piecewise_quadratic", start=0)
+Initial = IntEnum("Initial", "uniform sorted feasible", start=0)
+Fitness = IntEnum("Fitness", "length repaired literal_weights hard_safety reciprocal_literal as_printed", start=0)
+FitnessFeasible = IntEnum("FitnessFeasible", "collision_free clearance", start=0)
+Mutation = IntEnum("Mutation", "bit_flip cell per_gene", start=0)
 
 # Maximum number of draws of a bit until the flipped gene is a free cell (after that, the gene stays as it is), and of a chromosome until
 # its curve is free.
@@ -37,6 +40,50 @@ _FLIP_TRIES = 50
 _FEASIBLE_TRIES = 200
 # If a chord crosses two grid lines at parameters that differ by less than this, it crosses them at their common corner.
 _AT_CORNER = 1e-12
+
+
+class Settings(NamedTuple):
+    """Settings of the search (ma2020, Sections 3 and 4).
+
+    Notes
+    -----
+    With the length L, c of n samples in collision, G = L (1 + collision_factor c / n) + collision_surcharge [c > 0], the weights w1 =
+    length_weight and w2 = safety_weight, the straight distance D and the safety term F of eq. 14 (1 for c > 0), the cost is
+
+        length              G (BCA)
+        repaired            w1 G / D + w2 F (BCA-Q)
+        literal_weights     w1 G + w2 F
+        hard_safety         G + collision_surcharge F
+        reciprocal_literal  L of a feasible path, w1 L + w2 F of the others
+        as_printed          1 / L of a feasible path, w1 L + w2 F of the others (eq. 12)
+    """
+
+    curve: Annotated[CurveKind, About("one Bezier curve, or a chain of quadratic pieces", f"{PAPER}, eqs. 1, 6")]
+    control_points: Annotated[int, Range(0, 60), About("free control points, beside start and target")]
+    samples: Annotated[int, Range(2), About("points of the curve tested and measured, uniform in the parameter, both ends included")]
+    initial: Annotated[
+        Initial,
+        About("genes are free cells drawn uniformly; also sorted by x + y; or redrawn until the curve is free"),
+    ]
+    population: Annotated[int, Range(2), About("chromosomes of a generation", f"{PAPER}, Section 4")]
+    generations: Annotated[int, Range(0), About("generations after the first", f"{PAPER}, Section 4")]
+    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents, cut between two genes", f"{PAPER}, Section 4")]
+    mutation_probability: Annotated[float, Range(0, 1), About("of a chromosome, or (per_gene) of each gene", f"{PAPER}, Section 4")]
+    mutation: Annotated[
+        Mutation,
+        About("a gene's bit is flipped such that it stays a free cell, it becomes a random free cell, or a bit of each is flipped"),
+    ]
+    elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a chromosome")]
+    fitness: Annotated[Fitness, About("form of the cost, whose reciprocal is the fitness", f"{PAPER}, eqs. 12 to 14")]
+    fitness_feasible: Annotated[
+        FitnessFeasible,
+        About("feasible in the last two forms: free of collisions, or also clear by safety_distance"),
+    ]
+    length_weight: Annotated[float, Range(0), About("w1", f"{PAPER}, eq. 12")]
+    safety_weight: Annotated[float, Range(0), About("w2", f"{PAPER}, eq. 12")]
+    safety_distance: Annotated[float, Range(0), About("distance to keep from obstacles", f"{PAPER}, eq. 14", UNITS)]
+    collision_factor: Annotated[float, Range(0), About("length added for samples in collision, as a multiple of their share")]
+    collision_surcharge: Annotated[float, Range(0), About("added to a path with a collision", unit=UNITS)]
 
 
 def check(settings: dict) -> None:
@@ -52,95 +99,59 @@ def check(settings: dict) -> None:
         raise ValueError("length_weight: 0; a path without any cost has no fitness, so a number above 0 is needed")
 
 
-def plan(
-    problem: Problem,
-    rng: np.random.Generator,
-    *,
-    curve: CurveKind,
-    control_points: Annotated[int, Range(0, 60)],
-    samples: Annotated[int, Range(2)],
-    initial: Literal["uniform", "sorted", "feasible"],
-    population: Annotated[int, Range(2)],
-    generations: Annotated[int, Range(0)],
-    crossover_probability: Annotated[float, Range(0, 1)],
-    mutation_probability: Annotated[float, Range(0, 1)],
-    mutation: Mutation,
-    elitism: Annotated[int, Range(0, 1)],
-    fitness: Fitness,
-    fitness_feasible: FitnessFeasible,
-    length_weight: Annotated[float, Range(0)],
-    safety_weight: Annotated[float, Range(0)],
-    safety_distance: Annotated[float, Range(0)],
-    collision_factor: Annotated[float, Range(0)],
-    collision_surcharge: Annotated[float, Range(0)],
-) -> Plan:
-    """Curve with `control_points` free control points at centres of free cells (ma2020, Sections 3.2 to 3.4).
+@with_settings(Settings)
+def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
+    """Curve with free control points at centres of free cells.
 
-    curve: one Bezier curve, or a chain of quadratic pieces. samples: points of the curve that are tested and measured, uniform in the
-    parameter, both ends included. initial: genes are free cells drawn uniformly; the same, `sorted` by x + y; or redrawn until the curve is
-    collision-free, at most 200 times (`feasible`). crossover_probability: of a pair of parents, cut between two genes.
-    mutation_probability: that of a chromosome, in which one random bit of one gene is flipped such that the gene is still a free cell
-    (`bit_flip`), or the gene becomes a random free `cell`; or that of each gene, of which a bit is flipped (`per_gene`). elitism: how many
-    of the best so far replace a chromosome.
+    Parameters
+    ----------
+    problem : Problem
+        On a grid.
+    rng : numpy.random.Generator
+        The only source of random numbers.
 
-    fitness: 1 / cost. With the length L, c of n samples in collision, G = L (1 + collision_factor c / n) + collision_surcharge [c > 0], the
-    weights w1 = length_weight and w2 = safety_weight, the straight distance D and the safety term F of eq. 14 (1 for c > 0), the cost is
+    Returns
+    -------
+    Plan
+        `claimed_feasible`: no sample collides. Extra columns: bad_samples, the number of colliding samples; safety_term, the path's F.
 
-        length              G (BCA)
-        repaired            w1 G / D + w2 F (BCA-Q)
-        literal_weights     w1 G + w2 F
-        hard_safety         G + collision_surcharge F
-        reciprocal_literal  L of a feasible path, w1 L + w2 F of the others
-        as_printed          1 / L of a feasible path, w1 L + w2 F of the others (eq. 12)
+    Raises
+    ------
+    ValueError
+        If the map has no free cell.
 
-    fitness_feasible: what feasible means in the last two forms: collision_free, or also nowhere closer to an obstacle than the safety
-    distance (clearance). safety_distance and collision_surcharge are in units of length.
-
-    The planner's own test: no sample collides. Extra columns: bad_samples, the number of colliding samples; safety_term, the path's F.
-
-    Raises ValueError if the map has no free cell.
+    References
+    ----------
+    ma2020, Sections 3.2 to 3.4.
     """
     grid = problem.workspace
     if problem.start == problem.target:
         # Start and target coincide: there is no length to minimise and no distance to divide by.
         point = Path("bezier", np.array([problem.start, problem.target]))
         return Plan(point, 0.0, True, 1, np.zeros(1), "generations", {"bad_samples": 0, "safety_term": 0.0})
-    if control_points == 0:
+    if settings.control_points == 0:
         # No search needed: one chromosome, the straight line.
-        population, generations = 1, 0
-    rules = _Rules(
-        crossover_probability=float(crossover_probability),
-        mutation_probability=float(mutation_probability),
-        mutation=get_args(Mutation).index(mutation),
-        elitism=elitism,
-        fitness=get_args(Fitness).index(fitness),
-        clear_is_feasible=get_args(FitnessFeasible).index(fitness_feasible),
-        length_weight=float(length_weight),
-        safety_weight=float(safety_weight),
-        safety_distance=safety_distance / grid.cell,
-        collision_factor=float(collision_factor),
-        collision_surcharge=collision_surcharge / grid.cell,
-        straight=math.dist(problem.start, problem.target) / grid.cell,
-        cell=grid.cell,
-    )
+        settings = settings._replace(population=1, generations=0)
+    rules = in_cells(settings, grid.cell)
+    curve = CurveKind(settings.curve).name
     cells = _cells(grid, math.ceil(rules.safety_distance))
-    sampled = _sampled(problem, curve, control_points, samples)
+    sampled = _sampled(problem, curve, settings.control_points, settings.samples)
     starts, moves = rng.spawn(2)
-    codes = cells.free[starts.integers(0, len(cells.free), size=(population, control_points))]
-    if initial == "sorted":
+    codes = cells.free[starts.integers(0, len(cells.free), size=(settings.population, settings.control_points))]
+    if settings.initial == Initial.sorted:
         along = cells.centres[codes].sum(axis=2)
         codes = np.take_along_axis(codes, along.argsort(axis=1, kind="stable"), axis=1)
-    elif initial == "feasible":
+    elif settings.initial == Initial.feasible:
         _redraw(starts, codes, cells, sampled)
 
-    best, history = _search(moves, codes, cells, sampled, rules, generations)
-    _, bad, clearance = _measure(best, cells, sampled, np.empty((3, samples)), True)
+    best, history = _search(moves, codes, cells, sampled, rules)
+    _, bad, clearance = _measure(best, cells, sampled, np.empty((3, settings.samples)), True)
     points = np.vstack([problem.start, grid.in_units(cells.centres[best]), problem.target])
     return Plan(
         path=Path(curve, points),
         objective=history[-1],
         claimed_feasible=bad == 0,
-        evaluations=population * (generations + 1),
+        evaluations=settings.population * (settings.generations + 1),
         history=history,
         stop="generations",
         extra={"bad_samples": int(bad), "safety_term": _safety_term(bad, clearance, rules.safety_distance)},
@@ -165,28 +176,11 @@ class _Cells(NamedTuple):
 
 class _Curve(NamedTuple):
     """ends: (2, samples), x and y contributions of start and target to the samples, in cells. free: (control points, samples), the weights
-    of the free control points."""
+    of the free control points. straight: distance from start to target, in cells. cell: side of a cell, in units.
+    """
 
     ends: np.ndarray
     free: np.ndarray
-
-
-class _Rules(NamedTuple):
-    """Settings of `plan` for the kernels, choices as numbers, lengths in cells; straight: distance from start to target; cell: side of a
-    cell.
-    """
-
-    crossover_probability: float
-    mutation_probability: float
-    mutation: int
-    elitism: int
-    fitness: int
-    clear_is_feasible: int
-    length_weight: float
-    safety_weight: float
-    safety_distance: float
-    collision_factor: float
-    collision_surcharge: float
     straight: float
     cell: float
 
@@ -217,7 +211,9 @@ def _cells(grid: Grid, reach: int) -> _Cells:
 
 def _sampled(problem: Problem, curve: str, control_points: int, samples: int) -> _Curve:
     ends, free = _basis(curve, control_points, samples)
-    return _Curve(problem.workspace.in_cells(np.array([problem.start, problem.target])).T @ ends, free)
+    grid = problem.workspace
+    straight = math.dist(problem.start, problem.target) / grid.cell
+    return _Curve(grid.in_cells(np.array([problem.start, problem.target])).T @ ends, free, straight, grid.cell)
 
 
 @cache
@@ -229,7 +225,7 @@ def _basis(curve: str, control_points: int, samples: int) -> tuple[np.ndarray, n
 
 
 @compiled
-def _search(rng, codes, cells, curve, rules, generations):
+def _search(rng, codes, cells, curve, rules):
     """Genes (control points,) of the best chromosome, and the lowest cost so far (generations + 1,).
 
     codes: (population, control points), the first generation; overwritten.
@@ -239,10 +235,10 @@ def _search(rng, codes, cells, curve, rules, generations):
     cost, parent_cost = np.empty(population), np.empty(population)
     parents, drawn = np.full_like(codes, -1), np.zeros(population, dtype=np.int64)  # the first generation inherits nothing
     best, best_cost = codes[0].copy(), np.inf
-    history = np.empty(generations + 1)
+    history = np.empty(rules.generations + 1)
     scratch = np.empty((3, curve.ends.shape[1]))
 
-    for generation in range(generations + 1):
+    for generation in range(rules.generations + 1):
         for i in range(population):
             # A child equal to one of its parents takes over its cost, which changes no result.
             mother, father = drawn[i - i % 2], drawn[min(i | 1, population - 1)]
@@ -256,7 +252,7 @@ def _search(rng, codes, cells, curve, rules, generations):
                 _copy(codes[i], best)
                 best_cost = cost[i]
         history[generation] = best_cost
-        if generation == generations:
+        if generation == rules.generations:
             break
 
         parents, codes = codes, parents
@@ -289,12 +285,12 @@ def _redraw(rng, codes, cells, curve):
 @allocation_free
 def _mutate(rng, genes, bits, cells, rules):
     """Change random genes of a chromosome in place (ma2020, Section 3.4)."""
-    if rules.mutation == _PER_GENE:
+    if rules.mutation == Mutation.per_gene:
         for gene in range(len(genes)):
             if rng.random() < rules.mutation_probability:
                 _flip(rng, genes, gene, bits, cells.legal)
     elif rng.random() < rules.mutation_probability:
-        if rules.mutation == _BIT_FLIP:
+        if rules.mutation == Mutation.bit_flip:
             _flip(rng, genes, integer(rng, 0, len(genes)), bits, cells.legal)
         else:
             redraw_gene(rng, genes, cells.free)
@@ -314,20 +310,20 @@ def _flip(rng, genes, gene, bits, legal):
 @allocation_free
 def _cost(genes, cells, curve, rules, scratch):
     """Cost of a chromosome, the reciprocal of its fitness (`plan` lists the forms)."""
-    length, bad, clearance = _measure(genes, cells, curve, scratch, rules.fitness != _LENGTH)
+    length, bad, clearance = _measure(genes, cells, curve, scratch, rules.fitness != Fitness.length)
     priced = length * (1.0 + rules.collision_factor * bad / curve.ends.shape[1]) + rules.collision_surcharge * (bad > 0)
-    if rules.fitness == _LENGTH:
-        return priced * rules.cell
+    if rules.fitness == Fitness.length:
+        return priced * curve.cell
     safety = _safety_term(bad, clearance, rules.safety_distance)
-    if rules.fitness == _REPAIRED:
-        return rules.length_weight * priced / rules.straight + rules.safety_weight * safety
-    if rules.fitness == _LITERAL_WEIGHTS:
-        return rules.length_weight * priced * rules.cell + rules.safety_weight * safety
-    if rules.fitness == _HARD_SAFETY:
-        return (priced + rules.collision_surcharge * safety) * rules.cell
-    if bad > 0 or (rules.clear_is_feasible and clearance < rules.safety_distance):
-        return rules.length_weight * length * rules.cell + rules.safety_weight * safety
-    return length * rules.cell if rules.fitness == _RECIPROCAL_LITERAL else 1.0 / (length * rules.cell)
+    if rules.fitness == Fitness.repaired:
+        return rules.length_weight * priced / curve.straight + rules.safety_weight * safety
+    if rules.fitness == Fitness.literal_weights:
+        return rules.length_weight * priced * curve.cell + rules.safety_weight * safety
+    if rules.fitness == Fitness.hard_safety:
+        return (priced + rules.collision_surcharge * safety) * curve.cell
+    if bad > 0 or (rules.fitness_feasible == FitnessFeasible.clearance and clearance < rules.safety_distance):
+        return rules.length_weight * length * curve.cell + rules.safety_weight * safety
+    return length * curve.cell if rules.fitness == Fitness.reciprocal_literal else 1.0 / (length * curve.cell)
 
 
 @allocation_free

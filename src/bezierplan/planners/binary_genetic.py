@@ -8,23 +8,49 @@ The objective is a sum over stretches of the curve: runs of samples that depend 
 pieces). A stretch that a child inherits whole from a parent keeps the parent's length, which changes no result.
 """
 
-from typing import Annotated, Literal, NamedTuple, get_args
+from enum import IntEnum
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free, compiled
-from bezierplan.planners import Plan, Range
+from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.genetic import check_pairs, complement_bit, roulette, swap_tails
 from bezierplan.planners.parts.random_integers import integer
+from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
 from bezierplan.workspaces.grid import ON_LINE, embed
 from bezierplan.workspaces.problem import Path, Problem
 
 extra = ("bad_samples",)
 workspaces = ("grid",)
 
-Mutation = Literal["one_bit", "each_gene", "each_bit"]
-_ONE_BIT, _EACH_GENE, _EACH_BIT = range(3)
+PAPER = "song2016"
+
+Curve = IntEnum("Curve", "polyline piecewise_quadratic piecewise_cubic bezier", start=0)
+Spacing = IntEnum("Spacing", "parameter arc_length", start=0)
+Cut = IntEnum("Cut", "bit gene", start=0)
+Mutation = IntEnum("Mutation", "one_bit each_gene each_bit", start=0)
+PenaltyFor = IntEnum("PenaltyFor", "each_sample path", start=0)
+
+
+class Settings(NamedTuple):
+    """Settings of the search (song2016, Sections III and IV)."""
+
+    curve: Annotated[Curve, About("kind of curve", f"{PAPER}, Section III")]
+    genes: Annotated[int, Range(0, 60), About("free control points, beside start and target", f"{PAPER}, Section IV")]
+    samples: Annotated[int, Range(2), About("points of the curve tested and measured, both ends included")]
+    spacing: Annotated[Spacing, About("samples are uniform in the parameter, or (polylines) along the path")]
+    population: Annotated[int, Range(2), About("chromosomes of a generation", f"{PAPER}, Section IV")]
+    generations: Annotated[int, Range(0), About("generations after the first", f"{PAPER}, Section IV")]
+    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents", f"{PAPER}, Section IV")]
+    cut: Annotated[Cut, About("the crossover point lies before any bit, or only between genes")]
+    mutation_probability: Annotated[float, Range(0, 1), About("of a chromosome, a gene or a bit", f"{PAPER}, Section IV")]
+    mutation: Annotated[Mutation, About("a bit of a chromosome is complemented, one of each gene, or each", f"{PAPER}, Section III-E")]
+    elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a chromosome")]
+    penalty: Annotated[float, Range(0), About("added for occupied samples", f"{PAPER}, Section IV", UNITS)]
+    penalty_for: Annotated[PenaltyFor, About("each sample in an occupied cell, or once a path with any")]
+    occupied_point_penalty: Annotated[float, Range(0), About("added for each control point in an occupied cell", unit=UNITS)]
 
 
 def check(settings: dict) -> None:
@@ -42,35 +68,25 @@ def check(settings: dict) -> None:
         raise ValueError(f"samples: {settings['samples']}; the {pieces} pieces of this curve need at least {pieces + 1}")
 
 
-def plan(
-    problem: Problem,
-    rng: np.random.Generator,
-    *,
-    curve: Literal["polyline", "piecewise_quadratic", "piecewise_cubic", "bezier"],
-    genes: Annotated[int, Range(0, 60)],
-    samples: Annotated[int, Range(2)],
-    spacing: Literal["parameter", "arc_length"],
-    population: Annotated[int, Range(2)],
-    generations: Annotated[int, Range(0)],
-    crossover_probability: Annotated[float, Range(0, 1)],
-    cut: Literal["bit", "gene"],
-    mutation_probability: Annotated[float, Range(0, 1)],
-    mutation: Mutation,
-    elitism: Annotated[int, Range(0, 1)],
-    penalty: Annotated[float, Range(0)],
-    penalty_for: Literal["each_sample", "path"],
-    occupied_point_penalty: Annotated[float, Range(0)],
-) -> Plan:
-    """Shortest penalised curve through `genes` free control points (song2016, Sections III and IV).
+@with_settings(Settings)
+def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
+    """Shortest penalised curve through free control points.
 
-    curve: the curve kind, with genes + 2 control points. samples: points of the curve that are tested and measured, both ends included;
-    spacing: uniform in the parameter, or (polylines) along the path. crossover_probability: of a pair of parents; cut: the crossover point
-    lies before any bit, or only between genes. mutation_probability: of a chromosome, in which one_bit is complemented; of each_gene,
-    likewise; or of each_bit. elitism: how many of the best so far replace a chromosome. penalty: in units of length, for each_sample in an
-    occupied cell, or once for a path with any such sample. occupied_point_penalty: in units of length, for each control point in an
-    occupied cell.
+    Parameters
+    ----------
+    problem : Problem
+        On a grid.
+    rng : numpy.random.Generator
+        The only source of random numbers.
 
-    The planner's own test: no sample in an occupied cell. Extra column: bad_samples, the number of samples in occupied cells.
+    Returns
+    -------
+    Plan
+        `claimed_feasible`: no sample in an occupied cell. Extra column: bad_samples, the number of samples in occupied cells.
+
+    References
+    ----------
+    song2016, Sections III and IV.
     """
     grid = problem.workspace
     occupied = embed(grid.occupied)
@@ -79,42 +95,31 @@ def plan(
     places = np.vstack([np.column_stack([column, row]) + 0.5, grid.in_cells(np.array([problem.start, problem.target]))])
     ends = [occupied.size, occupied.size + 1]
     starts, moves = rng.spawn(2)
-    if genes == 0 or problem.start == problem.target:
+    if settings.genes == 0 or problem.start == problem.target:
         # No search needed: one chromosome, the straight line or the point.
-        population = 1
-        generations = 0
-        cells = np.full((1, genes + 2), ends[0])
+        settings = settings._replace(population=1, generations=0)
+        cells = np.full((1, settings.genes + 2), ends[0])
     else:
-        cells = np.empty((population, genes + 2), dtype=np.int64)
-        cells[:, 1:-1] = starts.integers(0, occupied.size, size=(population, genes))
+        cells = np.empty((settings.population, settings.genes + 2), dtype=np.int64)
+        cells[:, 1:-1] = starts.integers(0, occupied.size, size=(settings.population, settings.genes))
     cells[:, 0], cells[:, -1] = ends
 
-    basis = curves.sample_matrix(curve, genes + 2, samples)
-    by_arc_length = spacing == "arc_length"
+    curve = Curve(settings.curve).name
+    basis = curves.sample_matrix(curve, settings.genes + 2, settings.samples)
+    by_arc_length = settings.spacing == Spacing.arc_length
     measured = _Curve(
         basis=np.ascontiguousarray(basis.T),
-        stretches=np.array([[0, genes + 1, 0, samples - 1]]) if by_arc_length else stretches(basis),
+        stretches=np.array([[0, settings.genes + 1, 0, settings.samples - 1]]) if by_arc_length else stretches(basis),
         by_arc_length=by_arc_length,
     )
-    rules = _Rules(
-        generations=generations,
-        crossover_probability=float(crossover_probability),
-        cut_between_genes=cut == "gene",
-        mutation_probability=float(mutation_probability),
-        mutation=get_args(Mutation).index(mutation),
-        elitism=elitism,
-        penalty=penalty / grid.cell,
-        penalty_for_each=penalty_for == "each_sample",
-        occupied_point_penalty=occupied_point_penalty / grid.cell,
-    )
-    best, best_bad, history = _search(moves, cells, occupied, places, measured, rules)
+    best, best_bad, history = _search(moves, cells, occupied, places, measured, in_cells(settings, grid.cell))
     points = grid.in_units(places[best])
     points[[0, -1]] = problem.start, problem.target
     return Plan(
         path=Path(curve, points),
         objective=history[-1] * grid.cell,
         claimed_feasible=best_bad == 0,
-        evaluations=population * (generations + 1),
+        evaluations=settings.population * (settings.generations + 1),
         history=history * grid.cell,
         stop="generations",
         extra={"bad_samples": int(best_bad)},
@@ -140,20 +145,6 @@ class _Curve(NamedTuple):
     basis: np.ndarray
     stretches: np.ndarray
     by_arc_length: bool
-
-
-class _Rules(NamedTuple):
-    """Settings of `plan` for the search; penalties in cells."""
-
-    generations: int
-    crossover_probability: float
-    cut_between_genes: bool
-    mutation_probability: float
-    mutation: int
-    elitism: int
-    penalty: float
-    penalty_for_each: bool
-    occupied_point_penalty: float
 
 
 @compiled
@@ -191,7 +182,7 @@ def _search(rng, cells, occupied, places, curve, rules):
                     lengths[i, k], bad[i, k] = _measure(cells[i], occupied, places, basis, stretches[k], x, y)
                 length += lengths[i, k]
                 count += bad[i, k]
-                objective[i] = length + rules.penalty * (count if rules.penalty_for_each else min(count, 1))
+                objective[i] = length + rules.penalty * (count if rules.penalty_for == PenaltyFor.each_sample else min(count, 1))
                 # No other stretch makes it smaller, and only parents need to be measured in full.
                 if generation == rules.generations and objective[i] >= best_objective:
                     break
@@ -213,7 +204,7 @@ def _search(rng, cells, occupied, places, curve, rules):
             _copy(parents[drawn[i]], cells[i])
         for i in range(0, population, 2):
             if rng.random() < rules.crossover_probability:
-                cut = bits * integer(rng, 1, genes) if rules.cut_between_genes else integer(rng, 1, bits * genes)
+                cut = bits * integer(rng, 1, genes) if rules.cut == Cut.gene else integer(rng, 1, bits * genes)
                 swap_tails(cells[i, 1:-1], cells[i + 1, 1:-1], cut, bits)
         for i in range(population):
             _mutate(rng, cells[i, 1:-1], bits, rules.mutation_probability, rules.mutation)
@@ -241,10 +232,10 @@ def _same(cells, others, first, last):
 @allocation_free
 def _mutate(rng, genes, bits, probability, mutation):
     """Complement random bits of a chromosome in place (song2016, Section III-E describes `one_bit`)."""
-    if mutation == _ONE_BIT:
+    if mutation == Mutation.one_bit:
         if rng.random() < probability:
             complement_bit(genes, integer(rng, 0, bits * len(genes)), bits)
-    elif mutation == _EACH_GENE:
+    elif mutation == Mutation.each_gene:
         for gene in range(len(genes)):
             if rng.random() < probability:
                 complement_bit(genes, gene * bits + integer(rng, 0, bits), bits)

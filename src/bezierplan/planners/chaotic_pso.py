@@ -11,16 +11,18 @@ particle by particle, and for each move r1 before r2; the number that the chaoti
 
 import logging
 import math
+from enum import IntEnum
 from functools import cache
-from typing import Annotated, Any, Literal, NamedTuple, get_args
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
 from bezierplan.geometry import curves
 from bezierplan.kernels import allocation_free, compiled
-from bezierplan.planners import Plan, Range
+from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import chaotic_maps, penalised
 from bezierplan.planners.parts.penalised import FEASIBLE, Objective, Penalty
+from bezierplan.planners.parts.settings import UNITS, filled, with_settings
 from bezierplan.workspaces.problem import Path, Problem
 
 logger = logging.getLogger(__name__)
@@ -38,12 +40,15 @@ extra = (
 )
 workspaces = ("circles", "polygons")
 
-ChaoticTerm = Literal["none", "cognitive", "social"]
-RandomNumbers = Literal["dimension", "particle", "iteration"]
-BoundRule = Literal["mirror", "clamp", "stop", "none"]
-_NO_TERM, _COGNITIVE, _SOCIAL = range(3)
-_EACH_DIMENSION, _EACH_PARTICLE, _EACH_ITERATION = range(3)
-_MIRROR, _CLAMP, _STOP, _NO_BOUND = range(4)
+PAPER = "tharwat2018"
+
+ChaoticTerm = IntEnum("ChaoticTerm", "none cognitive social", start=0)
+RandomNumbers = IntEnum("RandomNumbers", "dimension particle iteration", start=0)
+BoundRule = IntEnum("BoundRule", "mirror clamp stop none", start=0)
+Curve = IntEnum("Curve", "bezier spline ferguson", start=0)
+Update = IntEnum("Update", "asynchronous synchronous", start=0)
+StartRule = IntEnum("StartRule", "random fixed", start=0)
+ZetaFor = IntEnum("ZetaFor", "iteration particle dimension", start=0)
 
 # This share of the particles starts around a given path, at a distance of about this share of the field's side per coordinate.
 _AROUND = 0.5
@@ -72,37 +77,53 @@ class Swarm(NamedTuple):
 
 
 class Settings(NamedTuple):
-    """The settings of `plan`, under the same names."""
+    """Settings of a swarm (tharwat2018, Table 2 and Sections 3 to 5)."""
 
-    curve: str
-    control_points: int
-    samples: int
-    penalty: str
-    beta: float
-    d_min: float
-    particles: int
-    iterations: int
-    stall_limit: int
-    straight_line_particle: bool
-    c1: float
-    c2: float
-    inertia: float
-    inertia_damping: float
-    velocity_limit: float
-    bound_rule: str
-    random_numbers: str
-    update: str
-    chaotic_term: str
-    chaotic_map: str
-    chaotic_start_rule: str
-    chaotic_start: float
-    zeta_for: str
-    singer_mu: float
-    singer_x4: float
-    sine_a: float
-    piecewise_p: float
-    sinusoidal_a: float
-    count_collisions: bool
+    curve: Annotated[
+        Curve, About("kind of curve; a ferguson curve's control points alternate between tangents and points", f"{PAPER}, eqs. 1, 2")
+    ]
+    control_points: Annotated[int, Range(0, 60), About("free control points, beside start and target", f"{PAPER}, Section 5.1")]
+    samples: Annotated[int, Range(2), About("points of the curve tested and measured, uniform in the parameter, both ends included")]
+    penalty: Annotated[
+        Penalty,
+        About(
+            "fitness of length L and violation V: L (1 + beta V), L + beta V, or (death) beta if V > 0",
+            f"{PAPER}, eq. 22, which leaves it open",
+        ),
+    ]
+    beta: Annotated[float, Range(0), About("weight of the violation, or fitness of a dead path")]
+    d_min: Annotated[float, Range(0), About("added to every radius", f"{PAPER}, eq. 21", unit=UNITS)]
+    particles: Annotated[int, Range(1), About("particles of the swarm", f"{PAPER}, Table 2")]
+    iterations: Annotated[int, Range(0), About("most iterations", f"{PAPER}, Table 2")]
+    stall_limit: Annotated[
+        int, Range(0), About("iterations without improvement that end the search, 0 for none", f"{PAPER}, Section 4.2.1")
+    ]
+    straight_line_particle: Annotated[bool, About("whether the first particle starts as the straight line", f"{PAPER}, Section 3.2")]
+    c1: Annotated[float, Range(0), About("C1, the cognition learning factor", f"{PAPER}, Table 2")]
+    c2: Annotated[float, Range(0), About("C2, the social learning factor", f"{PAPER}, Table 2")]
+    inertia: Annotated[float, Range(0), About("w of the first iteration")]
+    inertia_damping: Annotated[float, Range(0, 1), About("factor of w from one iteration to the next")]
+    velocity_limit: Annotated[float, Range(0, math.inf), About("largest step, as a share of the field's side; infinite for no limit")]
+    bound_rule: Annotated[
+        BoundRule, About("outside the field: moved to its border, the velocity mirrored, kept (clamp) or zero (stop); or left there (none)")
+    ]
+    random_numbers: Annotated[RandomNumbers, About("what gets its own r1 and r2")]
+    update: Annotated[
+        Update, About("the swarm's best path is replaced as soon as a better one is found, or once all have moved", f"{PAPER}, Algorithm 1")
+    ]
+    chaotic_term: Annotated[ChaoticTerm, About("term whose random number the chaotic sequence replaces", f"{PAPER}, eqs. 17, 18")]
+    chaotic_map: Annotated[chaotic_maps.Map, About("map of the chaotic sequence", f"{PAPER}, eqs. 9 to 16")]
+    chaotic_start_rule: Annotated[StartRule, About("how the chaotic sequence starts", f"{PAPER}, Figure 3")]
+    chaotic_start: Annotated[float, Range(0, 1), About("first number under the rule fixed; of the map constant every number")]
+    zeta_for: Annotated[ZetaFor, About("what gets its own number of the sequence", f"{PAPER}, eqs. 17, 18")]
+    singer_mu: Annotated[float, Range(0.9, 1.08), About("mu", f"{PAPER}, eq. 10")]
+    singer_x4: Annotated[float, Range(13, 14), About("coefficient of x^4, usually 13.302875", f"{PAPER}, eq. 10")]
+    sine_a: Annotated[float, Range(0, 4), About("a", f"{PAPER}, eq. 14")]
+    piecewise_p: Annotated[float, Range(0.01, 0.49), About("P", f"{PAPER}, eq. 15")]
+    sinusoidal_a: Annotated[float, Range(0, 4), About("a", f"{PAPER}, eq. 16")]
+    count_collisions: Annotated[
+        bool, About("if false, paths too long to be an improvement are not tested: no result changes, but collisions_a, _b and _f are nan")
+    ]
 
 
 def check(settings: dict) -> None:
@@ -117,116 +138,47 @@ def check(settings: dict) -> None:
         logger.warning("particles: 1; the only particle is its own best and the swarm's, so it never moves")
 
 
-def plan(
-    problem: Problem,
-    rng: np.random.Generator,
-    start: np.ndarray | None = None,
-    *,
-    curve: Literal["bezier", "spline", "ferguson"],
-    control_points: Annotated[int, Range(0, 60)],
-    samples: Annotated[int, Range(2)],
-    penalty: Penalty,
-    beta: Annotated[float, Range(0)],
-    d_min: Annotated[float, Range(0)],
-    particles: Annotated[int, Range(1)],
-    iterations: Annotated[int, Range(0)],
-    stall_limit: Annotated[int, Range(0)],
-    straight_line_particle: bool,
-    c1: Annotated[float, Range(0)],
-    c2: Annotated[float, Range(0)],
-    inertia: Annotated[float, Range(0)],
-    inertia_damping: Annotated[float, Range(0, 1)],
-    velocity_limit: Annotated[float, Range(0, math.inf)],
-    bound_rule: BoundRule,
-    random_numbers: RandomNumbers,
-    update: Literal["asynchronous", "synchronous"],
-    chaotic_term: ChaoticTerm,
-    chaotic_map: chaotic_maps.Map,
-    chaotic_start_rule: Literal["random", "fixed"],
-    chaotic_start: Annotated[float, Range(0, 1)],
-    zeta_for: Literal["iteration", "particle", "dimension"],
-    singer_mu: Annotated[float, Range(0.9, 1.08)],
-    singer_x4: Annotated[float, Range(13, 14)],
-    sine_a: Annotated[float, Range(0, 4)],
-    piecewise_p: Annotated[float, Range(0.01, 0.49)],
-    sinusoidal_a: Annotated[float, Range(0, 4)],
-    count_collisions: bool,
-) -> Plan:
-    """Shortest penalised curve from start to target with the given number of free control points (tharwat2018, Algorithm 1, eqs. 7, 8, 17
-    to 22).
+@with_settings(Settings)
+def plan(problem: Problem, rng: np.random.Generator, settings: Settings, start: np.ndarray | None = None) -> Plan:
+    """Shortest penalised curve from start to target with free control points.
 
-    start: (n, 2) free control points, in units, at which the first particle starts, and half of all particles around it; without them all
-    start anywhere.
+    Parameters
+    ----------
+    problem : Problem
+        Among circles or polygons, or spheres in three dimensions.
+    rng : numpy.random.Generator
+        The only source of random numbers.
+    start : ndarray, (n, d), optional
+        Free control points, in units, at which the first particle starts and half of all particles around it; else all start anywhere.
 
-    control_points: number of free ones, in addition to start and target; those of a `ferguson` curve alternate between tangents and points.
-    samples: points of the curve that are tested and measured, uniform in the parameter, both ends included. penalty: the fitness of a path
-    of length L and violation V is L (1 + beta V), L + beta V, or (death) L if it is feasible and beta otherwise. d_min: added to every
-    radius, in units (eq. 21).
+    Returns
+    -------
+    Plan
+        `claimed_feasible`: V at most `FEASIBLE`. Extra columns: violation, the path's V; zeta_collapsed_at and zeta_clipped as in `Swarm`;
+        and six readings of the paper's undefined number of collisions: particles per iteration (a), samples per evaluated path (b), samples
+        of the best path, summed over the iterations (c), iterations whose best path collides (d), final paths, 0 or 1 (e), evaluated paths
+        in the run (f).
 
-    stall_limit: number of iterations without improvement after which the search stops; 0 for never. straight_line_particle: whether the
-    first particle starts as the straight line. c1, c2: C1 and C2, the cognition and social learning factors. inertia: w of the first
-    iteration; inertia_damping: its factor from one iteration to the next. velocity_limit: largest change of a coordinate per iteration, as
-    a share of the field's side; infinite for no limit. bound_rule: a coordinate that leaves the field is moved to its border, and its
-    velocity is mirrored, kept (clamp), or set to zero (stop); or it stays outside (none). random_numbers: what gets its own r1 and r2.
-    update: the swarm's best path is replaced as soon as a particle finds a better one, or once all have moved.
-
-    chaotic_term: the term in which the chaotic sequence replaces the random number. chaotic_start: first number of the sequence under the
-    rule `fixed`; for the map `constant`, every number. zeta_for: what gets its own number of the sequence. singer_mu, ..., sinusoidal_a:
-    see `chaotic_maps.Parameters`. count_collisions: if false, paths too long to be an improvement are not tested, which changes no result;
-    collisions_a, _b and _f are then nan.
-
-    The planner's own test: V at most `FEASIBLE`. Extra columns: violation, the path's V; zeta_collapsed_at and zeta_clipped as in `Swarm`;
-    and six readings of the paper's undefined number of collisions: particles per iteration (a), samples per evaluated path (b), samples of
-    the best path, summed over the iterations (c), iterations whose best path collides (d), final paths, 0 or 1 (e), evaluated paths in the
-    run (f).
+    References
+    ----------
+    tharwat2018, Algorithm 1 and eqs. 7, 8, 17 to 22.
     """
-    settings = Settings(
-        curve=curve,
-        control_points=control_points,
-        samples=samples,
-        penalty=penalty,
-        beta=beta,
-        d_min=d_min,
-        particles=particles,
-        iterations=iterations,
-        stall_limit=stall_limit,
-        straight_line_particle=straight_line_particle,
-        c1=c1,
-        c2=c2,
-        inertia=inertia,
-        inertia_damping=inertia_damping,
-        velocity_limit=velocity_limit,
-        bound_rule=bound_rule,
-        random_numbers=random_numbers,
-        update=update,
-        chaotic_term=chaotic_term,
-        chaotic_map=chaotic_map,
-        chaotic_start_rule=chaotic_start_rule,
-        chaotic_start=chaotic_start,
-        zeta_for=zeta_for,
-        singer_mu=singer_mu,
-        singer_x4=singer_x4,
-        sine_a=sine_a,
-        piecewise_p=piecewise_p,
-        sinusoidal_a=sinusoidal_a,
-        count_collisions=count_collisions,
-    )
     swarm = search(problem, rng, settings, start)
-    done = len(swarm.fitness) - 1
-    evaluations = (1 if control_points == 0 else particles) * (done + 1)
+    curve, done = Curve(settings.curve).name, len(swarm.fitness) - 1
+    evaluations = (1 if settings.control_points == 0 else settings.particles) * (done + 1)
     feasible = swarm.violation <= FEASIBLE
-    infeasible = swarm.infeasible if count_collisions else math.nan
+    infeasible = swarm.infeasible if settings.count_collisions else math.nan
     return Plan(
         path=Path(curve, _points(swarm.positions[-1], curve, problem)),
         objective=swarm.fitness[-1],
         claimed_feasible=feasible,
         evaluations=evaluations,
         history=swarm.fitness,
-        stop="iterations" if done == iterations or control_points == 0 else "stall",
+        stop="iterations" if done == settings.iterations or settings.control_points == 0 else "stall",
         extra={
             "violation": swarm.violation,
-            "collisions_a": infeasible / evaluations * particles,
-            "collisions_b": (swarm.colliding_samples if count_collisions else math.nan) / evaluations,
+            "collisions_a": infeasible / evaluations * settings.particles,
+            "collisions_b": (swarm.colliding_samples if settings.count_collisions else math.nan) / evaluations,
             "collisions_c": swarm.best_colliding_samples,
             "collisions_d": swarm.best_infeasible,
             "collisions_e": int(not feasible),
@@ -240,7 +192,7 @@ def plan(
 def track(problem: Problem, rng: np.random.Generator, **settings: Any) -> np.ndarray:
     """Control points (iterations done + 1, control points, d) of the best path after every iteration of the run that `plan` makes with the
     same generator and settings, in units (tharwat2018, Figure 12)."""
-    positions = search(problem, rng, Settings(**settings)).positions
+    positions = search(problem, rng, filled(Settings, settings)).positions
     return np.array([_points(position, settings["curve"], problem) for position in positions])
 
 
@@ -260,47 +212,20 @@ def search(problem: Problem, rng: np.random.Generator, settings: Settings, start
         shares[0] = known
     x = low + (high - low) * shares
     if settings.straight_line_particle:
-        x[0] = _straight_line(problem, settings.curve, settings.control_points)
+        x[0] = _straight_line(problem, Curve(settings.curve).name, settings.control_points)
     zeta, clipped, collapsed_at = _zeta(chaos, (iterations, particles, dimensions), settings)
-    rules = _Rules(
-        stall_limit=settings.stall_limit,
-        c1=float(settings.c1),  # an integer would recompile the kernels
-        c2=float(settings.c2),
-        inertia=float(settings.inertia),
-        inertia_damping=float(settings.inertia_damping),
-        bound_rule=get_args(BoundRule).index(settings.bound_rule),
-        random_numbers=get_args(RandomNumbers).index(settings.random_numbers),
-        synchronous=settings.update == "synchronous",
-        chaotic_term=get_args(ChaoticTerm).index(settings.chaotic_term),
-        count_collisions=settings.count_collisions,
-    )
-    return Swarm(*_swarm(moves, x, zeta, low, high, settings.velocity_limit * (high - low), objective, rules), clipped, collapsed_at)
-
-
-class _Rules(NamedTuple):
-    """Settings of `plan` for the kernels, choices as numbers."""
-
-    stall_limit: int
-    c1: float
-    c2: float
-    inertia: float
-    inertia_damping: float
-    bound_rule: int
-    random_numbers: int
-    synchronous: bool
-    chaotic_term: int
-    count_collisions: bool
+    return Swarm(*_swarm(moves, x, zeta, low, high, settings.velocity_limit * (high - low), objective, settings), clipped, collapsed_at)
 
 
 def _objective(problem: Problem, settings: Settings) -> Objective:
-    ends, free = _basis(settings.curve, settings.control_points, settings.samples)
+    ends, free = _basis(Curve(settings.curve).name, settings.control_points, settings.samples)
     return Objective(
         ends=np.array([problem.start, problem.target]).T @ ends,
         free=free,
         balls=penalised.round_obstacles(problem.workspace, settings.d_min),
         polygons=penalised.polygonal_obstacles(problem.workspace, settings.d_min),
-        penalty=get_args(Penalty).index(settings.penalty),
-        beta=float(settings.beta),
+        penalty=settings.penalty,
+        beta=settings.beta,
     )
 
 
@@ -341,21 +266,16 @@ def _straight_line(problem: Problem, curve: str, control_points: int) -> np.ndar
 
 def _zeta(chaos: np.random.Generator, size: tuple[int, int, int], settings: Settings) -> chaotic_maps.Sequence:
     """The chaotic sequence: its values (iterations, particles or 1, dimensions or 1) and the iteration at which it collapsed."""
-    shape = size[: {"iteration": 1, "particle": 2, "dimension": 3}[settings.zeta_for]]
+    shape = size[: settings.zeta_for + 1]
     shape += (1,) * (3 - len(shape))
-    if settings.chaotic_term == "none":
+    if settings.chaotic_term == ChaoticTerm.none:
         return chaotic_maps.Sequence(np.zeros(shape), 0, 0)
-    parameters = chaotic_maps.Parameters(
-        singer_mu=float(settings.singer_mu),
-        singer_x4=float(settings.singer_x4),
-        sine_a=float(settings.sine_a),
-        piecewise_p=float(settings.piecewise_p),
-        sinusoidal_a=float(settings.sinusoidal_a),
-    )
+    parameters = chaotic_maps.Parameters(*(getattr(settings, name) for name in chaotic_maps.Parameters._fields))
+    name = chaotic_maps.Map(settings.chaotic_map).name
     start = settings.chaotic_start
-    if settings.chaotic_start_rule == "random":
-        start = chaotic_maps.random_start(chaos, settings.chaotic_map, parameters)
-    found = chaotic_maps.sequence(settings.chaotic_map, float(start), math.prod(shape), parameters)
+    if settings.chaotic_start_rule == StartRule.random:
+        start = chaotic_maps.random_start(chaos, name, parameters)
+    found = chaotic_maps.sequence(name, start, math.prod(shape), parameters)
     collapsed_in = math.ceil(found.collapsed_at / math.prod(shape[1:])) if found.collapsed_at else 0
     return chaotic_maps.Sequence(found.values.reshape(shape), found.clipped, collapsed_in)
 
@@ -384,10 +304,10 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
         before = max(t - 1, 0)
         _copy(g[before], g[t])
         g_fitness[t] = g_fitness[before]
-        attractor = g[before] if rules.synchronous else g[t]
+        attractor = g[before] if rules.update == Update.synchronous else g[t]
         for i in range(particles):
             if t > 0:
-                if rules.random_numbers == _EACH_PARTICLE or (rules.random_numbers == _EACH_ITERATION and i == 0):
+                if rules.random_numbers == RandomNumbers.particle or (rules.random_numbers == RandomNumbers.iteration and i == 0):
                     _draw(rng, r)
                 _move(rng, r, x[i], v[i], p[i], attractor, zeta[before, min(i, zeta.shape[1] - 1)], w, limit, rules)
                 _hold(x[i], v[i], low, high, rules.bound_rule)
@@ -434,12 +354,12 @@ def _move(rng, r, x, v, p, g, zeta, w, limit, rules):
     zeta: (dimensions or 1,), this particle's number(s) of the chaotic sequence.
     """
     for d in range(len(x)):
-        if rules.random_numbers == _EACH_DIMENSION:
+        if rules.random_numbers == RandomNumbers.dimension:
             _draw(rng, r)
         r1, r2 = r[0], r[1]
-        if rules.chaotic_term == _COGNITIVE:
+        if rules.chaotic_term == ChaoticTerm.cognitive:
             r1 = zeta[min(d, len(zeta) - 1)]
-        elif rules.chaotic_term == _SOCIAL:
+        elif rules.chaotic_term == ChaoticTerm.social:
             r2 = zeta[min(d, len(zeta) - 1)]
         v[d] = w * v[d] + rules.c1 * r1 * (p[d] - x[d]) + rules.c2 * r2 * (g[d] - x[d])
         v[d] = min(max(v[d], -limit[d]), limit[d])
@@ -449,12 +369,12 @@ def _move(rng, r, x, v, p, g, zeta, w, limit, rules):
 @allocation_free
 def _hold(x, v, low, high, bound_rule):
     """Bring one particle back into the field, in place."""
-    if bound_rule == _NO_BOUND:
+    if bound_rule == BoundRule.none:
         return
     for d in range(len(x)):
         if not low[d] <= x[d] <= high[d]:
             x[d] = min(max(x[d], low[d]), high[d])
-            if bound_rule == _MIRROR:
+            if bound_rule == BoundRule.mirror:
                 v[d] = -v[d]
-            elif bound_rule == _STOP:
+            elif bound_rule == BoundRule.stop:
                 v[d] = 0.0

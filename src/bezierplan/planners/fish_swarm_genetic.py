@@ -9,9 +9,10 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from bezierplan.kernels import allocation_free, compiled
-from bezierplan.planners import Plan, Range
+from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import check_pairs
+from bezierplan.planners.parts.settings import with_settings
 from bezierplan.workspaces.lattice import Corners, lattice, points
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -19,96 +20,108 @@ workspaces = ("grid",)
 exact = True
 
 
+class Settings(NamedTuple):
+    """Settings of the swarm and the genetic algorithm; ma2020 gives none."""
+
+    corners: Annotated[Corners, About("how many of the two cells beside a diagonal step may be occupied")]
+    fish: Annotated[int, Range(1), About("fish of a swarm")]
+    tries: Annotated[int, Range(0), About("random neighbours examined for one closer to the target before any is taken")]
+    sight: Annotated[float, Range(0), About("how far a fish sees others", unit="cells")]
+    crowding: Annotated[float, Range(0), About("share of the fish in sight from which on nobody is followed")]
+    follow_every: Annotated[int, Range(1), About("steps after which a fish looks for others")]
+    releases: Annotated[int, Range(1), About("most swarms released")]
+    longest_path: Annotated[int, Range(1), About("cells behind it with which a fish dies")]
+    longest_walk: Annotated[int, Range(1), About("most cells of a section foraged again")]
+    population: Annotated[int, Range(2), About("paths of a generation")]
+    generations: Annotated[int, Range(0), About("generations after the first")]
+    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents")]
+    mutation_probability: Annotated[float, Range(0, 1), About("of a child, a section of whose path is foraged again")]
+    elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a child")]
+
+
 def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     check_pairs(settings["population"])
 
 
-def plan(
-    problem: Problem,
-    rng: np.random.Generator,
-    *,
-    corners: Corners,
-    fish: Annotated[int, Range(1)],
-    tries: Annotated[int, Range(0)],
-    sight: Annotated[float, Range(0)],
-    crowding: Annotated[float, Range(0)],
-    follow_every: Annotated[int, Range(1)],
-    releases: Annotated[int, Range(1)],
-    longest_path: Annotated[int, Range(1)],
-    longest_walk: Annotated[int, Range(1)],
-    population: Annotated[int, Range(2)],
-    generations: Annotated[int, Range(0)],
-    crossover_probability: Annotated[float, Range(0, 1)],
-    mutation_probability: Annotated[float, Range(0, 1)],
-    elitism: Annotated[int, Range(0, 1)],
-) -> Plan:
-    """Shortest path over the 8-connected lattice of a grid; its objective is its length in units, infinite if there is no path.
+@with_settings(Settings)
+def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
+    """Shortest path over the 8-connected lattice of a grid.
 
-    corners: how many of the two cells beside a diagonal step may be occupied. Swarms of fish are released at the start until there are
-    enough paths for the population, at most the given number of releases. A fish enters no cell twice. tries: number of random neighbours
-    it examines for one closer to the target before it takes any. Every follow_every steps it looks for others within sight, in cells,
-    including those that have arrived: if there are fewer than crowding times fish of them and the one nearest to the target is nearer than
-    itself, it moves to the neighbour nearest to that one. A fish with no neighbour left, or with longest_path cells behind it, dies. If
-    there are fewer paths than the population, they are repeated in turn.
+    Swarms of fish are released at the start until there are enough paths for the population. A fish enters no cell twice. Every
+    follow_every steps it looks for others within sight, including those that have arrived: if there are fewer than crowding times fish of
+    them and the one nearest to the target is nearer than itself, it moves to the neighbour nearest to that one. A fish with no neighbour
+    left dies. If there are fewer paths than the population, they are repeated in turn. Children lose their loops.
 
-    crossover_probability: of a pair of parents. mutation_probability: of a child, a section of whose path is foraged again, within
-    longest_walk cells. Children lose their loops. elitism: whether the best so far replaces a child.
+    Parameters
+    ----------
+    problem : Problem
+        On a grid.
+    rng : numpy.random.Generator
+        The only source of random numbers.
 
-    Raises ValueError if start or target is not in a free cell.
+    Returns
+    -------
+    Plan
+        Its objective is its length in units, infinite if there is no path.
+
+    Raises
+    ------
+    ValueError
+        If start or target is not in a free cell.
+
+    References
+    ----------
+    ma2020, Section 4.1, reference 31.
     """
     grid = problem.workspace
-    places = lattice(grid, problem.start, problem.target, corners)
+    places = lattice(grid, problem.start, problem.target, Corners(settings.corners).name)
     first, moves = rng.spawn(2)
     if places.start == places.target:
         # No search needed: all fish have arrived.
-        generations = 0
+        settings = settings._replace(generations=0)
         paths, sizes, released = np.array([[places.start]]), np.array([1]), 1
     else:
-        swarm = _Swarm(fish, tries, float(sight), float(crowding), follow_every, longest_path)
-        paths, sizes, released = _release(first, places, swarm, population, releases)
+        paths, sizes, released = _release(first, places, settings)
     found = len(sizes) > 0
     best, history = np.empty(0, dtype=np.int64), np.array([np.inf])
     if found:
         rules = cell_paths.Rules(
-            float(crossover_probability), True, float(mutation_probability), cell_paths.WALK, longest_walk, tries, True, elitism
+            settings.crossover_probability,
+            True,
+            settings.mutation_probability,
+            cell_paths.WALK,
+            settings.longest_walk,
+            settings.tries,
+            True,
+            settings.elitism,
         )
-        turns = np.resize(np.arange(len(sizes)), population)
-        best, history = cell_paths.evolve(moves, places, paths[turns], sizes[turns], generations, rules)
+        turns = np.resize(np.arange(len(sizes)), settings.population)
+        best, history = cell_paths.evolve(moves, places, paths[turns], sizes[turns], settings.generations, rules)
     return Plan(
         path=Path("polyline", points(grid, problem.start, problem.target, best)) if found else None,
         objective=history[-1] * grid.cell,
         claimed_feasible=found,
-        evaluations=fish * released + population * (len(history) - 1),
+        evaluations=settings.fish * released + settings.population * (len(history) - 1),
         history=history * grid.cell,
         stop="generations" if found else "no path",
         extra={},
     )
 
 
-class _Swarm(NamedTuple):
-    """Settings of `plan`."""
-
-    fish: int
-    tries: int
-    sight: float
-    crowding: float
-    follow_every: int
-    longest_path: int
-
-
 _SWIMMING, _ARRIVED, _DEAD = range(3)
 
 
 @compiled
-def _release(rng, lattice, swarm, wanted, releases):
-    """The first paths (n, longest path) of fish that arrive, at most `wanted` of them, their sizes (n,), and the number of releases."""
+def _release(rng, lattice, swarm):
+    """The first paths (n, longest path) of fish that arrive, at most a population, their sizes (n,), and the number of releases."""
+    wanted = swarm.population
     found, found_sizes = np.empty((wanted, swarm.longest_path), dtype=np.int64), np.empty(wanted, dtype=np.int64)
     paths, sizes = np.empty((swarm.fish, swarm.longest_path), dtype=np.int64), np.empty(swarm.fish, dtype=np.int64)
     visited = np.empty((swarm.fish, len(lattice.row)), dtype=np.int64)
     cells, states = np.empty(swarm.fish, dtype=np.int64), np.empty(swarm.fish, dtype=np.int64)
     arrived = released = 0
-    while arrived < wanted and released < releases:
+    while arrived < wanted and released < swarm.releases:
         released += 1
         visited[:] = 0
         visited[:, lattice.start] = 1

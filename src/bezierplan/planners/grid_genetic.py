@@ -13,9 +13,10 @@ from typing import Annotated, NamedTuple
 import numpy as np
 
 from bezierplan.kernels import allocation_free, compiled
-from bezierplan.planners import Plan, Range
+from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.genetic import roulette
 from bezierplan.planners.parts.random_integers import integer
+from bezierplan.planners.parts.settings import with_settings
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -28,31 +29,42 @@ _COLUMN_STEPS = (1, 0, -1, 0, 1, -1, -1, 1)
 _ROW_STEPS = (0, 1, 0, -1, 1, 1, -1, -1)
 
 
-def plan(
-    problem: Problem,
-    rng: np.random.Generator,
-    *,
-    population: Annotated[int, Range(2)],
-    generations: Annotated[int, Range(0)],
-    crossover_probability: Annotated[float, Range(0, 1)],
-    mutation_probability: Annotated[float, Range(0, 1)],
-    diagonal_cost: Annotated[float, Range(1, 2)],
-    attempts: Annotated[int, Range(1)],
-    longest_walk: Annotated[float, Range(1)],
-    least_detour: Annotated[int, Range(1)],
-    detour_share: Annotated[float, Range(0)],
-    straight_on: Annotated[float, Range(0, 1)],
-) -> Plan:
-    """Cheapest path of cells found, a polyline through their centres; its objective is its cost in units, infinite if there is no path.
+class Settings(NamedTuple):
+    """Settings of the search; elhoseny2017 names the method and gives one of them."""
 
-    diagonal_cost: of a diagonal step; a straight one costs 1, both times a cell's side. The best of parents and children survive.
+    population: Annotated[int, Range(2), About("paths of a generation")]
+    generations: Annotated[int, Range(0), About("generations after the first")]
+    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents")]
+    mutation_probability: Annotated[float, Range(0, 1), About("of a child")]
+    diagonal_cost: Annotated[float, Range(1, 2), About("of a diagonal step; a straight one costs 1", "elhoseny2017, Section 4.6", "cells")]
+    attempts: Annotated[int, Range(1), About("first walks tried for each chromosome; missing ones are copies of those found")]
+    longest_walk: Annotated[float, Range(1), About("steps after which a walk is abandoned, as a multiple of rows + columns")]
+    least_detour: Annotated[int, Range(1), About("fewest random steps where no free neighbour is nearer to the goal")]
+    detour_share: Annotated[float, Range(0), About("most such steps more than that, minus one, as a share of the columns")]
+    straight_on: Annotated[float, Range(0, 1), About("probability that a random step keeps the direction, if that cell is free")]
 
-    A walk goes to the free neighbour nearest to its goal. Where none is nearer, it makes a detour of random steps: at least least_detour,
-    and at most detour_share of the number of columns more than that, minus one; each continues in the same direction with the probability
-    straight_on, if that cell is free. A walk longer than longest_walk times the sum of rows and columns is abandoned. attempts: number of
-    first walks tried for each chromosome; any still missing are copies of those found.
 
-    Extra column: first_walks, the number of first paths found.
+@with_settings(Settings)
+def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
+    """Cheapest path of cells found, a polyline through their centres.
+
+    A walk goes to the free neighbour nearest to its goal. The best of parents and children survive.
+
+    Parameters
+    ----------
+    problem : Problem
+        On a grid.
+    rng : numpy.random.Generator
+        The only source of random numbers.
+
+    Returns
+    -------
+    Plan
+        Its objective is its cost in units, infinite if there is no path. Extra column: first_walks, the number of first paths found.
+
+    References
+    ----------
+    elhoseny2017, Tables 2, 3 and 6.
     """
     grid = problem.workspace
     walled = np.pad(grid.occupied, 1, constant_values=True)
@@ -62,21 +74,15 @@ def plan(
     walker = _Walker(
         walled=walled.ravel(),
         columns=walled.shape[1],
-        longest_walk=int(longest_walk * (rows + columns)),
-        least_detour=least_detour,
-        most_detour=max(least_detour, least_detour - 1 + int(detour_share * columns)),
-        straight_on=float(straight_on),
+        longest_walk=int(settings.longest_walk * (rows + columns)),
+        least_detour=settings.least_detour,
+        most_detour=max(settings.least_detour, settings.least_detour - 1 + int(settings.detour_share * columns)),
+        straight_on=settings.straight_on,
     )
-    rules = _Rules(
-        population=population,
-        generations=generations if problem.start != problem.target else 0,
-        crossover_probability=float(crossover_probability),
-        mutation_probability=float(mutation_probability),
-        diagonal_cost=float(diagonal_cost),
-        attempts=attempts * population,
-    )
+    if problem.start == problem.target:
+        settings = settings._replace(generations=0)
     start, target = start_row * walled.shape[1] + start_column, target_row * walled.shape[1] + target_column
-    cells, found, history = _search(*rng.spawn(2), walker, start, target, rules)
+    cells, found, history = _search(*rng.spawn(2), walker, start, target, settings)
     history *= grid.cell
     extra = {"first_walks": int(found)}
     if found == 0:
@@ -87,7 +93,7 @@ def plan(
         path=Path("polyline", _through(problem, centres[_turns(column, row)])),
         objective=history[-1],
         claimed_feasible=True,
-        evaluations=population * len(history),
+        evaluations=settings.population * len(history),
         history=history,
         stop="generations",
         extra=extra,
@@ -123,17 +129,6 @@ class _Walker(NamedTuple):
     least_detour: int
     most_detour: int
     straight_on: float
-
-
-class _Rules(NamedTuple):
-    """Settings of `plan` for the search; attempts: total number of first walks."""
-
-    population: int
-    generations: int
-    crossover_probability: float
-    mutation_probability: float
-    diagonal_cost: float
-    attempts: int
 
 
 @compiled
@@ -192,7 +187,7 @@ def _first_walks(rng, walker, start, target, rules, walk, last_visit):
     paths = [walk[:0]]
     paths.clear()
     costs = np.empty(2 * rules.population)
-    for attempt in range(rules.attempts):
+    for attempt in range(rules.attempts * rules.population):
         if len(paths) == rules.population:
             break
         walk[0] = start

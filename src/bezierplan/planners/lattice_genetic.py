@@ -4,15 +4,17 @@ With the coding `via_cells` a chromosome is a sequence of free cells, joined to 
 the Bezier curve. With `rows` a chromosome is itself a path, initially one through a random free cell of each row.
 """
 
-from typing import Annotated, Literal
+from enum import IntEnum
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from bezierplan.kernels import compiled
-from bezierplan.planners import Plan, Range
+from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import cell_paths
 from bezierplan.planners.parts.genetic import check_pairs, redraw_gene, roulette, swap_tails
 from bezierplan.planners.parts.random_integers import integer
+from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
 from bezierplan.workspaces.lattice import Corners, Lattice, lattice, points
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -23,74 +25,87 @@ exact = True
 _MOST_DRAWS = 10_000
 
 
+Coding = IntEnum("Coding", "via_cells rows", start=0)
+Initial = IntEnum("Initial", "uniform sorted", start=0)
+
+
+class Settings(NamedTuple):
+    """Settings of the search; ma2020 gives none. The coding rows does not use genes, initial and undecodable_length."""
+
+    corners: Annotated[Corners, About("how many of the two cells beside a diagonal step may be occupied")]
+    coding: Annotated[Coding, About("a chromosome is a sequence of free cells to be joined, or a path")]
+    genes: Annotated[int, Range(0, 60), About("free cells of a chromosome")]
+    initial: Annotated[Initial, About("genes are drawn uniformly, or also sorted by column + row")]
+    longest_join: Annotated[int, Range(2), About("most cells of a path, repeated ones included")]
+    undecodable_length: Annotated[float, Range(1), About("length of a chromosome whose cells cannot be joined", unit=UNITS)]
+    population: Annotated[int, Range(2), About("chromosomes of a generation")]
+    generations: Annotated[int, Range(0), About("generations after the first")]
+    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents, cut between two genes or at a shared cell")]
+    mutation_probability: Annotated[float, Range(0, 1), About("of a chromosome: a gene or a section gets a random free cell")]
+    elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a chromosome")]
+
+
 def check(settings: dict) -> None:
     """Rules across several settings. Raises ValueError naming the setting and what is expected."""
     check_pairs(settings["population"])
 
 
-def plan(
-    problem: Problem,
-    rng: np.random.Generator,
-    *,
-    corners: Corners,
-    coding: Literal["via_cells", "rows"],
-    genes: Annotated[int, Range(0, 60)],
-    initial: Literal["uniform", "sorted"],
-    longest_join: Annotated[int, Range(2)],
-    undecodable_length: Annotated[float, Range(1)],
-    population: Annotated[int, Range(2)],
-    generations: Annotated[int, Range(0)],
-    crossover_probability: Annotated[float, Range(0, 1)],
-    mutation_probability: Annotated[float, Range(0, 1)],
-    elitism: Annotated[int, Range(0, 1)],
-) -> Plan:
-    """Shortest path over the 8-connected lattice of a grid; its objective is its length in units, infinite if there is no path.
+@with_settings(Settings)
+def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
+    """Shortest path over the 8-connected lattice of a grid.
 
-    corners: how many of the two cells beside a diagonal step may be occupied. genes: number of free cells of a chromosome with the coding
-    via_cells; initial: drawn uniformly, or also sorted by column + row. longest_join: the most cells a path may have, repeated ones
-    included; undecodable_length: length, in units, assigned to a chromosome whose cells cannot be joined within that limit.
-    crossover_probability: of a pair of parents, cut between two genes. mutation_probability: of a chromosome, one gene of which becomes a
-    random free cell. elitism: how many of the best so far replace a chromosome.
+    Parameters
+    ----------
+    problem : Problem
+        On a grid.
+    rng : numpy.random.Generator
+        The only source of random numbers.
 
-    The coding rows does not use genes, initial and undecodable_length: parents are cut at a shared cell, and mutation reconnects a section
-    of a path through a random cell.
+    Returns
+    -------
+    Plan
+        Its objective is its length in units, infinite if there is no path.
 
-    Raises ValueError if start or target is not in a free cell.
+    Raises
+    ------
+    ValueError
+        If start or target is not in a free cell.
+
+    References
+    ----------
+    ma2020, Section 4.1, reference 29.
     """
     grid = problem.workspace
-    places = lattice(grid, problem.start, problem.target, corners)
+    places = lattice(grid, problem.start, problem.target, Corners(settings.corners).name)
     starts, moves = rng.spawn(2)
     if places.start == places.target:
         # No search needed: one chromosome without genes.
-        population, generations, genes = 1, 0, 0
-    if coding == "via_cells":
+        settings = settings._replace(population=1, generations=0, genes=0)
+    population, genes = settings.population, settings.genes
+    if settings.coding == Coding.via_cells:
         free = np.flatnonzero(~places.occupied)
         cells = np.empty((population, genes + 2), dtype=np.int64)
         cells[:, 0], cells[:, -1] = places.start, places.target
         cells[:, 1:-1] = free[starts.integers(0, len(free), size=(population, genes))]
-        if initial == "sorted":
+        if settings.initial == Initial.sorted:
             order = np.argsort((places.row + places.column)[cells[:, 1:-1]], axis=1, kind="stable")
             cells[:, 1:-1] = np.take_along_axis(cells[:, 1:-1], order, axis=1)
-        best, history = _search(
-            moves,
-            places,
-            free,
-            cells,
-            longest_join,
-            undecodable_length / grid.cell,
-            generations,
-            float(crossover_probability),
-            float(mutation_probability),
-            elitism,
-        )
+        best, history = _search(moves, places, free, cells, in_cells(settings, grid.cell))
     else:
-        paths, sizes = _first_paths(starts, places, _rows_between(places), population, longest_join)
+        paths, sizes = _first_paths(starts, places, _rows_between(places), population, settings.longest_join)
         best, history = np.empty(0, dtype=np.int64), np.array([np.inf])
         if sizes.all():
             rules = cell_paths.Rules(
-                float(crossover_probability), False, float(mutation_probability), cell_paths.RECONNECT, longest_join, 0, False, elitism
+                settings.crossover_probability,
+                False,
+                settings.mutation_probability,
+                cell_paths.RECONNECT,
+                settings.longest_join,
+                0,
+                False,
+                settings.elitism,
             )
-            best, history = cell_paths.evolve(moves, places, paths, sizes, generations, rules)
+            best, history = cell_paths.evolve(moves, places, paths, sizes, settings.generations, rules)
     found = len(best) > 0
     return Plan(
         path=Path("polyline", points(grid, problem.start, problem.target, best)) if found else None,
@@ -104,18 +119,7 @@ def plan(
 
 
 @compiled
-def _search(
-    rng,
-    lattice,
-    free,
-    cells,
-    longest_join,
-    undecodable_length,
-    generations,
-    crossover_probability,
-    mutation_probability,
-    elitism,
-):
+def _search(rng, lattice, free, cells, rules):
     """Path (n,) of the best chromosome, empty if none can be decoded, and the shortest length so far (generations + 1,).
 
     cells: (population, genes + 2), including start and target. free: (n,) cells.
@@ -123,20 +127,20 @@ def _search(
     population, genes = cells.shape[0], cells.shape[1] - 2
     bits = 1 + int(np.log2(len(lattice.row)))
     parents = np.empty_like(cells)
-    path, marks = np.empty(longest_join, dtype=np.int64), np.zeros(len(lattice.row), dtype=np.int64)
+    path, marks = np.empty(rules.longest_join, dtype=np.int64), np.zeros(len(lattice.row), dtype=np.int64)
     lengths = np.empty(population)
     best, best_path, best_length = cells[0].copy(), path[:0].copy(), np.inf
-    history = np.empty(generations + 1)
+    history = np.empty(rules.generations + 1)
 
-    for generation in range(generations + 1):
+    for generation in range(rules.generations + 1):
         for i in range(population):
             size = cell_paths.join(lattice, cells[i], path, marks)
-            lengths[i] = cell_paths.length(path[:size], lattice) if size else undecodable_length
+            lengths[i] = cell_paths.length(path[:size], lattice) if size else rules.undecodable_length
             if size and lengths[i] < best_length:
                 cell_paths.put(cells[i], best, 0)
                 best_path, best_length = path[:size].copy(), lengths[i]
         history[generation] = best_length
-        if generation == generations:
+        if generation == rules.generations:
             break
 
         cells, parents = parents, cells
@@ -144,12 +148,12 @@ def _search(
         for i in range(population):
             cell_paths.put(parents[drawn[i]], cells[i], 0)
         for i in range(0, population, 2):
-            if genes > 1 and rng.random() < crossover_probability:
+            if genes > 1 and rng.random() < rules.crossover_probability:
                 swap_tails(cells[i, 1:-1], cells[i + 1, 1:-1], bits * integer(rng, 1, genes), bits)
         for i in range(population):
-            if genes and rng.random() < mutation_probability:
+            if genes and rng.random() < rules.mutation_probability:
                 redraw_gene(rng, cells[i, 1:-1], free)
-        if elitism:
+        if rules.elitism:
             cell_paths.put(best, cells[0], 0)
     return best_path, history
 

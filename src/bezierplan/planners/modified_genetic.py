@@ -11,25 +11,28 @@ paper.
 """
 
 import math
-from typing import Annotated, Any, Literal, NamedTuple, get_args
+from enum import IntEnum
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 
 from bezierplan.kernels import allocation_free, compiled
-from bezierplan.planners import Plan, Range
+from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts import gene_lists
-from bezierplan.planners.parts.gene_curves import MOST_POINTS, FitnessLength, Scratch, scratch_for, validate
+from bezierplan.planners.parts.gene_curves import MOST_POINTS, CurveKind, FitnessLength, Invalid, Scratch, scratch_for, validate
 from bezierplan.planners.parts.gene_lattice import Field, field_of, genes_at, polygon
 from bezierplan.planners.parts.genetic import check_pairs
 from bezierplan.planners.parts.random_integers import integer
+from bezierplan.planners.parts.settings import with_settings
 from bezierplan.planners.prm import roadmap
 from bezierplan.workspaces.problem import Path, Problem
 
 extra = ("distinct_chromosomes", "mean_q", "extra_batches", "valid_share")
 workspaces = ("grid",)
 
-CurveKind = Literal["single", "composite"]
-PATH_KINDS = {"single": "bezier", "composite": "piecewise_quadratic"}
+PAPER = "elhoseny2017"
+
+PATH_KINDS = {CurveKind.single: "bezier", CurveKind.composite: "piecewise_quadratic"}
 
 # Capacity of a list of genes: a crossover of two chromosomes yields at most twice as many.
 _ROOM = 2 * MOST_POINTS + 1
@@ -37,40 +40,76 @@ _ROOM = 2 * MOST_POINTS + 1
 # Fitness of a chromosome that fills a place in the first population because no valid one was found.
 _UNFIT = 1e-9
 
-Mutation = Literal["gene", "chromosome", "one_flip", "shift"]
-Diversity = Literal["none", "more_offspring", "relaxing", "unique"]
-_EACH_GENE, _CHROMOSOME, _ONE_FLIP, _SHIFT = range(4)
-_NO_DIVERSITY, _MORE_OFFSPRING, _RELAXING, _UNIQUE = range(4)
+Mutation = IntEnum("Mutation", "gene chromosome one_flip shift", start=0)
+Diversity = IntEnum("Diversity", "none more_offspring relaxing unique", start=0)
+GeneLattice = IntEnum("GeneLattice", "coarse cell", start=0)
+GeneOrder = IntEnum("GeneOrder", "columns rows", start=0)
+PointOrder = IntEnum("PointOrder", "projection index geodesic", start=0)
+FirstPopulation = IntEnum("FirstPopulation", "random roadmaps", start=0)
+Survival = IntEnum("Survival", "best_of_all generational", start=0)
+Offspring = IntEnum("Offspring", "both mutated", start=0)
 
 # A shift moves a control point by at most this share of the lattice points of a side.
 _SHIFT_REACH = 0.1
 
 
-class Rules(NamedTuple):
-    """Settings of `plan` that the search needs, under the same names; choices as numbers. pairs: number of pairs of parents crossed in a
-    batch.
-    """
+class Settings(NamedTuple):
+    """Settings of the search (elhoseny2017, Sections 3 and 4)."""
 
-    population: int
-    iterations: int
-    crossover_probability: float
-    mutation: int
-    mutation_rate: float
-    diversity: int
-    eta: float
-    eta_decay: float
-    most_batches: int
-    first_points: int
-    first_draws: int
-    replacements: int
-    least_distance: float
-    composite: bool
-    fitness_length: int
-    punished: bool
-    penalty: float
-    generational: bool
-    unmutated: bool
-    pairs: int
+    population: Annotated[int, Range(2), About("chromosomes of a generation", f"{PAPER}, Section 4.2.2")]
+    iterations: Annotated[int, Range(1), About("iterations", f"{PAPER}, Section 4.2.2")]
+    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents", f"{PAPER}, Section 4.2")]
+    mutation: Annotated[
+        Mutation,
+        About(
+            "each gene changes, one of a chromosome, or always one (one_flip); or it loses, gains or has shifted a control point (shift)"
+        ),
+    ]
+    mutation_rate: Annotated[float, Range(0, 1), About("probability that a gene or chromosome mutates", f"{PAPER}, Section 4.2")]
+    diversity: Annotated[
+        Diversity,
+        About(
+            "none; more offspring while the mean Q of the pool exceeds eta; only children whose mean Q is at most 1 - eta (relaxing); "
+            "or none equal to another chromosome (unique)",
+            f"{PAPER}, Section 3.3, Algorithm 2",
+        ),
+    ]
+    eta: Annotated[float, Range(-1, 1), About("limit of the Q statistic", f"{PAPER}, Section 4.2.2")]
+    eta_decay: Annotated[float, Range(0, 1), About("factor of eta from one iteration to the next", f"{PAPER}, Section 3.3")]
+    most_batches: Annotated[int, Range(0), About("most extra batches of offspring in an iteration")]
+    gene_lattice: Annotated[GeneLattice, About("genes are 21 x 21 points, or every cell")]
+    gene_order: Annotated[GeneOrder, About("genes are numbered column by column from the left, or row by row from the bottom")]
+    point_order: Annotated[
+        PointOrder,
+        About("control points are joined by their projection on the line from start to target, by gene, or by distance over free cells"),
+    ]
+    first_population: Annotated[
+        FirstPopulation,
+        About("random chromosomes, or before them the inner nodes of paths through roadmaps", f"{PAPER}, Section 3.2.1, the random one"),
+    ]
+    most_roadmaps: Annotated[int, Range(0), About("most roadmaps for the first population")]
+    roadmap_nodes: Annotated[int, Range(1, 2000), About("random nodes of a roadmap")]
+    roadmap_neighbours: Annotated[int, Range(1), About("nearest nodes that a node of a roadmap may be linked with")]
+    first_points: Annotated[int, Range(1), About("most control points of a random chromosome")]
+    first_draws: Annotated[int, Range(1), About("draws for each member of the first population")]
+    replacements: Annotated[int, Range(0), About("draws for an invalid child", f"{PAPER}, Section 3.2.2")]
+    least_distance: Annotated[float, Range(0), About("least distance of two control points", f"{PAPER}, Figure 4", unit="cells")]
+    curve: Annotated[
+        CurveKind, About("one Bezier curve, or quadratic pieces that meet half-way between the control points", f"{PAPER}, eq. 2")
+    ]
+    fitness_length: Annotated[
+        FitnessLength,
+        About("length whose reciprocal is the fitness: sampled, or counted over cells (`cell_length`)", f"{PAPER}, eqs. 8, 9"),
+    ]
+    invalid: Annotated[
+        Invalid, About("a curve that touches occupied cells is deleted, or lengthened for each of them", f"{PAPER}, Section 3.2.2")
+    ]
+    penalty: Annotated[float, Range(0), About("length added for each occupied cell", unit="cells")]
+    survival: Annotated[
+        Survival, About("the best of parents and offspring survive, or the best of the offspring alone", f"{PAPER}, Algorithm 2, line 15")
+    ]
+    offspring: Annotated[Offspring, About("children and their mutants join the pool, or mutants alone", f"{PAPER}, Algorithm 2")]
+    children_per_parent: Annotated[int, Range(1, 2), About("children in a batch for each chromosome of the population")]
 
 
 class Found(NamedTuple):
@@ -100,63 +139,28 @@ def check(settings: dict) -> None:
         raise ValueError(f"gene_lattice: {settings['gene_lattice']}; a first population from roadmaps needs cell: their nodes lie anywhere")
 
 
-def plan(
-    problem: Problem,
-    rng: np.random.Generator,
-    last: np.ndarray | None = None,
-    *,
-    population: Annotated[int, Range(2)],
-    iterations: Annotated[int, Range(1)],
-    crossover_probability: Annotated[float, Range(0, 1)],
-    mutation: Mutation,
-    mutation_rate: Annotated[float, Range(0, 1)],
-    diversity: Diversity,
-    eta: Annotated[float, Range(-1, 1)],
-    eta_decay: Annotated[float, Range(0, 1)],
-    most_batches: Annotated[int, Range(0)],
-    gene_lattice: Literal["coarse", "cell"],
-    gene_order: Literal["columns", "rows"],
-    point_order: Literal["projection", "index", "geodesic"],
-    first_population: Literal["random", "roadmaps"],
-    most_roadmaps: Annotated[int, Range(0)],
-    roadmap_nodes: Annotated[int, Range(1, 2000)],
-    roadmap_neighbours: Annotated[int, Range(1)],
-    first_points: Annotated[int, Range(1)],
-    first_draws: Annotated[int, Range(1)],
-    replacements: Annotated[int, Range(0)],
-    least_distance: Annotated[float, Range(0)],
-    curve: CurveKind,
-    fitness_length: FitnessLength,
-    invalid: Literal["delete", "penalty"],
-    penalty: Annotated[float, Range(0)],
-    survival: Literal["best_of_all", "generational"],
-    offspring: Literal["both", "mutated"],
-    children_per_parent: Annotated[int, Range(1, 2)],
-) -> Plan:
-    """Shortest curve through control points on a lattice of cells (elhoseny2017, Algorithms 1 and 2).
+@with_settings(Settings)
+def plan(problem: Problem, rng: np.random.Generator, settings: Settings, last: np.ndarray | None = None) -> Plan:
+    """Shortest curve through control points on a lattice of cells.
 
-    last: control points (n, 2) of an earlier path, in units, with whose genes the first population begins; a plan without them starts
-    from random chromosomes alone.
+    Parameters
+    ----------
+    problem : Problem
+        On a grid.
+    rng : numpy.random.Generator
+        The only source of random numbers.
+    last : ndarray, (n, 2), optional
+        Control points of an earlier path, in units, with whose genes the first population begins; else it is as the settings say.
 
-    mutation: every gene changes with the probability mutation_rate, one gene of a chromosome does, or one gene always does (one_flip); or a
-    chromosome, with that probability, loses a control point, gains one, or has one shifted (shift). diversity: no rule (the plain
-    algorithm); more offspring as long as the mean Q of the pool is above eta, at most most_batches times per iteration (Algorithm 2); only
-    children whose mean Q to the pool is at most 1 - eta (relaxing); no child equal to another chromosome of the pool (unique). eta changes
-    by the factor eta_decay from one iteration to the next. gene_lattice: 21 x 21 points, or every cell; gene_order: genes are numbered
-    column by column from the left, or row by row from the bottom. point_order: control points are joined in the order of their projection
-    on the line from start to target (ties from its left to its right), in the order of the genes, or by their distance from the start over
-    free cells (geodesic). first_population: random chromosomes, or the inner nodes of paths through random roadmaps (`prm`) with
-    roadmap_nodes and roadmap_neighbours, at most most_roadmaps of them; random chromosomes fill any remaining places. first_points: maximum
-    number of control points of a random chromosome. first_draws: draws for each member of the first population. replacements: draws for an
-    invalid child. least_distance: between two control points, in cells. curve: a single Bezier curve, or quadratic pieces that meet
-    half-way between the points (composite). fitness_length: the inverse of the fitness, either the length of the sampled curve or a length
-    that counts cells (`cell_length`). invalid: what happens to a curve that touches occupied cells; with `penalty`, that many cells are
-    added to its length for each. survival: the best of parents and offspring, or of the offspring alone (generational). offspring: what
-    joins the pool, the children of a crossover together with their mutants (both), or the mutants alone; children_per_parent: number of
-    children in a batch for each chromosome of the population.
+    Returns
+    -------
+    Plan
+        `claimed_feasible`: no cell that the sampled curve touches is occupied. Extra columns: distinct_chromosomes in the population and
+        mean_q of the pool, both averaged over the iterations; extra_batches of offspring; valid_share of the children.
 
-    The planner's own test: no cell that the sampled curve touches is occupied. Extra columns: distinct_chromosomes in the population and
-    mean_q of the pool, both averaged over the iterations; extra_batches of offspring; valid_share of the children.
+    References
+    ----------
+    elhoseny2017, Algorithms 1 and 2, Sections 3.2 and 3.3.
     """
     grid = problem.workspace
     ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
@@ -165,41 +169,19 @@ def plan(
         return Plan(Path("polyline", grid.in_units(ends)), 0.0, True, 1, np.zeros(1), "start is target", nothing)
     # A start on the upper or right border lies in the last cell, not beyond it.
     ends = np.minimum(ends, np.nextafter(np.array(grid.occupied.shape[::-1], dtype=float), 0.0))
-    field = field_of(grid, ends, gene_lattice, gene_order, point_order)
-    rules = Rules(
-        population=population,
-        iterations=iterations,
-        crossover_probability=float(crossover_probability),
-        mutation=get_args(Mutation).index(mutation),
-        mutation_rate=float(mutation_rate),
-        diversity=get_args(Diversity).index(diversity),
-        eta=float(eta),
-        eta_decay=float(eta_decay),
-        most_batches=most_batches,
-        first_points=first_points,
-        first_draws=first_draws,
-        replacements=replacements,
-        least_distance=float(least_distance),
-        composite=curve == "composite",
-        fitness_length=get_args(FitnessLength).index(fitness_length),
-        punished=invalid == "penalty",
-        penalty=float(penalty),
-        generational=survival == "generational",
-        unmutated=offspring == "both",
-        pairs=population * children_per_parent // 2,
-    )
-    most_first = most_roadmaps if first_population == "roadmaps" else 0
-    first, counts = _from_roadmaps(problem, rng, field, population, most_first, roadmap_nodes, roadmap_neighbours)
+    orders = GeneLattice(settings.gene_lattice), GeneOrder(settings.gene_order), PointOrder(settings.point_order)
+    field = field_of(grid, ends, *(each.name for each in orders))
+    first, counts = _from_roadmaps(problem, rng, field, settings)
     if last is not None:
         known = genes_at(grid.in_cells(last), field)
         row = np.concatenate([known, np.zeros(_ROOM - len(known), dtype=np.int64)])
-        first, counts = np.vstack([row, first])[:population], np.append(len(known), counts)[:population]
-    found = search(rng, field, rules, first, counts, scratch_for(field))
+        first, counts = np.vstack([row, first])[: settings.population], np.append(len(known), counts)[: settings.population]
+    found = search(rng, field, settings, first, counts, scratch_for(field))
     solved = len(found.ones) > 0
     points = grid.in_units(polygon(found.ones, field))
     points[[0, -1]] = problem.start, problem.target
     return Plan(
-        path=Path(PATH_KINDS[curve], points) if solved else None,
+        path=Path(PATH_KINDS[CurveKind(settings.curve)], points) if solved else None,
         objective=found.cost * grid.cell,
         claimed_feasible=solved,
         evaluations=found.evaluations,
@@ -222,17 +204,15 @@ def resume(problem: Problem, rng: np.random.Generator, last: np.ndarray | None, 
     return found, found.path.points[1:-1] if found.claimed_feasible else last
 
 
-def _from_roadmaps(
-    problem: Problem, rng: np.random.Generator, field: Field, wanted: int, most: int, nodes: int, neighbours: int
-) -> tuple[np.ndarray, np.ndarray]:
-    """Chromosomes made of the inner nodes of paths through roadmaps, at most `wanted`, and their numbers of ones; straight paths and those
-    with too many nodes are left out. Every cell is a gene.
+def _from_roadmaps(problem: Problem, rng: np.random.Generator, field: Field, settings: Settings) -> tuple[np.ndarray, np.ndarray]:
+    """Chromosomes made of the inner nodes of paths through roadmaps, at most a population, and their numbers of ones; straight paths and
+    those with too many nodes are left out. Every cell is a gene.
     """
-    ones, counts = np.zeros((wanted, _ROOM), dtype=np.int64), []
-    for _ in range(most):
-        if len(counts) == wanted:
+    ones, counts = np.zeros((settings.population, _ROOM), dtype=np.int64), []
+    for _ in range(settings.most_roadmaps if settings.first_population == FirstPopulation.roadmaps else 0):
+        if len(counts) == settings.population:
             break
-        _, way, _ = roadmap(problem, rng, nodes, neighbours)
+        _, way, _ = roadmap(problem, rng, settings.roadmap_nodes, settings.roadmap_neighbours)
         column, row = np.floor(problem.workspace.in_cells(way[1:-1])).astype(int).T
         line, place = (row, column) if field.by_rows else (column, row)
         genes = np.unique(line * field.places[0] + place)
@@ -244,15 +224,15 @@ def _from_roadmaps(
 
 
 @compiled
-def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarray, counts: np.ndarray, scratch: Scratch) -> Found:
+def search(rng: np.random.Generator, field: Field, rules: Settings, first: np.ndarray, counts: np.ndarray, scratch: Scratch) -> Found:
     """Algorithm 2; without a diversity rule, the plain algorithm.
 
     first: (n, `_ROOM`) chromosomes with which the first population begins; counts: (n,) their numbers of ones. scratch: `scratch_for` the
     field.
     """
-    batches = 1 + (rules.most_batches if rules.diversity == _MORE_OFFSPRING else 0)
+    batches = 1 + (rules.most_batches if rules.diversity == Diversity.more_offspring else 0)
     size = rules.population
-    children = 2 * rules.pairs * (2 if rules.unmutated else 1)
+    children = 2 * (size * rules.children_per_parent // 2) * (2 if rules.offspring == Offspring.both else 1)
     pool, spare = gene_lists.empty_pool(size + batches * children, _ROOM), gene_lists.empty_pool(size, _ROOM)
     child, memory = np.empty(_ROOM, dtype=np.int64), gene_lists.empty_memory(_ROOM)
     history, distinct = np.empty(rules.iterations + 1), np.empty(rules.iterations + 1)
@@ -293,13 +273,13 @@ def search(rng: np.random.Generator, field: Field, rules: Rules, first: np.ndarr
             bred += children
             lost += invalid
             further += batch > 0
-            if rules.diversity == _MORE_OFFSPRING:
+            if rules.diversity == Diversity.more_offspring:
                 pairs += gene_lists.sum_of_q(pool, before if batch > 0 else 0, filled, len(field.points))
                 q[iteration] = pairs / (filled * (filled - 1) / 2)
                 if q[iteration] <= eta:
                     break
         # Where a diversity rule rejects so many children that places remain free, the last parents keep them.
-        gene_lists.select(pool, min(size, filled - size) if rules.generational else 0, filled, spare)
+        gene_lists.select(pool, min(size, filled - size) if rules.survival == Survival.generational else 0, filled, spare)
         eta *= rules.eta_decay
     return Found(best, best_cost, history, distinct, q, further, evaluations, 1.0 - lost / bred)
 
@@ -312,7 +292,7 @@ def _highest_cost_that_counts(pool, rules):
     highest = 0.0
     for place in range(rules.population):
         highest = max(highest, pool.cost[place])
-    return np.inf if rules.generational or rules.diversity == _UNIQUE else highest
+    return np.inf if rules.survival == Survival.generational or rules.diversity == Diversity.unique else highest
 
 
 @allocation_free
@@ -323,12 +303,12 @@ def _add_offspring(rng, pool, filled, wheel, eta, limit, child, memory, field, r
     Returns the number of chromosomes now in the pool, of chromosomes validated, and of invalid children.
     """
     tried = invalid = 0
-    for _ in range(rules.pairs):
+    for _ in range(rules.population * rules.children_per_parent // 2):
         one, other = _parents(rng, wheel)
         crossed = rng.random() < rules.crossover_probability
         cut = integer(rng, 1, len(field.points)) if crossed else 0
         for head, tail in ((one, other), (other, one)):
-            for mutated in range(0 if rules.unmutated else 1, 2):
+            for mutated in range(0 if rules.offspring == Offspring.both else 1, 2):
                 count = gene_lists.cross(pool, head, tail if crossed else head, cut, child)
                 if mutated:
                     count = _mutate(rng, child, count, field, rules)
@@ -341,11 +321,13 @@ def _add_offspring(rng, pool, filled, wheel, eta, limit, child, memory, field, r
                     if cost < np.inf:
                         break
                 if cost == np.inf:
-                    if not rules.generational:
+                    if rules.survival == Survival.best_of_all:
                         continue
                     # No parent survives, so the place is filled as in the first population.
                     cost = 1.0 / _UNFIT
-                if rules.diversity >= _RELAXING and _is_too_alike(child[:count], cost, pool, filled, eta, field, rules):
+                if rules.diversity in (Diversity.relaxing, Diversity.unique) and _is_too_alike(
+                    child[:count], cost, pool, filled, eta, field, rules
+                ):
                     continue
                 gene_lists.put(child, count, cost, free, pool, filled)
                 filled += 1
@@ -384,7 +366,7 @@ def _parents(rng, wheel):
 def _mutate(rng, child, count, field, rules):
     """Change random genes, except those that must not be set; returns how many are 1."""
     genes = len(field.points)
-    if rules.mutation == _EACH_GENE:
+    if rules.mutation == Mutation.gene:
         # From one gene that changes to the next: the gaps of independent trials of equal probability.
         unchanged = math.log1p(-rules.mutation_rate) if rules.mutation_rate < 1.0 else -np.inf
         gene = gene_lists.gap(rng, unchanged)
@@ -392,10 +374,10 @@ def _mutate(rng, child, count, field, rules):
             if field.settable[gene]:
                 count = gene_lists.flip(child, count, gene)
             gene += 1 + gene_lists.gap(rng, unchanged)
-    elif rules.mutation == _SHIFT:
+    elif rules.mutation == Mutation.shift:
         if rng.random() < rules.mutation_rate:
             count = _change_point(rng, child, count, field)
-    elif rules.mutation == _ONE_FLIP or rng.random() < rules.mutation_rate:
+    elif rules.mutation == Mutation.one_flip or rng.random() < rules.mutation_rate:
         gene = integer(rng, 0, genes)
         if field.settable[gene]:
             count = gene_lists.flip(child, count, gene)
@@ -442,11 +424,11 @@ def _random_chromosome(rng, child, field, rules):
 @allocation_free
 def _is_too_alike(ones, cost, pool, filled, eta, field, rules):
     """Whether a diversity rule rejects a child (Section 3.3)."""
-    if rules.diversity == _UNIQUE:
+    if rules.diversity == Diversity.unique:
         for i in range(filled):
             if cost == pool.cost[i] and gene_lists.same(ones, pool.ones[i, : pool.count[i]]):
                 return True
-    if rules.diversity == _RELAXING:
+    if rules.diversity == Diversity.relaxing:
         total = 0.0
         for i in range(filled):
             total += gene_lists.q(ones, pool.ones[i, : pool.count[i]], len(field.points))

@@ -6,15 +6,17 @@ Lengths, heights and energies in the kernels are in cells.
 """
 
 import math
-from typing import Annotated, Literal, NamedTuple, get_args
+from enum import IntEnum
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from bezierplan.kernels import allocation_free, compiled
-from bezierplan.planners import Plan, Range
+from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.genetic import check_pairs, roulette
-from bezierplan.planners.parts.node_mutation import Mutation, mutate
+from bezierplan.planners.parts.node_mutation import Direction, Mutation, ObstacleNode, Ref21Test, WithoutObstacle, mutate
 from bezierplan.planners.parts.random_integers import below
+from bezierplan.planners.parts.settings import UNITS, in_cells, with_settings
 from bezierplan.planners.parts.sorting import ascending
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.ground import centres, edge_energy, ground_of, least_energy, obstacles_met, path_met
@@ -25,10 +27,15 @@ workspaces = ("grid",)
 exact = True
 keeps_best = False
 
-Initial = Literal["feasible", "rejection", "unrestricted"]
-Selection = Literal["linear_rank", "best_half", "tournament", "roulette"]
-_FEASIBLE, _REJECTION, _UNRESTRICTED = range(3)
-_LINEAR_RANK, _BEST_HALF, _TOURNAMENT, _ROULETTE = range(4)
+PAPER = "meledje"
+
+Initial = IntEnum("Initial", "feasible rejection unrestricted", start=0)
+Selection = IntEnum("Selection", "linear_rank best_half tournament roulette", start=0)
+Cut = IntEnum("Cut", "same independent", start=0)
+MutationFor = IntEnum("MutationFor", "path node", start=0)
+RandomNode = IntEnum("RandomNode", "free any", start=0)
+Result = IntEnum("Result", "last_generation best_so_far", start=0)
+Corners = IntEnum("Corners", "open closed", start=0)
 
 # Walks, or random paths, tried for one path of the first population before it counts as unreachable.
 _MOST_TRIES = 1_000_000
@@ -36,28 +43,43 @@ _MOST_TRIES = 1_000_000
 _IMPROVEMENT = 1e-9
 
 
-class Rules(NamedTuple):
-    """The settings of `plan` as the kernels read them, choices as their indices in `Mutation`, `Initial` and `Selection`."""
+class Settings(NamedTuple):
+    """Settings of the search (meledje, Sections 2 to 4)."""
 
-    mutation: int
-    population: int
-    generations: int
-    stall: int
-    initial: int
-    most_nodes: int
-    selection: int
-    crossover_probability: float
-    one_cut: bool
-    mutation_probability: float
-    each_node: bool
-    any_node: bool
-    beside_obstacle: bool
-    keep_better: bool
-    same_signs: bool
-    whole_path: bool
-    penalty: float
-    elitism: int
-    best_so_far: bool
+    mutation: Annotated[Mutation, About("mutation operator", f"{PAPER}, Section 3")]
+    population: Annotated[int, Range(2), About("paths of a generation", f"{PAPER}, Section 4")]
+    generations: Annotated[int, Range(0), About("most generations after the first")]
+    stall: Annotated[int, Range(1), About("generations without improvement that end the search")]
+    initial: Annotated[
+        Initial,
+        About(
+            "first paths: walks from cell to visible cell, random paths of which feasible ones are kept, or any", f"{PAPER}, Section 2.3"
+        ),
+    ]
+    most_nodes: Annotated[int, Range(1), About("most inner nodes of a first path")]
+    selection: Annotated[Selection, About("how parents are drawn; roulette in proportion to the reciprocal of the objective")]
+    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents", f"{PAPER}, Section 4")]
+    cut: Annotated[Cut, About("parents are cut after the same number of nodes, or independently")]
+    mutation_probability: Annotated[float, Range(0, 1), About("of a path, or of each inner node", f"{PAPER}, Section 4")]
+    mutation_for: Annotated[MutationFor, About("what mutates with that probability: a path, or each inner node")]
+    without_obstacle: Annotated[
+        WithoutObstacle, About("what `proposed` changes of a path that meets no obstacle: any node as in ref12, or none")
+    ]
+    obstacle_node: Annotated[
+        ObstacleNode, About("a node encounters an obstacle if its edge to the next node meets one, or in a cell next to an occupied one")
+    ]
+    keep_better: Annotated[
+        bool, About("whether ref12 and proposed keep a node better than all its neighbours", f"{PAPER}, Table 1, step 4")
+    ]
+    direction: Annotated[Direction, About("steps that ref21 accepts: within a right angle of the line to the target, or with its signs")]
+    ref21_test: Annotated[Ref21Test, About("what ref21 tests: the two edges of the new node, or the whole path")]
+    random_node: Annotated[RandomNode, About("cells that `random` draws from")]
+    penalty: Annotated[float, Range(0), About("added for each occupied cell that an edge meets", unit=UNITS)]
+    elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a path")]
+    result: Annotated[Result, About("best path of the last generation, or of the run")]
+    optimal_within: Annotated[float, Range(0), About("share of the optimum by which an optimal path may exceed it")]
+    friction: Annotated[float, Range(0), About("climbs are divided by it", f"{PAPER}, Section 2.1, without a number")]
+    corners: Annotated[Corners, About("whether an edge through a corner of occupied cells meets them (closed)")]
 
 
 class _Found(NamedTuple):
@@ -84,60 +106,39 @@ def check(settings: dict) -> None:
         raise ValueError("friction: 0; climbing is weighed by its reciprocal, so a number above 0 is needed")
 
 
-def plan(
-    problem: Problem,
-    rng: np.random.Generator,
-    *,
-    mutation: Mutation,
-    population: Annotated[int, Range(2)],
-    generations: Annotated[int, Range(0)],
-    stall: Annotated[int, Range(1)],
-    initial: Initial,
-    most_nodes: Annotated[int, Range(1)],
-    selection: Selection,
-    crossover_probability: Annotated[float, Range(0, 1)],
-    cut: Literal["same", "independent"],
-    mutation_probability: Annotated[float, Range(0, 1)],
-    mutation_for: Literal["path", "node"],
-    without_obstacle: Literal["any_node", "none"],
-    obstacle_node: Literal["edge", "neighbour"],
-    keep_better: bool,
-    direction: Literal["forward", "same_signs"],
-    ref21_test: Literal["edges", "path"],
-    random_node: Literal["free", "any"],
-    penalty: Annotated[float, Range(0)],
-    elitism: Annotated[int, Range(0, 1)],
-    result: Literal["last_generation", "best_so_far"],
-    optimal_within: Annotated[float, Range(0)],
-    friction: Annotated[float, Range(0)],
-    corners: Literal["open", "closed"],
-) -> Plan:
-    """Path of minimum energy from cell to cell: its length, plus its climbs divided by the friction (meledje, Sections 2 and 3).
+@with_settings(Settings)
+def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
+    """Path of minimum energy from cell to cell: its length, plus its climbs divided by the friction.
 
-    mutation: the operator, applied with mutation_probability once per path, or once per inner node (mutation_for). stall: generations
-    without improvement after which the search stops early. initial: the first population, of feasible walks from cell to visible cell; of
-    random paths of which only feasible ones are kept (rejection); or of random paths without restriction; each with at most most_nodes
-    inner nodes. selection: how parents are drawn from the population; roulette draws them in proportion to the reciprocal of the objective.
-    crossover_probability: of a pair of parents; cut: after the same number of nodes in both, or independently. without_obstacle: what
-    `proposed` does to a path that meets no obstacle: any node is changed as in ref12, or none. obstacle_node: which nodes it considers to
-    encounter an obstacle, those whose edge to the next node meets one, or those in a cell next to an occupied one. keep_better: whether
-    ref12 and proposed keep a node that is better than all its neighbours. direction: which steps towards the target `ref21` accepts, within
-    a right angle of the straight line to it, or with the same signs; ref21_test: whether it tests the two edges of the new node or the
-    whole path. random_node: which cells `random` draws from. penalty: in units of length, for each occupied cell that an edge meets.
-    elitism: how many of the best so far replace a path. result: the best path of the last generation, or the best found in the run.
-    optimal_within: share of the optimum by which a path may exceed it and still count as optimal. corners: whether an edge through a corner
-    of occupied cells meets them (closed).
+    Parameters
+    ----------
+    problem : Problem
+        On a grid.
+    rng : numpy.random.Generator
+        The only source of random numbers.
 
-    The planner's own test: no edge meets an occupied cell. Extra columns: optimum, the minimum energy of all feasible paths from cell to
-    cell; optimal, near_optimal, infeasible, exactly one of which is true; feasible_last, the share of feasible paths in the last
-    population; made_infeasible, the share of mutated feasible paths that became infeasible; node_diversity, the mean over generations of
-    the probability that an inner node of one path is not a node of another. Raises ValueError if start or target is not the centre of a
-    cell.
+    Returns
+    -------
+    Plan
+        `claimed_feasible`: no edge meets an occupied cell. Extra columns: optimum, the minimum energy of all feasible paths from cell to
+        cell; optimal, near_optimal, infeasible, exactly one of which is true; feasible_last, the share of feasible paths in the last
+        population; made_infeasible, the share of mutated feasible paths that became infeasible; node_diversity, the mean over generations
+        of the probability that an inner node of one path is not a node of another.
+
+    Raises
+    ------
+    ValueError
+        If start or target is not the centre of a cell.
+
+    References
+    ----------
+    meledje, Sections 2 and 3.
     """
     grid = problem.workspace
-    ground = ground_of(grid, friction, corners == "closed")
+    friction, closed = settings.friction, settings.corners == Corners.closed
+    ground = ground_of(grid, friction, closed)
     start, target = (_cell_at(grid, end, getattr(problem, end)) for end in ("start", "target"))
-    optimum = least_energy(grid, friction, corners == "closed", start, target)
+    optimum = least_energy(grid, friction, closed, start, target)
     starts, moves = rng.spawn(2)
     if obstacles_met(ground, start, target) == 0:
         # No search needed: a walk sees its target immediately, and paths without inner nodes cannot change.
@@ -147,32 +148,11 @@ def plan(
     elif math.isinf(optimum):
         found, stop = _NOTHING, "no path"
     else:
-        rules = Rules(
-            mutation=get_args(Mutation).index(mutation),
-            population=population,
-            generations=generations,
-            stall=stall,
-            initial=get_args(Initial).index(initial),
-            most_nodes=most_nodes,
-            selection=get_args(Selection).index(selection),
-            crossover_probability=float(crossover_probability),
-            one_cut=cut == "same",
-            mutation_probability=float(mutation_probability),
-            each_node=mutation_for == "node",
-            any_node=without_obstacle == "any_node",
-            beside_obstacle=obstacle_node == "neighbour",
-            keep_better=keep_better,
-            same_signs=direction == "same_signs",
-            whole_path=ref21_test == "path",
-            penalty=penalty / grid.cell,
-            elitism=elitism,
-            best_so_far=result == "best_so_far",
-        )
-        drawn = _inner(~grid.occupied | (random_node == "any"), start, target)
-        found = _search(starts, moves, ground, start, target, _inner(~grid.occupied, start, target), drawn, rules)
+        drawn = _inner(~grid.occupied | (settings.random_node == RandomNode.any), start, target)
+        found = _search(starts, moves, ground, start, target, _inner(~grid.occupied, start, target), drawn, in_cells(settings, grid.cell))
         stop = "no first population" if not len(found.path) else "stall" if found.stalled else "generations"
     feasible = len(found.path) > 0 and found.met == 0
-    optimal = feasible and found.objective <= optimum * (1 + optimal_within)
+    optimal = feasible and found.objective <= optimum * (1 + settings.optimal_within)
     return Plan(
         path=Path("polyline", centres(grid, found.path)) if len(found.path) else None,
         objective=found.objective * grid.cell,
@@ -255,17 +235,17 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
         if stalled or generation == rules.generations:
             break
 
-        if rules.selection == _ROULETTE:
+        if rules.selection == Selection.roulette:
             parents = roulette(moves, 1.0 / objective, population)
         else:
             parents = _select(moves, order, ranks, rules.selection)
-        if not rules.one_cut and 2 * lengths.max() > children.shape[1]:
+        if rules.cut == Cut.independent and 2 * lengths.max() > children.shape[1]:
             children = np.empty((population, 2 * lengths.max()), dtype=np.int64)
         for i in range(0, population, 2):
             mother, father = parents[i], parents[i + 1]
             if moves.random() < rules.crossover_probability:
                 cut = other_cut = 1 + below(moves, min(lengths[mother], lengths[father]) - 1)
-                if not rules.one_cut:
+                if rules.cut == Cut.independent:
                     cut, other_cut = 1 + below(moves, lengths[mother] - 1), 1 + below(moves, lengths[father] - 1)
             else:
                 cut, other_cut = lengths[mother], lengths[father]
@@ -276,7 +256,7 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
         paths, children = children, paths
         lengths, child_lengths = child_lengths, lengths
         for i in range(population):
-            for _ in range(lengths[i] - 2 if rules.each_node else 1):
+            for _ in range(lengths[i] - 2 if rules.mutation_for == MutationFor.node else 1):
                 if moves.random() < rules.mutation_probability and lengths[i] > 2:
                     path = paths[i, : lengths[i]]
                     was_feasible = path_met(path, ground) == 0
@@ -287,7 +267,7 @@ def _search(starts, moves, ground, start, target, free, drawn, rules):
             _copy(best, paths[0], best_length)
             lengths[0] = best_length
 
-    if not rules.best_so_far:
+    if rules.result == Result.last_generation:
         best, best_length, best_objective, best_met = paths[first], lengths[first], objective[first], met[first]
     return _Found(
         best[:best_length].copy(),
@@ -354,8 +334,8 @@ def node_diversity(paths: np.ndarray, lengths: np.ndarray, cells: int) -> float:
 def _first_path(rng, path, target, free, ground, rules):
     """A random path, written after its start; returns its number of nodes, or 0 if none was found."""
     for _ in range(_MOST_TRIES):
-        length = _walk(rng, path, target, free, ground) if rules.initial == _FEASIBLE else _random_path(rng, path, target, free)
-        if length and (rules.initial != _REJECTION or path_met(path[:length], ground) == 0):
+        length = _walk(rng, path, target, free, ground) if rules.initial == Initial.feasible else _random_path(rng, path, target, free)
+        if length and (rules.initial != Initial.rejection or path_met(path[:length], ground) == 0):
             return length
     return 0
 
@@ -433,11 +413,11 @@ def _random_path(rng, path, target, free):
 @compiled
 def _select(rng, order, ranks, selection):
     """As many parents as there are paths, drawn with replacement. order: paths, best first; ranks: their weights for a linear ranking."""
-    if selection == _LINEAR_RANK:
+    if selection == Selection.linear_rank:
         return order[roulette(rng, ranks, len(order))]
     parents = np.empty_like(order)
     for i in range(len(order)):
-        if selection == _BEST_HALF:
+        if selection == Selection.best_half:
             parents[i] = order[below(rng, len(order) // 2)]
         else:
             parents[i] = order[min(below(rng, len(order)), below(rng, len(order)))]

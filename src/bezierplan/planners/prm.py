@@ -6,14 +6,16 @@ circles a link is a segment that enters none; on a grid, one that touches no occ
 
 import math
 from collections.abc import Callable
+from enum import IntEnum
 from functools import partial
-from typing import Annotated, Literal, NamedTuple
+from typing import Annotated, NamedTuple
 
 import numpy as np
 
 from bezierplan.geometry.cell_length import is_free_leg
 from bezierplan.kernels import compiled
-from bezierplan.planners import Plan, Range
+from bezierplan.planners import About, Plan, Range
+from bezierplan.planners.parts.settings import UNITS, with_settings
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Path, Problem
@@ -30,23 +32,42 @@ _MOST_DRAWS = 10_000
 _TOUCHING = 1e-9
 
 
-def plan(
-    problem: Problem,
-    rng: np.random.Generator,
-    *,
-    nodes: Annotated[int, Range(0, 2000)],
-    links: Literal["visible", "nearest"],
-    neighbours: Annotated[int, Range(1)],
-    d_min: Annotated[float, Range(0)],
-) -> Plan:
-    """Shortest path along a random roadmap, a polyline; its objective is its length in units, infinite if there is no path.
+Links = IntEnum("Links", "visible nearest", start=0)
 
-    nodes: random points of the free part of the field, in addition to start and target. links: a node is linked with every node that it
-    sees, or with those that it sees of its nearest `neighbours`. d_min: added to every radius, in units; must be 0 on a grid.
 
-    With the same generator, the nodes of a smaller roadmap are the first nodes of a larger one. Extra column: roads, the number of links.
+class Settings(NamedTuple):
+    """Settings of the roadmap; the papers give none."""
+
+    nodes: Annotated[int, Range(0, 2000), About("random points of the free part of the field, beside start and target")]
+    links: Annotated[Links, About("a node is linked with every node that it sees, or with those of its nearest `neighbours` that it sees")]
+    neighbours: Annotated[int, Range(1), About("nearest nodes that a node may be linked with")]
+    d_min: Annotated[float, Range(0), About("added to every radius; must be 0 on a grid", unit=UNITS)]
+
+
+@with_settings(Settings)
+def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
+    """Shortest path along a random roadmap, a polyline.
+
+    With the same generator, the nodes of a smaller roadmap are the first nodes of a larger one.
+
+    Parameters
+    ----------
+    problem : Problem
+        Among circles, or on a grid.
+    rng : numpy.random.Generator
+        The only source of random numbers.
+
+    Returns
+    -------
+    Plan
+        Its objective is its length in units, infinite if there is no path. Extra column: roads, the number of links.
+
+    References
+    ----------
+    tharwat2018, Figure 22; elhoseny2017, Tables 2, 3 and 6.
     """
-    length, way, roads = roadmap(problem, rng, nodes, None if links == "visible" else neighbours, d_min)
+    neighbours = settings.neighbours if settings.links == Links.nearest else None
+    length, way, roads = roadmap(problem, rng, settings.nodes, neighbours, settings.d_min)
     path = Path("polyline", way) if len(way) else None
     found = path is not None
     history = np.array([length])

@@ -16,7 +16,8 @@ from bezierplan.geometry import curves, shortest_paths
 from bezierplan.geometry.checker import first_collision
 from bezierplan.geometry.region import from_origin, region
 from bezierplan.kernels import compiled
-from bezierplan.planners import Plan, Range
+from bezierplan.planners import About, Plan, Range
+from bezierplan.planners.parts.settings import UNITS, with_settings
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Path, Problem
 
@@ -52,27 +53,37 @@ class Turns(NamedTuple):
     side: np.ndarray
 
 
-def plan(
-    problem: Problem,
-    rng: np.random.Generator,
-    *,
-    turning_radius: Annotated[float, Range(0)],
-    offset: Annotated[float, Range(0)],
-) -> Plan:
-    """The exact shortest path (`exact.bounds`), rounded; its objective is its length, in units, or infinite if there is no path.
+class Settings(NamedTuple):
+    """How round the path is. Where there is no room, both are smaller; the extra columns report by how much."""
 
-    turning_radius: the smallest that the path should have, in units; 0 leaves the corners. offset: distance that the path should keep from
-    the corners around which it turns, in units. Where there is no room, both are smaller; the extra columns report by how much.
+    turning_radius: Annotated[float, Range(0), About("smallest radius that the path should have; 0 leaves the corners", unit=UNITS)]
+    offset: Annotated[float, Range(0), About("distance to keep from the corners around which the path turns", unit=UNITS)]
 
-    Extra columns: turns, the number of corners; tight_turns, those with a smaller radius than the turning radius; least_radius, the
-    smallest radius of a turn, in units: 0 where a corner is left, infinite if there are no turns.
+
+@with_settings(Settings)
+def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
+    """The exact shortest path (`exact.bounds`), rounded.
+
+    Parameters
+    ----------
+    problem : Problem
+        In any workspace of the plane.
+    rng : numpy.random.Generator
+        Unused: the path is exact.
+
+    Returns
+    -------
+    Plan
+        Its objective is its length, in units, or infinite if there is no path. Extra columns: turns, the number of corners; tight_turns,
+        those with a smaller radius than the turning radius; least_radius, the smallest radius of a turn, in units: 0 where a corner is
+        left, infinite if there are no turns.
     """
     bound = shortest_paths.shortest_path(problem)
     if math.isinf(bound.length):
         nothing = {"turns": 0, "tight_turns": 0, "least_radius": math.nan}
         return Plan(None, math.inf, claimed_feasible=False, evaluations=1, history=np.array([math.inf]), stop="no way", extra=nothing)
     turns = turns_of(bound.points, problem.workspace)
-    points, radii, tries = _rounded(problem, turns, turning_radius, offset)
+    points, radii, tries = _rounded(problem, turns, settings.turning_radius, settings.offset)
     path = Path("cubic_chain", points)
     length = curves.length(path)
     return Plan(
@@ -84,7 +95,7 @@ def plan(
         stop="exact",
         extra={
             "turns": len(radii),
-            "tight_turns": int((radii < turning_radius * (1 - 1e-9)).sum()),
+            "tight_turns": int((radii < settings.turning_radius * (1 - 1e-9)).sum()),
             "least_radius": float(radii.min(initial=math.inf)),
         },
     )

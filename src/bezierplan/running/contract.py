@@ -11,7 +11,6 @@ import os
 import random
 import subprocess
 import sys
-import typing
 from collections.abc import Iterator
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -21,7 +20,7 @@ import numpy as np
 from bezierplan.geometry import checker, curves
 from bezierplan.geometry.region import Region, region
 from bezierplan.kernels import allocation_free
-from bezierplan.planners import Plan, Range, known_planners, planner_settings, setting_fault
+from bezierplan.planners import Plan, known_planners
 from bezierplan.running import answer, interface, watchdog
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.loans import lend
@@ -100,30 +99,13 @@ def _loaded(planner: str) -> ModuleType:
 
 def _check_settings(module: ModuleType, settings: dict[str, Any], planner: str) -> list[Finding]:
     """Findings from the check of settings: whether the planner's own check, if any, leaves them unchanged. Raises Fault."""
-    accepted = planner_settings(module)
-    for name in settings:
-        if name not in accepted:
-            raise Fault(f"{planner}: settings: {name}: unknown{closest(name, accepted)}")
-    missing = {name: annotation for name, annotation in accepted.items() if name not in settings}
-    if missing:
-        wanted = "; ".join(f"{name}: {_wanted(annotation)}" for name, annotation in missing.items())
-        raise Fault(f"{planner}: settings are missing: {wanted}")
-    for name, annotation in accepted.items():
-        wanted = setting_fault(annotation, settings[name])
-        if wanted:
-            raise Fault(f"{planner}: settings: {name}: {settings[name]!r}; expected {wanted}")
+    interface.refuse_unknown(module, settings, f"{planner}: settings")
+    interface.check_settings(module, settings, f"{planner}: settings")
     if not hasattr(module, "check"):
         return []
-    interface.asked(module.check, f"{planner}: settings", settings)
     handed = dict(settings)
     module.check(handed)
     return [Finding("any problem", "settings unchanged", handed == settings, "" if handed == settings else "check(settings) changes them")]
-
-
-def _wanted(annotation: Any) -> str:
-    """The values that a setting accepts, in words."""
-    limits = [str(part) for part in typing.get_args(annotation) if isinstance(part, Range)]
-    return " ".join([setting_fault(annotation, object()), *limits])
 
 
 # ---------------------------------------------------------------------------------------------------------------------

@@ -100,6 +100,8 @@ def _parsed(source: bytes) -> _Syntax:
             imports.update((node.level, node.module or "", alias.name) for alias in node.names)
         elif isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) and ast.get_docstring(node) is not None:
             node.body = node.body[1:]
+        elif isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id == "About":
+            node.args = node.args[2:]  # the words about a planner's setting; what remains is its unit
     return _Syntax(ast.dump(tree), sorted(map(list, imports)))
 
 

@@ -5,13 +5,14 @@ A file of unknown origin is first executed in a process of its own (`watchdog.ve
 
 import inspect
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from functools import partial
 from types import ModuleType
 from typing import Any
 
 from bezierplan import planners
 from bezierplan.planners import planner_module, planner_settings, setting_fault
+from bezierplan.planners.parts.settings import setting
 from bezierplan.running import watchdog
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.words import LONGEST, plain, told
@@ -88,15 +89,38 @@ def interface_fault(module: ModuleType) -> str | None:
         if each.kind is each.KEYWORD_ONLY and each.annotation is each.empty:
             return f"setting {each.name}: has no annotation; {_EXPECTED}"
     try:
-        annotations = planner_settings(module)
+        parameters = inspect.signature(plan, eval_str=True).parameters.values()
     except Exception as error:
         return f"function plan: its annotations cannot be read ({told(error)})"
-    for setting, annotation in annotations.items():
+    for each in parameters:
         try:
-            setting_fault(annotation, 0)
-        except Exception:
-            return f"setting {setting}: is annotated with {inspect.formatannotation(annotation)}; {_EXPECTED}"
+            _ = each.kind is each.KEYWORD_ONLY and setting(each.annotation)
+        except TypeError:
+            return f"setting {each.name}: is annotated with {inspect.formatannotation(each.annotation)}; {_EXPECTED}"
     return _workspaces_fault(getattr(module, "workspaces", ()))
+
+
+def refuse_unknown(module: ModuleType, names: Iterable[str], place: str) -> None:
+    """Raise Fault, beginning with a place, for a name that is no setting of a planner."""
+    known = planner_settings(module)
+    for name in names:
+        if name not in known:
+            raise Fault(f"{place}: {name}: unknown{closest(name, known)}")
+
+
+def check_settings(module: ModuleType, settings: dict[str, Any], place: str) -> None:
+    """Check a planner's settings: all are there, each has the right type and range, and the planner's own `check` accepts them. Names of no
+    setting are ignored. Raises Fault, beginning with a place.
+    """
+    declared = planner_settings(module)
+    missing = [", ".join(filter(None, [f"{name}: {each}", each.meaning])) for name, each in declared.items() if name not in settings]
+    if missing:
+        raise Fault(f"{place} are missing: {'; '.join(missing)}")
+    for name, each in declared.items():
+        if wanted := setting_fault(each, settings[name]):
+            raise Fault(f"{place}: {name}: {settings[name]!r}; expected {wanted}")
+    if hasattr(module, "check"):
+        asked(module.check, place, settings)
 
 
 def _workspaces_fault(served: Any) -> str | None:

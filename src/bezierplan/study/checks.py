@@ -18,6 +18,7 @@ from bezierplan.figures.panels import Panel, spheres
 from bezierplan.planners import PLACE, planner_module
 from bezierplan.running import columns, interface, problems, worlds
 from bezierplan.running.execution import conditions, settings_in
+from bezierplan.running.interface import check_settings
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.model import Model, first_fault, named, one_or_list
 from bezierplan.study import published
@@ -28,7 +29,7 @@ from bezierplan.study.definition import Study, files_of, relative
 from bezierplan.study.design import Design, fits, in_first_variant
 from bezierplan.study.files import inside
 from bezierplan.study.jobs import job
-from bezierplan.study.planner_checks import check_complete, check_settings, loaded
+from bezierplan.study.planner_checks import check_complete, loaded
 from bezierplan.workspaces import files
 from bezierplan.workspaces.kinds import kinds
 from bezierplan.workspaces.problem import Problem
@@ -107,7 +108,7 @@ def _check_experiments(study: Study, place: str) -> None:
     _check_shared_settings(study, used, place)
     check_complete(study, place)
     for name in study.methods:
-        check_settings(planner_module(study.planner(name)), study.resolved(name), f"{place}: methods: {name}")
+        check_settings(planner_module(study.planner(name)), study.resolved(name), f"{place}: methods: {name}: settings")
     built = cache(partial(_built, study))
     for name in study.workspaces:
         _check_workspace(study, name, f"{place}: workspaces: {name}")
@@ -250,7 +251,7 @@ def _check_method_in(study: Study, built: Callable[[str], Problem], name: str, m
     apart = {str(met.get("settings")): problem for problem, met in reversed(described["problems"].items())}
     for condition in conditions(list(apart.values()), experiment.vary):
         where = f"{place}: vary: {condition.name}: {method}" if condition.values else f"{place}: methods: {method}"
-        check_settings(module, settings_in(described, condition), where)
+        check_settings(module, settings_in(described, condition), f"{where}: settings")
 
 
 # Names defined elsewhere, in artefacts.yaml and claims.yaml
@@ -461,7 +462,7 @@ def _check_dimensions(study: Study, panel: Panel, place: str) -> None:
         raise Fault(f"{place}: method: {panel.method}: its planner cannot plan among spheres; expected a method of {spheres.PLANNER}")
     for setting in panel.settings:
         _known(setting, study.accepted(panel.method), f"{place}: settings")
-    check_settings(planner_module(spheres.PLANNER), study.resolved(panel.method) | panel.settings, place)
+    check_settings(planner_module(spheres.PLANNER), study.resolved(panel.method) | panel.settings, f"{place}: settings")
     try:
         spheres.problem(files.load(workspace.plain(), study.folder), panel.start, panel.target)
     except ValueError as error:
@@ -498,7 +499,7 @@ def check_assumption(study: Study, assumption: Assumption, place: str) -> None:
             changed = with_alternative(study, name)
             for method in methods_changed(study, name):
                 module = planner_module(study.planner(method))
-                check_settings(module, changed.resolved(method), f"{place}: alternatives: {value}: {method}")
+                check_settings(module, changed.resolved(method), f"{place}: alternatives: {value}: {method}: settings")
 
 
 def _check_in_force(study: Study, assumption: Assumption, methods: list[str], place: str) -> None:

@@ -1,9 +1,8 @@
 """Checks that a file is a planner and that settings fit it; every fault is reported in one line."""
 
 from types import ModuleType
-from typing import Any
 
-from bezierplan.planners import known_planners, planner_settings, setting_fault
+from bezierplan.planners import known_planners, planner_settings
 from bezierplan.running import interface
 from bezierplan.running.columns import TAKEN
 from bezierplan.schema.checked import Fault, closest
@@ -26,16 +25,6 @@ def loaded(study: Study, method: str, place: str) -> ModuleType:
         if setting in TAKEN and setting != "generations":
             raise Fault(f"{place}: its setting {setting} is a column of the runs table, or joined to it; give it another name")
     return module
-
-
-def check_settings(module: ModuleType, settings: dict[str, Any], place: str) -> None:
-    """Check that the settings of one method have the right types and ranges and are consistent. Raises Fault, beginning with a place."""
-    accepted = planner_settings(module)
-    for setting in accepted.keys() & settings.keys():
-        if wanted := setting_fault(accepted[setting], settings[setting]):
-            raise Fault(f"{place}: settings: {setting}: {settings[setting]!r}; expected {wanted}")
-    if hasattr(module, "check"):
-        interface.asked(module.check, f"{place}: settings", settings)
 
 
 def check_complete(study: Study, place: str) -> None:

@@ -4,14 +4,14 @@ Cells are numbered as in `grid.Grid`; lengths are in cells.
 """
 
 import math
-from typing import Literal, NamedTuple
+from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 
 from bezierplan.workspaces.grid import Grid
 
-Corners = Literal["free", "one", "none"]
-CORNERS = {"free": 2, "one": 1, "none": 0}
+Corners = IntEnum("Corners", {"free": 2, "one": 1, "none": 0})
 """How many of the two cells beside a diagonal step may be occupied."""
 
 STEPS = np.array([(0, -1), (0, 1), (1, 0), (-1, 0), (-1, -1), (1, -1), (-1, 1), (1, 1)])
@@ -38,7 +38,7 @@ class Lattice(NamedTuple):
     ends: float
 
 
-def lattice(grid: Grid, start: tuple[float, float], target: tuple[float, float], corners: Corners) -> Lattice:
+def lattice(grid: Grid, start: tuple[float, float], target: tuple[float, float], corners: str) -> Lattice:
     """The lattice of a grid with the cells of start and target, both (x, y) in units.
 
     Raises ValueError if one of them lies outside the grid, or in an occupied cell.
@@ -59,20 +59,20 @@ def lattice(grid: Grid, start: tuple[float, float], target: tuple[float, float],
     )
 
 
-def neighbours(occupied: np.ndarray, corners: Corners) -> np.ndarray:
+def neighbours(occupied: np.ndarray, corners: str) -> np.ndarray:
     """The cells that each of `STEPS` reaches: (cells, 8) numbers, -1 where a step is not allowed and from occupied cells.
 
     occupied: bool (rows, columns). Raises ValueError for an unknown rule.
     """
-    if corners not in CORNERS:
-        raise ValueError(f"unknown corner rule {corners!r}; known: {', '.join(CORNERS)}")
+    if corners not in Corners.__members__:
+        raise ValueError(f"unknown corner rule {corners!r}; known: {', '.join(Corners.__members__)}")
     walled = np.pad(occupied, 1, constant_values=True)
     row, column = np.argwhere(~occupied).T + 1
     # The two cells next to a step; for a step along an axis these are the cells that it leaves and enters.
     beside = [walled[row + up, column].astype(int) + walled[row, column + right] for up, right in STEPS]
     reached = np.full((occupied.size, len(STEPS)), -1)
     free = np.flatnonzero(~occupied)
-    reached[free] = np.where(np.column_stack(beside) <= CORNERS[corners], _around(occupied)[free], -1)
+    reached[free] = np.where(np.column_stack(beside) <= Corners[corners], _around(occupied)[free], -1)
     return reached
 
 

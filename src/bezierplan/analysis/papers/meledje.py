@@ -5,15 +5,14 @@ Numbers of equations, sections, tables and figures are the paper's. Drawings use
 
 import itertools
 from collections.abc import Iterator, Sequence
-from typing import get_args, get_type_hints
 
 import numpy as np
 import pandas as pd
 import shapely
 
 from bezierplan.analysis.statistics import holm
-from bezierplan.planners import node_genetic
-from bezierplan.planners.parts.node_mutation import Mutation, mutate
+from bezierplan.planners import node_genetic, planner_settings
+from bezierplan.planners.parts.node_mutation import Direction, Mutation, ObstacleNode, Ref21Test, WithoutObstacle, mutate
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.ground import centres, ground_of, obstacles_met
 
@@ -84,11 +83,17 @@ def mutations(
     infeasible; the proposed mutation changes the one that is. The first seed with this result is used.
 
     free_path, blocked_path: columns and rows of the nodes of a feasible path, and of one whose second edge meets an obstacle. The others:
-    settings that the operators read, as in `node_genetic.Rules`.
+    settings that the operators read, as in `node_genetic.Settings`.
     """
-    unread = {name: kind() for name, kind in get_type_hints(node_genetic.Rules).items()}
-    read = {"any_node": any_node, "beside_obstacle": beside_obstacle, "keep_better": keep_better, "same_signs": same_signs}
-    rules = node_genetic.Rules(**(unread | read | {"whole_path": whole_path, "penalty": penalty}))
+    unread = node_genetic.Settings(**{name: 0 if each.words else each.kind() for name, each in planner_settings(node_genetic).items()})
+    rules = unread._replace(
+        without_obstacle=int(WithoutObstacle.any_node if any_node else WithoutObstacle.none),
+        obstacle_node=int(ObstacleNode.neighbour if beside_obstacle else ObstacleNode.edge),
+        keep_better=keep_better,
+        direction=int(Direction.same_signs if same_signs else Direction.forward),
+        ref21_test=int(Ref21Test.path if whole_path else Ref21Test.edges),
+        penalty=penalty,
+    )
     frames = []
     for operator, places in (("random", free_path), ("ref12", blocked_path), ("proposed", blocked_path)):
         before = np.array([column + grid.occupied.shape[1] * row for column, row in places])
@@ -97,11 +102,11 @@ def mutations(
     return pd.concat(frames)
 
 
-def _shown(grid: Grid, operator: str, before: np.ndarray, rules: node_genetic.Rules) -> Iterator[tuple[np.ndarray, int]]:
+def _shown(grid: Grid, operator: str, before: np.ndarray, rules: node_genetic.Settings) -> Iterator[tuple[np.ndarray, int]]:
     """Paths after a mutation that shows what the paper says about the operator, each with the index of the changed node."""
     ground = ground_of(grid, 1.0)
     drawn = np.setdiff1d(np.flatnonzero(~grid.occupied), before[[0, -1]])
-    rules = rules._replace(mutation=get_args(Mutation).index(operator))
+    rules = rules._replace(mutation=int(Mutation[operator]))
     for seed in range(SEEDS):
         after = before.copy()
         mutate(np.random.default_rng(seed), after, drawn, ground, rules, np.empty(8, dtype=np.int64))

@@ -6,7 +6,7 @@ import numpy as np
 
 from bezierplan.geometry.shortest_paths.graph import Bound, no_path
 from bezierplan.kernels import compiled
-from bezierplan.workspaces.lattice import CORNERS, STEPS, Corners
+from bezierplan.workspaces.lattice import STEPS, Corners
 
 
 def lattice_path(
@@ -14,7 +14,7 @@ def lattice_path(
     start: tuple[int, int],
     target: tuple[int, int],
     diagonal_weight: float,
-    corner_rule: Corners,
+    corner_rule: str,
 ) -> Bound:
     """The shortest path over the 8 neighbours of free cells, by the algorithm A*; length and points (x, y) in cells.
 
@@ -31,8 +31,8 @@ def lattice_path(
     >>> lattice_path(occupied, start=(0, 0), target=(2, 3), diagonal_weight=1.5, corner_rule="none").length
     5.0
     """
-    if corner_rule not in CORNERS:
-        raise ValueError(f"unknown corner rule {corner_rule!r}; known: {', '.join(CORNERS)}")
+    if corner_rule not in Corners.__members__:
+        raise ValueError(f"unknown corner rule {corner_rule!r}; known: {', '.join(Corners.__members__)}")
     rows, columns = occupied.shape
     for name, (row, column) in (("start", start), ("target", target)):
         if not (0 <= row < rows and 0 <= column < columns):
@@ -41,7 +41,7 @@ def lattice_path(
         return no_path()
 
     walled_cells = np.pad(occupied, 1, constant_values=True)
-    length, cells = _least_cells(walled_cells, np.array(start) + 1, np.array(target) + 1, STEPS, diagonal_weight, CORNERS[corner_rule])
+    length, cells = _least_cells(walled_cells, np.array(start) + 1, np.array(target) + 1, STEPS, diagonal_weight, int(Corners[corner_rule]))
     row, column = np.divmod(cells, columns + 2)
     return Bound(length, np.column_stack([column - 0.5, row - 0.5]))
 

@@ -6,15 +6,15 @@ where the usual sine map has a = 4. `constant` is a baseline: it stays where it 
 """
 
 import math
-from typing import Literal, NamedTuple, get_args
+from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 
 from bezierplan.kernels import allocation_free, compiled
 
-Map = Literal["gauss", "singer", "tent", "circle", "logistic", "sine", "piecewise", "sinusoidal", "gauss_printed", "constant"]
-MAPS = get_args(Map)
-_GAUSS, _SINGER, _TENT, _CIRCLE, _LOGISTIC, _SINE, _PIECEWISE, _SINUSOIDAL, _GAUSS_PRINTED, _CONSTANT = range(len(MAPS))
+Map = IntEnum("Map", "gauss singer tent circle logistic sine piecewise sinusoidal gauss_printed constant", start=0)
+MAPS = tuple(Map.__members__)
 
 # tharwat2018: eq. 11, the two constants of eq. 12, and the text below eq. 13.
 TENT_PEAK = 0.7
@@ -54,7 +54,7 @@ class Sequence(NamedTuple):
     collapsed_at: int
 
 
-def sequence(name: Map, start: float, length: int, parameters: Parameters) -> Sequence:
+def sequence(name: str, start: float, length: int, parameters: Parameters) -> Sequence:
     """A map's values from a start in [0, 1], which is the first of them.
 
     Values that leave [0, 1] are clipped, and the sequence continues from there; those of `gauss_printed` are left as they are. A sequence
@@ -66,7 +66,7 @@ def sequence(name: Map, start: float, length: int, parameters: Parameters) -> Se
     return Sequence(*_sequence(_number(name), start, length, parameters))
 
 
-def random_start(rng: np.random.Generator, name: Map, parameters: Parameters) -> float:
+def random_start(rng: np.random.Generator, name: str, parameters: Parameters) -> float:
     """A uniform random start in (0, 1) from which a map's sequence stays alive: redrawn while it dies at 0 or at a fixed point.
 
     Raises ValueError for an unknown map and if no start stays alive.
@@ -95,7 +95,7 @@ def _sequence(number, start, length, parameters):
     for k in range(length):
         if k > 0:
             x = _next(number, x, parameters)
-            if number != _GAUSS_PRINTED and not 0.0 <= x <= 1.0:
+            if number != Map.gauss_printed and not 0.0 <= x <= 1.0:
                 x = min(max(x, 0.0), 1.0)
                 clipped += 1
             if abs(x - values[k - 1]) >= STANDSTILL:
@@ -118,25 +118,25 @@ def _lives(number, start, parameters):
 @allocation_free
 def _next(number, x, parameters):
     """x_{k+1} of a map from x_k (tharwat2018, eqs. 9 to 16)."""
-    if number == _GAUSS:
+    if number == Map.gauss:
         return _fraction(1.0 / x) if x > _LEAST else 0.0
-    if number == _SINGER:
+    if number == Map.singer:
         return parameters.singer_mu * x * (7.86 + x * (-23.31 + x * (28.75 - parameters.singer_x4 * x)))
-    if number == _TENT:
+    if number == Map.tent:
         return x / TENT_PEAK if x < TENT_PEAK else 10.0 / 3.0 * (1.0 - x)
-    if number == _CIRCLE:
+    if number == Map.circle:
         return _fraction(x + CIRCLE_B - CIRCLE_A / (2.0 * math.pi) * math.sin(2.0 * math.pi * x))
-    if number == _LOGISTIC:
+    if number == Map.logistic:
         return LOGISTIC_A * x * (1.0 - x)
-    if number == _SINE:
+    if number == Map.sine:
         return parameters.sine_a / 4.0 * math.sin(math.pi * x)
-    if number == _PIECEWISE:
+    if number == Map.piecewise:
         p = parameters.piecewise_p
         nearer = min(x, 1.0 - x)  # the map is symmetric about 0.5
         return nearer / p if nearer <= p else (nearer - p) / (0.5 - p)
-    if number == _SINUSOIDAL:
+    if number == Map.sinusoidal:
         return parameters.sinusoidal_a * x * x * math.sin(math.pi * x)
-    if number == _GAUSS_PRINTED:
+    if number == Map.gauss_printed:
         return 1.0 / _fraction(x) if _fraction(x) > _LEAST else 0.0
     return x
 

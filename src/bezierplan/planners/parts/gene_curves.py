@@ -1,7 +1,8 @@
 """The curve of a chromosome of control points: whether it is valid, and how long it is (elhoseny2017, equation 6 and Section 3.2.2)."""
 
 import math
-from typing import Literal, NamedTuple
+from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 
@@ -20,8 +21,9 @@ _ON_LINE = 1e-9
 # A sum of lengths is exact to this share.
 _ROUNDING = 1e-9
 
-FitnessLength = Literal["length", "cells4", "cells8"]
-_LENGTH, _CELLS4, _CELLS8 = range(3)
+CurveKind = IntEnum("CurveKind", "single composite", start=0)
+FitnessLength = IntEnum("FitnessLength", "length cells4 cells8", start=0)
+Invalid = IntEnum("Invalid", "delete penalty", start=0)
 _FREE, _OCCUPIED, _UNKNOWN = range(3)
 
 
@@ -56,7 +58,7 @@ def scratch_for(field: Field) -> Scratch:
 def validate(ones: np.ndarray, field: Field, rules: NamedTuple, limit: float, scratch: Scratch) -> tuple[float, bool]:
     """Apply the constraints of equation 6 and Section 3.2.2: the cost (length) of a chromosome, infinite if it is to be deleted, and
     whether its curve is collision-free. `Obstacles` needs no test, as genes of occupied cells are never set. rules:
-    `modified_genetic.Rules`. scratch: `scratch_for` the field.
+    `modified_genetic.Settings`. scratch: `scratch_for` the field.
 
     limit: nobody needs to know by how much a length exceeds it, so a cost above it may be less than the length.
     """
@@ -69,24 +71,24 @@ def validate(ones: np.ndarray, field: Field, rules: NamedTuple, limit: float, sc
             if max(width, height) < rules.least_distance and math.hypot(width, height) < rules.least_distance:
                 return np.inf, False
     sight = _UNKNOWN
-    if not rules.punished:
-        sight, least = _at_first_sight(points, rules.composite, field.room, scratch)
+    if rules.invalid == Invalid.delete:
+        sight, least = _at_first_sight(points, rules.curve == CurveKind.composite, field.room, scratch)
         if sight == _OCCUPIED:
             return np.inf, False
-        if sight == _FREE and rules.fitness_length == _LENGTH and least > limit:
+        if sight == _FREE and rules.fitness_length == FitnessLength.length and least > limit:
             return least, True
-    count = _write_curve(points, rules.composite, scratch)
+    count = _write_curve(points, rules.curve == CurveKind.composite, scratch)
     x, y = scratch.x[:count], scratch.y[:count]
-    if sight == _FREE and rules.fitness_length == _LENGTH:
+    if sight == _FREE and rules.fitness_length == FitnessLength.length:
         return sum_of_steps(x, y, scratch.t), True
     count = write_touched_cells(x, y, scratch.columns, scratch.rows)
     columns, rows = scratch.columns[:count], scratch.rows[:count]
     bad = occupied_cells(columns, rows, field.occupied)  # `Valid Path`
-    if bad > 0 and not rules.punished:
+    if bad > 0 and rules.invalid == Invalid.delete:
         return np.inf, False
-    if rules.fitness_length == _LENGTH:
+    if rules.fitness_length == FitnessLength.length:
         length = sum_of_steps(x, y, scratch.t)
-    elif rules.fitness_length == _CELLS4:
+    elif rules.fitness_length == FitnessLength.cells4:
         length = cells4(columns, rows)
     else:
         length = cells8(columns, rows)

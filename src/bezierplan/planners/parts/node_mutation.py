@@ -3,7 +3,8 @@
 Each changes one inner node of a path in place and keeps the number of nodes.
 """
 
-from typing import Literal, NamedTuple
+from enum import IntEnum
+from typing import NamedTuple
 
 import numpy as np
 
@@ -11,8 +12,11 @@ from bezierplan.kernels import allocation_free, inlined
 from bezierplan.planners.parts.random_integers import below
 from bezierplan.workspaces.ground import Ground, edge_energy, free_neighbours, obstacles_met, path_met
 
-Mutation = Literal["random", "random_repair", "ref12", "ref21", "proposed"]
-_RANDOM, _RANDOM_REPAIR, _REF12, _REF21, _PROPOSED = range(5)
+Mutation = IntEnum("Mutation", "random random_repair ref12 ref21 proposed", start=0)
+WithoutObstacle = IntEnum("WithoutObstacle", "any_node none", start=0)
+ObstacleNode = IntEnum("ObstacleNode", "edge neighbour", start=0)
+Direction = IntEnum("Direction", "forward same_signs", start=0)
+Ref21Test = IntEnum("Ref21Test", "edges path", start=0)
 
 # Number of times random mutation is repeated to obtain a feasible path.
 _MOST_REPAIRS = 50
@@ -24,18 +28,18 @@ _TIE = 1e-12
 def mutate(rng: np.random.Generator, path: np.ndarray, drawn: np.ndarray, ground: Ground, rules: NamedTuple, neighbours: np.ndarray) -> int:
     """Apply the operator once to a path of cells (n,), n at least 3; returns how many paths it evaluated.
 
-    drawn: the cells from which random mutation draws. rules: `node_genetic.Rules`. neighbours: (8,) scratch.
+    drawn: the cells from which random mutation draws. rules: `node_genetic.Settings`. neighbours: (8,) scratch.
     """
-    if rules.mutation == _RANDOM:
+    if rules.mutation == Mutation.random:
         path[1 + below(rng, len(path) - 2)] = drawn[below(rng, len(drawn))]
         return 0
-    if rules.mutation == _RANDOM_REPAIR:
+    if rules.mutation == Mutation.random_repair:
         return _random_repair(rng, path, drawn, ground)
-    if rules.mutation == _REF21:
+    if rules.mutation == Mutation.ref21:
         return _ref21(rng, path, ground, rules, neighbours)
-    k = _blocked_node(rng, path, ground, rules.beside_obstacle) if rules.mutation == _PROPOSED else 0
+    k = _blocked_node(rng, path, ground, rules.obstacle_node == ObstacleNode.neighbour) if rules.mutation == Mutation.proposed else 0
     if k == 0:
-        if rules.mutation == _PROPOSED and not rules.any_node:
+        if rules.mutation == Mutation.proposed and rules.without_obstacle == WithoutObstacle.none:
             return 0
         k = 1 + below(rng, len(path) - 2)
     return _best_neighbour(path, k, ground, rules, neighbours)
@@ -113,13 +117,13 @@ def _ref21(rng, path, ground, rules, neighbours):
     k = 1 + below(rng, len(path) - 2)
     count = free_neighbours(path[k], ground, neighbours)
     elsewhere = 0
-    if rules.whole_path:
+    if rules.ref21_test == Ref21Test.path:
         elsewhere = path_met(path[:k], ground) + path_met(path[k + 1 :], ground)
     for tried in range(count):
         chosen = tried + below(rng, count - tried)
         neighbours[tried], neighbours[chosen] = neighbours[chosen], neighbours[tried]
         cell = neighbours[tried]
-        accepted = elsewhere == 0 and _towards(path[0], cell, path[-1], ground.occupied.shape[1], rules.same_signs)
+        accepted = elsewhere == 0 and _towards(path[0], cell, path[-1], ground.occupied.shape[1], rules.direction == Direction.same_signs)
         if accepted and obstacles_met(ground, path[k - 1], cell) == 0 and obstacles_met(ground, cell, path[k + 1]) == 0:
             path[k] = cell
             return tried + 1

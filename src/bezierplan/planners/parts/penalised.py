@@ -7,7 +7,8 @@ it applies to a polygon too, whose largest depth is the radius of its largest in
 bounds keep the control points inside.
 """
 
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from enum import IntEnum
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -19,8 +20,7 @@ from bezierplan.workspaces.spheres import Spheres
 if TYPE_CHECKING:
     from shapely import LinearRing
 
-Penalty = Literal["multiply", "add", "death"]
-_MULTIPLY, _ADD, _DEATH = range(3)
+Penalty = IntEnum("Penalty", "multiply add death", start=0)
 
 # A path is feasible if its violation does not exceed this: a converging swarm ends tangent to a circle, a rounding error deep.
 FEASIBLE = 1e-9
@@ -58,9 +58,9 @@ class Objective(NamedTuple):
 @allocation_free
 def fitness(length: float, violation: float, objective: Objective) -> float:
     """Length of a path combined with the penalty for its violation (tharwat2018, eq. 22, which leaves the penalty open)."""
-    if objective.penalty == _MULTIPLY:
+    if objective.penalty == Penalty.multiply:
         return length * (1.0 + objective.beta * violation)
-    if objective.penalty == _ADD:
+    if objective.penalty == Penalty.add:
         return length + objective.beta * violation
     return objective.beta if violation > FEASIBLE else length
 
@@ -68,7 +68,7 @@ def fitness(length: float, violation: float, objective: Objective) -> float:
 @allocation_free
 def least_fitness(length: float, objective: Objective) -> float:
     """The lowest fitness that a path of this length can have, whatever it meets."""
-    return min(length, objective.beta) if objective.penalty == _DEATH else length
+    return min(length, objective.beta) if objective.penalty == Penalty.death else length
 
 
 @allocation_free

@@ -1,0 +1,171 @@
+"""Settings of a planner, each declared once, as a field of a named tuple:
+
+    class Settings(NamedTuple):
+        genes: Annotated[int, Range(0, 60), About("free control points", "song2016, Section III-B")]
+        mutation: Annotated[Mutation, About("what mutates", "song2016, Section III-E")]
+
+    @with_settings(Settings)
+    def plan(problem, rng, settings): ...
+
+Callers give settings by name, choices as words. `plan` gets the named tuple, in which everything is a number, so kernels can read it: a
+choice is an `IntEnum`, whose members are the words. What is accepted, the text of messages and `help(plan)` follow from the declaration.
+"""
+
+import inspect
+import math
+import sys
+import typing
+from collections.abc import Callable
+from enum import EnumMeta
+from functools import cache, wraps
+from typing import Any, NamedTuple, TypeVar
+
+ASSUMED = "assumed"
+"""The source of a setting that no paper gives."""
+
+UNITS = "units"
+"""The unit of lengths in a workspace."""
+
+
+class Range(NamedTuple):
+    """Limits of a setting's value, both inclusive. Infinity is a value only where it is given as a limit: few planners end with it."""
+
+    low: float = -sys.float_info.max
+    high: float = sys.float_info.max
+
+    def __str__(self) -> str:
+        if self.high >= sys.float_info.max:
+            return f"at least {self.low:g}"
+        return f"from {self.low:g} to {self.high:g}"
+
+
+class About(NamedTuple):
+    """What a setting means, in one line; where the paper gives it, and its unit, empty for a pure number or a choice."""
+
+    text: str
+    source: str = ASSUMED
+    unit: str = ""
+
+
+class Setting(NamedTuple):
+    """A declared setting.
+
+    Attributes
+    ----------
+    kind : type
+        `bool`, `int`, `float`, an `IntEnum`, or `str` for the words of a `Literal`.
+    words : tuple
+        Accepted values of a choice.
+    limits : Range
+        Accepted values of a number.
+    about : About or None
+        Meaning, source and unit; None in a planner that does not tell.
+    """
+
+    kind: type
+    words: tuple
+    limits: Range
+    about: About | None
+
+    def __str__(self) -> str:
+        """The accepted values."""
+        if self.words:
+            return "one of " + ", ".join(map(str, self.words))
+        number = {bool: "true or false", int: "a whole number", float: "a number"}[self.kind]
+        return number if self.limits == Range() else f"{number} {self.limits}"
+
+    @property
+    def meaning(self) -> str:
+        """The text, the unit and the source in one line."""
+        text, source, unit = self.about or About("", "")
+        return text + (f" [{unit}]" if unit else "") + (f" ({source})" if source else "")
+
+    def number(self, value: Any) -> Any:
+        """A value for kernels: a choice as its number; a decimal never as an integer, which would compile kernels again."""
+        if isinstance(self.kind, EnumMeta):
+            return int(self.kind[value])
+        return float(value) if self.kind is float else value
+
+
+def setting(annotation: Any) -> Setting:
+    """The setting that an annotation declares. Raises TypeError unless it is `bool`, `int`, `float`, a `Literal` or an `IntEnum`, or one of
+    these `Annotated` with a `Range` and an `About`; None may be allowed as well.
+    """
+    if type(None) in typing.get_args(annotation):
+        annotation = next(part for part in typing.get_args(annotation) if part is not type(None))
+    notes: tuple = ()
+    if typing.get_origin(annotation) is typing.Annotated:
+        annotation, *notes = typing.get_args(annotation)
+    limits = next((note for note in notes if isinstance(note, Range)), Range())
+    about = next((note for note in notes if isinstance(note, About)), None)
+    if typing.get_origin(annotation) is typing.Literal:
+        return Setting(str, typing.get_args(annotation), limits, about)
+    if isinstance(annotation, EnumMeta) and issubclass(annotation, int) and annotation.__members__:
+        return Setting(annotation, tuple(annotation.__members__), limits, about)
+    if annotation not in (bool, int, float) or any(not isinstance(note, Range | About) for note in notes):
+        raise TypeError(f"{annotation} declares no setting")
+    return Setting(annotation, (), limits, about)
+
+
+def setting_fault(declared: Setting, value: Any) -> str | None:
+    """What is expected instead of a setting's value, or None if the value is valid."""
+    if declared.words:
+        return None if value in declared.words else str(declared)
+    accepted = (int, float) if declared.kind is float else declared.kind
+    if not isinstance(value, accepted) or (isinstance(value, bool) and declared.kind is not bool):
+        return str(declared._replace(limits=Range()))
+    if declared.kind is bool or declared.limits.low <= value <= declared.limits.high:
+        return None
+    return str(declared) if abs(value) < math.inf else f"a finite {str(declared).removeprefix('a ')}"
+
+
+def settings_of(plan: Callable[..., Any]) -> dict[str, Setting]:
+    """Settings of a planner's function `plan`, its keyword-only arguments, by name and in their order. Raises TypeError or NameError for an
+    annotation that declares none.
+    """
+    parameters = inspect.signature(plan, eval_str=True).parameters.values()
+    return {each.name: setting(each.annotation) for each in parameters if each.kind is each.KEYWORD_ONLY}
+
+
+T = TypeVar("T", bound=tuple)
+
+
+@cache
+def _declared(settings: type) -> dict[str, Setting]:
+    return {name: setting(annotation) for name, annotation in settings.__annotations__.items()}
+
+
+def filled(settings: type[T], values: dict[str, Any]) -> T:
+    """A class of settings with these values, given by name as in a study. Raises TypeError for a missing or unknown name."""
+    declared = _declared(settings)
+    return settings(**{name: declared[name].number(value) if name in declared else value for name, value in values.items()})
+
+
+def in_cells(settings: T, cell: float) -> T:
+    """The same settings for kernels that count in cells: what is in units is divided by the side of a cell."""
+    lengths = [name for name, each in _declared(type(settings)).items() if each.about and each.about.unit == UNITS]
+    return settings._replace(**{name: getattr(settings, name) / cell for name in lengths})
+
+
+def with_settings(*classes: type) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """Have `plan(problem, rng, settings, ...)`, with one argument for each of these classes, called with the settings by name."""
+
+    def decorate(plan: Callable[..., Any]) -> Callable[..., Any]:
+        @wraps(plan)
+        def planned(problem: Any, rng: Any, *further: Any, **values: Any) -> Any:
+            parts = [{name: value for name, value in values.items() if name in each._fields} for each in classes[1:]]
+            rest = {name: value for name, value in values.items() if not any(name in part for part in parts)}
+            tuples = [filled(each, part) for each, part in zip(classes, [rest, *parts], strict=True)]
+            return plan(problem, rng, *tuples, *further)
+
+        signature = inspect.signature(plan)
+        kept = list(signature.parameters.values())
+        del kept[2 : 2 + len(classes)]
+        names = {name: annotation for each in classes for name, annotation in each.__annotations__.items()}
+        keywords = [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, annotation=names[name]) for name in names]
+        planned.__signature__ = signature.replace(parameters=[*kept, *keywords])
+        told = [f"{name} : {each}\n    {each.meaning}" for part in classes for name, each in _declared(part).items()]
+        planned.__doc__ = "\n".join([inspect.cleandoc(plan.__doc__ or ""), "\nOther Parameters\n----------------", *told])
+        return planned
+
+    return decorate
