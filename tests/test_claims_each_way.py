@@ -445,3 +445,32 @@ def test_maps_that_are_all_alike_say_nothing_about_outliers_of_singer(maps):
     row = verdict("tharwat2018", claim_of("tharwat2018", "C20"), outliers_of(maps), None)
     assert row["verdict"] == "no effect"
     assert abs(row["effect"]) < 0.05
+
+
+def test_a_claim_that_fails_by_a_criterion_of_ours_says_so_first(columns_alone):
+    claim = claim_of("song2016", "C3")
+    row = verdict("song2016", claim, made("song2016", claim, truth=False))
+    assert row["own_criterion"]
+    assert row["reason"].startswith("fails by our criterion alone")
+
+
+def test_a_picked_run_has_the_chance_of_a_typical_one(columns_alone):
+    """Of every two runs of a pair of cells one bends too much; the picked ones do not."""
+    claim = claim_of("song2016", "C4")
+    results = made("song2016", claim, truth=True)
+    runs = results["routes"].runs
+    runs["objective"] = runs["repeat"].astype(float)
+    runs["max_curvature"] = np.where(runs["repeat"] % 2, 0.2, 0.05)
+    row = verdict("song2016", claim, results)
+    assert row["verdict"] == "supported"
+    assert row["replication_probability"] == pytest.approx(0.25)
+
+
+def test_no_effect_says_below_what_size(columns_alone):
+    claim = claim_of("tharwat2018", "C9")
+    results = made("tharwat2018", claim, truth=True)
+    runs = results["maps"].runs
+    runs["collisions_a"] = 15 + 0.01 * generator("alike").normal(size=len(runs))
+    row = verdict("tharwat2018", claim, results)
+    assert row["verdict"] == "no effect"
+    assert "differs by less than 0.0" in row["reason"]

@@ -114,5 +114,5 @@ def test_a_quantity_along_a_path_stands_over_the_parameter(monkeypatch):
     frame = pd.DataFrame({"t": [0.0, 0.5, 1.0], "value": [0.25, 0.75, 0.5], "limit": 0.6, "problem": "across", "quantity": "curvature"})
     axes = drawn(along_path, frame, quantity="curvature")
     assert labelled(axes, "path") == [[0, 0.5, 1], [0.25, 0.75, 0.5]]
-    assert labelled(axes, "highest value") == [[0.5], [0.75]]
-    assert labelled(axes, "published limit: 0.6 1/m")[1] == pytest.approx([0.6, 0.6])
+    assert labelled(axes, "largest magnitude") == [[0.5], [0.75]]
+    assert labelled(axes, "published limit: 0.6 1/m, for turns to either side")[1] == pytest.approx([0.6, 0.6])

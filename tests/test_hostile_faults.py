@@ -598,7 +598,7 @@ WORDS = {
     ),
     "a table of no run": (
         A,
-        "where: {problem: [0_15, 15_255, 240_255, 0_240], method: [nonsmooth, smooth, smooth_single]}",
+        "where: {problem: [0_15, 15_255, 240_255, 0_240], method: [nonsmooth, smooth, smooth_cubic, smooth_single]}",
         "where: {curve: bezier, method: [smooth]}",
         "tables: table1: where: no run of routes",
     ),

@@ -202,7 +202,7 @@ def test_columns_of_the_comparison():
     assert ",".join(compare(results()).columns) == (
         "problem,method,metric,statistic,unit,n_published,value_published,n_ours,n_asked,value_ours,best,mean,median,"
         "quartile1,quartile3,"
-        "low95_ours,high95_ours,low95_predicted,high95_predicted,quantile_published,reproduced,can_fail,power,verdict,possible,"
+        "low95_ours,high95_ours,low95_predicted,high95_predicted,quantile_published,reproduced,can_fail,power,verdict,identified,possible,"
         "share_claimed,share_feasible,bound,gap"
     )
 

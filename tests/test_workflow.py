@@ -254,7 +254,7 @@ def test_deleted_figure_alone_is_made_again(tree):
 
 def test_single_figure_needs_only_its_own_methods(tree):
     shutil.rmtree(tree / "results")
-    expected = {"problems": 1, "bounds": 1, "figure figure4": 1, **runs(2, ["smooth", "smooth_single"])}
+    expected = {"problems": 1, "bounds": 1, "figure figure4": 1, **runs(2, ["smooth", "smooth_cubic", "smooth_single"])}
     assert {name: number for name, number in planned(tree, "song2016_figure4").items() if "song2016" not in name} == expected
 
 

@@ -20,7 +20,8 @@ One row for each group of runs, metric and statistic; an empty cell means that t
 | reproduced | whether it lies in the central 95 %. Ours are rounded like the printed one, ties count; empty for times, and below six runs |
 | can_fail | whether a number on the published one's side of ours could have been rejected (`statistics.can_fail`) |
 | power | share of the numbers that matter (`_rivals`) that would have been rejected instead of the published one |
-| verdict | not reproduced; cannot fail; not told apart (reproduced, with a power below one half); reproduced |
+| identified | cells of the paths whose length the published number is to the last digit (`identified`), and the chance of a match |
+| verdict | identified; not reproduced; cannot fail; not told apart (reproduced, with a power below one half); reproduced |
 | possible | whether the metric can have the published value, and ranks add up. A length below the bound of our map is judged all the same |
 | share_claimed | share of all runs whose path passed the planner's own test |
 | share_feasible | share of all runs whose path the certified checker accepts |
@@ -35,8 +36,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import metrics, possible, statistics, tables
+from bezierplan.analysis import identified, metrics, possible, statistics, tables
 from bezierplan.analysis.results import Results, published_table
+from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
 
 LEAST_POWER = 0.5
@@ -48,7 +50,7 @@ MATTERS = 0.1
 _COLUMNS = [
     *("metric", "statistic", "unit", "n_published", "value_published", "n_ours", "n_asked", "value_ours"),
     *("best", "mean", "median", "quartile1", "quartile3", "low95_ours", "high95_ours"),
-    *("low95_predicted", "high95_predicted", "quantile_published", "reproduced", "can_fail", "power", "verdict", "possible"),
+    *("low95_predicted", "high95_predicted", "quantile_published", "reproduced", "can_fail", "power", "verdict", "identified", "possible"),
     *("share_claimed", "share_feasible", "bound", "gap"),
 ]
 
@@ -87,8 +89,22 @@ def compare(
     described = pd.DataFrame(rows, index=both.index)
     table = both.join(described).reindex(columns=keys + _COLUMNS)
     table.loc[_impossible_ranks(both, published, spec), "possible"] = False
+    found = pd.Series([_identified(row, spec.get("identify", []), results.problems) for row in both.to_dict("records")], dtype=object)
+    table["identified"], table["verdict"] = found, table["verdict"].astype(object).mask(found.notna(), "identified")
     whole, marks = ("n_published", "n_ours", "n_asked"), ("reproduced", "can_fail", "possible")
     return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))
+
+
+def _identified(row: dict[str, Any], entries: list[dict], problems: dict[str, Problem]) -> str | None:
+    """The paths whose length a published number is, in words; None if no enumeration that counts finds one, or chance may well have."""
+    if pd.isna(row["value_published"]) or row.get("problem") not in problems:
+        return None
+    for entry in entries:
+        if entry.get("counts", True) and identified.applies(entry, row):
+            found = identified.in_problem(problems[row["problem"]], row["value_published"], int(row["decimals"]), entry["edges"])
+            if found and found.paths and found.chance < identified.UNLIKELY:
+                return identified.in_words(found)
+    return None
 
 
 def _impossible_ranks(both: pd.DataFrame, published: pd.DataFrame, spec: dict) -> np.ndarray:

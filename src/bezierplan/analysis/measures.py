@@ -107,6 +107,12 @@ def first_generation_within(share: float, runs: pd.DataFrame, problems: dict[str
     return (held <= held[:, -1:] * (1 + share)).argmax(axis=1)
 
 
+def first_generation_improved_by(share: float, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
+    """First generation (n,) by which a share of the improvement from generation 0 to the last is made; 0 if there is none."""
+    held = _held_history(runs)
+    return (held <= held[:, :1] - share * (held[:, :1] - held[:, -1:])).argmax(axis=1)
+
+
 def improvement_by(generation: int, runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:
     """Share (n,) of the improvement from generation 0 to the last that is achieved by the given generation."""
     held = _held_history(runs)
@@ -258,6 +264,16 @@ def max_curvature(path: Path) -> float:
 
     kappa, _ = curves.curvature(path, CURVATURE_SAMPLES)
     return float(np.nan_to_num(np.abs(kappa)).max())
+
+
+def signed_curvature(path: Path) -> float:
+    """Largest curvature of `CURVATURE_SAMPLES` samples with its sign (song2016, eq. 5: left turns are positive), in 1/unit; it counts as 0
+    where the speed is zero.
+    """
+    from bezierplan.geometry import curves
+
+    kappa, _ = curves.curvature(path, CURVATURE_SAMPLES)
+    return float(np.nan_to_num(kappa).max())
 
 
 def zero_speed_points(path: Path) -> int:

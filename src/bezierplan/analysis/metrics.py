@@ -153,6 +153,14 @@ METRICS: dict[str, Metric] = {
     "improvement_30": Metric(
         "-", "share of the improvement of the objective made by generation 30", False, partial(measures.improvement_by, 30)
     ),
+    "generation_90pct_improved": Metric(
+        "generation",
+        "first generation by which nine tenths of the run's improvement of the objective are made",
+        False,
+        partial(measures.first_generation_improved_by, 0.9),
+        least=0.0,
+        step=1.0,
+    ),
     "objective_best": Metric("u", "lowest objective of any generation", False, measures.lowest_objective),
     "optimum": Metric("u", "least objective of all feasible paths of the planner's kind", False),
     "optimal": Metric("-", "whether the final path is feasible and optimal, by the planner's own test", False, step=1.0),
@@ -166,6 +174,12 @@ METRICS: dict[str, Metric] = {
         f"largest absolute curvature over {CURVATURE_SAMPLES} samples, corners between pieces left out",
         True,
         partial(measures.of_path, measures.max_curvature),
+    ),
+    "signed_curvature": Metric(
+        "1/u",
+        f"largest curvature over {CURVATURE_SAMPLES} samples by its sign, left turns positive; corners between pieces left out",
+        True,
+        partial(measures.of_path, measures.signed_curvature),
     ),
     "curvature_jump": Metric(
         "1/u", "largest jump of curvature over the joints, infinite at a corner", True, partial(measures.of_path, measures.curvature_jump)

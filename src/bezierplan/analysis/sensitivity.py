@@ -1,6 +1,7 @@
 """Which verdicts depend on which choice: each alternative of an assumption, one at a time, next to the value in force.
 
-Columns: study, assumption, detail, setting, default, alternative; claim, statement; verdict, verdict_alternative, changed; holds,
+Columns: study, assumption, detail, setting, default, alternative; claim, statement; verdict, verdict_alternative,
+changed (empty if either is undecided); holds,
 holds_alternative; effect, effect_alternative (of the decisive comparison).
 """
 
@@ -28,7 +29,7 @@ def sensitivity(claims: pd.DataFrame, alternatives: dict[str, pd.DataFrame], des
                     "statement": in_force["statement"],
                     "verdict": in_force["verdict"],
                     "verdict_alternative": tried.verdict,
-                    "changed": tried.verdict != in_force["verdict"],
+                    "changed": changed(in_force["verdict"], tried.verdict),
                     "holds": in_force["holds"],
                     "holds_alternative": tried.holds,
                     "effect": in_force["effect"],
@@ -36,6 +37,11 @@ def sensitivity(claims: pd.DataFrame, alternatives: dict[str, pd.DataFrame], des
                 }
             )
     return pd.DataFrame(rows)
+
+
+def changed(in_force: str, alternative: str) -> bool | None:
+    """Whether an alternative changes a verdict; None if either is undecided, which neither agrees nor disagrees."""
+    return None if "undecided" in (in_force, alternative) else in_force != alternative
 
 
 def _text(value: object) -> str:

@@ -9,7 +9,7 @@ from bezierplan.analysis.claims.verdicts import VERDICTS
 from bezierplan.analysis.metrics import METRICS
 
 HEADING = "# Outcome at scale "
-NUMBERS = ("reproduced", "not told apart", "cannot fail", "not reproduced")
+NUMBERS = ("identified", "reproduced", "not told apart", "cannot fail", "not reproduced")
 
 
 def read_claims(files: list[str]) -> pd.DataFrame:
@@ -89,11 +89,13 @@ def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
 
 def with_readings(claims: pd.DataFrame, tried: pd.DataFrame) -> pd.DataFrame:
     """Claims with one more column after the verdict: `readings`, how many readings agree with it, such as `9 of 12`: the one in force and
-    each alternative that was tried; empty for a claim on which none was.
+    each alternative that was tried and under which the claim is decided; empty for a claim on which none was, and for one that is undecided
+    as read here.
 
     tried: as from `sensitivity.sensitivity`, of all studies.
     """
-    unchanged = (~tried["changed"]).groupby([tried["study"], tried["claim"]]).agg(["sum", "size"]) + 1
+    tried = tried[tried["changed"].notna()]
+    unchanged = (tried["changed"].astype(str) == "False").groupby([tried["study"], tried["claim"]]).agg(["sum", "size"]) + 1
     words = {key: f"{agree} of {total}" for key, agree, total in unchanged.itertuples()}
     readings = [
         words.get((study, identity), "") if primary else "" for study, identity, primary in claims[["study", "id", "primary"]].to_numpy()
@@ -143,9 +145,10 @@ def report(
     """
     parts = [
         f"{HEADING}{scale}",
-        "`numbers`: published numbers that can be judged and say something new. `reproduced`: those within the central 95 % of what our "
-        "runs give by chance in an experiment of the paper's size, where that range refuses at least half of the numbers that the paper "
-        "prints of other methods in the same place (where it prints none, a number 10 % lower or higher). `not told apart`: within the "
+        "`numbers`: published numbers that can be judged and say something new. `identified`: those that are to the last digit the length "
+        "of a path that an enumeration finds (`audit.csv` names it). `reproduced`: those within the central 95 % of what our runs give by "
+        "chance in an experiment of the paper's size, where that range refuses at least half of the numbers that the paper prints of other "
+        "methods in the same place (where it prints none, a number 10 % lower or higher). `not told apart`: within the "
         "range, which refuses fewer of them. `cannot fail`: within the range, which on the printed number's side of ours has no end, or "
         "ends where nothing possible lies beyond. `not reproduced`: outside. The other columns count claims by verdict; our own findings "
         "are not among them. `stable`: claims with the same verdict under every reading of what the paper leaves open, out of those on "

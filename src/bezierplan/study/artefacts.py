@@ -80,6 +80,16 @@ class Monotone(Model):
     because: Line = Field(description="why they must, in words")
 
 
+class Identify(Model):
+    """An entry of a table's `identify`: an enumeration of paths whose lengths the published numbers may be."""
+
+    metric: Metric = Field(description="the metric of the published numbers that are tried")
+    where: Where = Field({}, description="column of the published file → value or list of values: those that are tried")
+    edges: Whole = Field(description="most edges of a polyline through cell centres, a whole number of at least 1")
+    counts: Flag = Field(True, description="whether a number that is such a length counts as identified; left out: true")
+    because: Line = Field(description="why the numbers may be such lengths, in words")
+
+
 class Pivot(Table):
     """A table of runs, compared with published numbers."""
 
@@ -111,6 +121,11 @@ class Pivot(Table):
         False,
         description="true if the workspaces were reconstructed so that the published lengths are possible: the audit does not compare them "
         "with its bounds; left out: false",
+    )
+    identify: list[Identify] = Field(
+        [],
+        description="published lengths on grids that may be, to the last digit, those of free polylines through cell centres from start to "
+        "target, which the audit enumerates: {metric, where, edges, because}, and perhaps `counts`",
     )
     primary: Where = Field({}, description="column → the value whose rows count as the paper's reading in the summary; left out: all rows")
 

@@ -54,8 +54,15 @@ class Claim(Model):
         "are theirs",
     )
     finding: Literal[True] = Field(None, description="true: our own finding, no sentence of the paper; left out otherwise")
+    criterion: Literal["ours"] = Field(
+        None, description="ours: the paper gives no number, and the threshold or margin that decides is ours; left out otherwise"
+    )
     note: Line = Field(None, description="one line that is shown with the reason for the verdict")
-    holds: Literal["all", "any"] = Field("all", description="`all` comparisons of the primary checks (left out: this), or `any` of them")
+    holds: Literal["all", "any", "together"] = Field(
+        "all",
+        description="`all` comparisons of the primary checks (left out: this), or `any` of them; `together`: all as one "
+        "sentence, such as that one is the best, which a single comparison can refute",
+    )
     variants: dict[str, listed(Values, least=2)] = Field(
         {},
         description="column → list of values: the claim is judged with the first one, and once more, in a row of its own, with each of the "

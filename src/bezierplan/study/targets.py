@@ -318,6 +318,7 @@ def _layout(table: Pivot) -> dict:
         "selected": sorted({entry.metric for entry in table.values if entry.where}),
         "monotone": [rule.plain() for rule in table.monotone],
         "fitted": table.fitted,
+        "identify": [entry.plain() for entry in table.identify],
     }
 
 
@@ -327,7 +328,14 @@ def _audited_experiments(study: Study) -> list[str]:
 
 def audit_inputs(given: Studies, scale: str, study: str) -> dict[str, list[str]]:
     """Input files of the audit."""
-    return {"bounds": _bounds(given[study], scale, _audited_experiments(given[study])), "published": given[study].published_files()}
+    own, experiments = given[study], _audited_experiments(given[study])
+    found = {"bounds": _bounds(own, scale, experiments), "published": own.published_files()}
+    return found | {"problems": _problems(own, scale, [name for name in experiments if _identifies(own, name)])}
+
+
+def _identifies(study: Study, experiment: str) -> bool:
+    """Whether printed lengths are sought among those of paths of an experiment's problems."""
+    return any(table.identify and table.experiment == experiment for table in _audited(study).values())
 
 
 def audit_params(given: Studies, scale: str, study: str) -> dict:
@@ -341,6 +349,7 @@ def audit_params(given: Studies, scale: str, study: str) -> dict:
             "primary": {name: table.primary for name, table in _audited(own).items()},
             "layouts": {name: _layout(table) for name, table in _audited(own).items()},
             "experiments": _audited_experiments(own),
+            "identified": [name for name in _audited_experiments(own) if _identifies(own, name)],
         },
         "published": content_digest(*own.published_files()),
         "code": _code("audit", own.module()),

@@ -1,5 +1,6 @@
 """From a check of a claim to its comparisons: which runs are compared, and the published numbers of the same cells."""
 
+import math
 from collections.abc import Iterator
 from pathlib import PurePath
 
@@ -82,6 +83,7 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
     _refuse_mixtures(check, claim, runs, [*every, *pool, *([column] if column else []), unit])
     # Published numbers are found by the places of the runs, each once.
     places = dict(_split(runs[keys].drop_duplicates(), every))
+    typical = _typical(check, claim, material)
     found = []
     for place, rows in _split(runs, every):
         unit_tables = {name: _unit_table(part, unit, column) for name, part in _split(rows, pool)}
@@ -109,9 +111,18 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
                     paired=check.get("paired", _shares_draws(check, material)),
                     note=_note(check, rows, column, cells),
                     factors=tuple((key, rows[key].iloc[0]) for key in every),
+                    typical=typical.get((place, name), math.nan),
                 )
             )
     return found
+
+
+def _typical(check: dict, claim: dict, material: Material) -> dict[tuple[str, str], float]:
+    """Of a check that picks runs: by place and name, the share of all runs that count in which the event happens; else nothing."""
+    if "pick" not in check:
+        return {}
+    every = comparisons({key: value for key, value in check.items() if key != "pick"}, claim, material)
+    return {(each.place, each.name): float(effects.points(each, "mean")[0]) for each in every}
 
 
 def _measured_runs(check: dict, claim: dict, material: Material) -> pd.DataFrame:

@@ -24,6 +24,9 @@ procedure). If all have to hold, every mark on its own must be + to support the 
 | undecided | otherwise: a ? prevents a verdict, or more than half of the marks are ? | a ? prevents a verdict |
 | untestable | the reason is given | likewise |
 
+If all have to hold together, as one sentence (`holds: together`): supported if every mark is + on its own; contradicted by one - in the
+family, or by a 0 beside a +; no effect with a 0 and neither; otherwise undecided.
+
 A sentence about seconds is judged on counted work if its check names one (`work`); the seconds are reported next to it, and the reason
 says where they disagree.
 
@@ -35,17 +38,20 @@ Columns of claims.csv, one row per claim and variant:
 | variant | values used instead of the primary ones; in the primary row, the primary values |
 | primary | whether this is the primary variant |
 | finding | whether it is our own finding rather than a sentence of the paper |
+| own_criterion | whether the paper gives no number and the threshold or margin that decides is ours |
 | verdict | as above |
 | holds | how many comparisons of the primary checks are + |
 | where_it_holds | which of them are + in the family, in words; if none, where the opposite holds; empty if all or none do |
 | published | how many of those that are printed hold in the printed numbers, by value alone |
 | effect ... p_family | of the decisive comparison: the worst -, otherwise that with the largest p; columns as below |
 | units_to_decide | of an undecided claim: about how many units would decide every comparison marked ?, were our effects the true ones |
-| replication_probability | share of experiments of the paper's size, drawn from our runs, in which the claim holds by values alone |
+| replication_probability | share of experiments of the paper's size, drawn from our runs, in which the claim holds by values alone (*) |
 | size | our effect compared with the printed one: alike (the printed one lies in our interval), smaller, larger, opposite |
 | artefact | the tables and figures that show it |
 | timed | judged on CPU times, which differ from machine to machine |
 | reason | why it is untestable or undecided, and other notes for the reader |
+
+(*) Where a claim is about one picked run of each condition: the chance that runs drawn at random among those that count do in its place.
 
 Columns of claim_checks.csv, one row per comparison:
 
@@ -84,7 +90,20 @@ from bezierplan.analysis.results import Results
 from bezierplan.schema.model import one_or_list
 
 CLAIM_COLUMNS = [
-    *("study", "id", "variant", "primary", "finding", "place", "statement", "verdict", "holds", "where_it_holds", "published"),
+    *(
+        "study",
+        "id",
+        "variant",
+        "primary",
+        "finding",
+        "own_criterion",
+        "place",
+        "statement",
+        "verdict",
+        "holds",
+        "where_it_holds",
+        "published",
+    ),
     *("effect", "effect_size_name", "effect_size", "low95", "high95", "n", "counted", "p", "p_family"),
     *("units_to_decide", "replication_probability", "size", "artefact", "timed", "reason"),
 ]
@@ -163,6 +182,7 @@ def _judge_variant(claim: dict, first: dict, assignment: dict, study: str, mater
         "variant": variant,
         "artefact": ", ".join(one_or_list(claim.get("artefact", []))),
         "finding": claim.get("finding", False),
+        "own_criterion": "criterion" in claim,
         "timed": any(_is_timed(check) for check in checks if "secondary" not in check and "work" not in check),
     }
     judged, obstacle = [], ""
@@ -182,7 +202,7 @@ def _judge_variant(claim: dict, first: dict, assignment: dict, study: str, mater
     shown = _shown(deciding, holds)
     finding = shown.finding
     verdict = verdicts.verdict([each.mark for each in deciding], [each.mark_family for each in deciding], holds)
-    everywhere = verdict == "supported" and holds == "all"
+    everywhere = verdict == "supported" and holds != "any"
     summary = {
         "verdict": verdict,
         "holds": f"{sum(each.mark == '+' for each in deciding)} of {len(deciding)}",
@@ -196,9 +216,37 @@ def _judge_variant(claim: dict, first: dict, assignment: dict, study: str, mater
         "units_to_decide": _units_to_decide(deciding) if verdict == "undecided" else pd.NA,
         "replication_probability": _replication_probability(deciding, holds, f"{name}/replication"),
         "size": _size(shown),
-        "reason": "; ".join(filter(None, [_reason(shown), _disagreement(judged), claim.get("note", "")])),
+        "reason": "; ".join(
+            filter(
+                None,
+                [
+                    _by_own_criterion(claim, verdict),
+                    _less_than(deciding, verdict, material),
+                    _reason(shown),
+                    _disagreement(judged),
+                    claim.get("note", ""),
+                ],
+            )
+        ),
     }
     return described | summary, rows
+
+
+def _by_own_criterion(claim: dict, verdict: str) -> str:
+    """The first words of the reason for a claim that does not hold by a threshold of ours, where the paper gives no number."""
+    return "" if "criterion" not in claim or verdict in ("supported", "undecided") else "fails by our criterion alone"
+
+
+def _less_than(deciding: list[_Judged], verdict: str, material: Material) -> str:
+    """Of a claim without effect: below what size all differences that are shown to be negligible lie; empty for any other."""
+    within = [each for each in deciding if each.mark_family == "0"]
+    if verdict != "no effect" or not within:
+        return ""
+    most = max(max(abs(each.finding.low), abs(each.finding.high)) for each in within)
+    relative = option(within[0].check, "scale") == "relative"
+    size = f"{100 * most:.2g} %" if relative else f"{most:.2g} {_unit(within[0].check, material)}".removesuffix(" -")
+    where = "" if len(within) == len(deciding) else f"in {len(within)} of {len(deciding)} comparisons, "
+    return f"{where}differs by less than {size}"
 
 
 def _findings(number: int, check: dict, claim: dict, name: str, material: Material) -> list[_Judged]:
@@ -305,19 +353,22 @@ def _published(deciding: list[_Judged]) -> str:
 def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> float:
     """Share of experiments of the paper's size, drawn from our runs, in which the claim holds by point values.
 
-    NaN if some comparison does not use all runs of its cells, if a cell is empty, or if the paper's size is unknown.
+    If runs are picked, the chance that runs drawn at random among those that count, one of each condition, do in their place. NaN if a cell
+    is empty, or if the paper's size is unknown.
     """
+    if any("pick" in each.check for each in deciding):
+        return math.prod(each.comparison.typical if "pick" in each.check else math.nan for each in deciding)
     held = []
     for each in deciding:
         comparison = each.comparison
-        if comparison is None or comparison.paper_units is None or "pick" in each.check:
+        if comparison is None or comparison.paper_units is None:
             return math.nan
         points = effects.drawn_points(comparison, effects.point_statistic(each.check), name, comparison.paper_units)
         drawn = effects.effect(each.check, points, comparison.cells)
         if np.isnan(drawn).any():
             return math.nan
         held.append(effects.claimed(each.check, drawn, each.finding.margin))
-    together = np.all(held, axis=0) if holds == "all" else np.any(held, axis=0)
+    together = np.any(held, axis=0) if holds == "any" else np.all(held, axis=0)
     return float(together.mean())
 
 

@@ -5,6 +5,8 @@ variant. The procedure is a standard one at each step:
 
 - All comparisons have to hold: the sentence is supported if every comparison is `+` on its own. This is an intersection-union test, which
   needs no correction (Berger 1982, Technometrics 24, 295). Everything else uses the p of the family.
+- All together: as above, but the sentence is one, such as that Singer is the best of eight maps. It is contradicted by one comparison that
+  is `-` in the family, or one that is `0` beside others that are `+`; without either and with a `0`, there is no effect.
 - Any comparison may hold: the sentence is supported if one is `+` in the family, and contradicted if every one is `-` on its own.
 - The family is corrected by Benjamini and Hochberg (1995, J. R. Stat. Soc. B 57, 289). It finds something exactly when Simes' global test
   rejects "no effect anywhere" (1986, Biometrika 73, 751), so at most 5 % of sentences without any effect get a mark other than `0` and `?`.
@@ -47,8 +49,12 @@ def mark(finding: Finding, p: float) -> str:
 
 
 def verdict(alone: Sequence[str], together: Sequence[str], holds: str) -> str:
-    """The verdict on a claim that holds if `all` or `any` comparisons do, from their marks alone and in the family (at least one)."""
+    """The verdict on a claim that holds if `all` or `any` comparisons do, or all `together`, from their marks alone and in the family (at
+    least one).
+    """
     found = set(together)
+    if holds == "together":
+        return _as_one(set(alone), found)
     if set(alone) == {"+"} or (holds == "any" and "+" in found):
         return "supported"
     if holds == "any":
@@ -58,6 +64,17 @@ def verdict(alone: Sequence[str], together: Sequence[str], holds: str) -> str:
     if "-" in found:
         return "contradicted"
     return "undecided" if "?" in found else "no effect"
+
+
+def _as_one(alone: set[str], together: set[str]) -> str:
+    """The verdict on a sentence that fails as soon as one of its comparisons does: the best of eight is better than each of the others."""
+    if alone == {"+"}:
+        return "supported"
+    if "-" in together:
+        return "contradicted"
+    if "0" in together:
+        return "contradicted" if "+" in together else "no effect"
+    return "undecided"
 
 
 def _partly(marks: Sequence[str]) -> str:

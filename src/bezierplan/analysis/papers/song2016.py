@@ -1,10 +1,13 @@
-"""song2016: the claim about its genetic operators, and an audit of its Table I."""
+"""song2016: the claim about its genetic operators, an audit of its Table I, and the paths whose lengths its table prints."""
 
 import numpy as np
 import pandas as pd
 
+from bezierplan.analysis import identified
 from bezierplan.analysis.results import Results
 from bezierplan.planners.parts.genetic import complement_bit, swap_tails
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.problem import Problem
 
 TRIALS = 10_000
 
@@ -39,3 +42,33 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
         }
         for row in rows.itertuples()
     ]
+
+
+def identified_paths(
+    workspace: Grid, published: dict[str, pd.DataFrame], *, start: int, target: int, method: str, decimals: int, edges: int
+) -> pd.DataFrame:
+    """Marks of the free polylines of fewest edges between two cells whose length is the objective that Table I prints of a method.
+
+    decimals: of the printed number. edges: the most of a polyline. Raises ValueError if the table prints no such number.
+    """
+    table = published["table1"]
+    own = table[(table["problem"] == f"{start}_{target}") & (table["method"] == method) & (table["metric"] == "objective")]
+    if len(own) != 1:
+        raise ValueError(f"identified_paths: {len(own)} printed numbers of {method} from {start} to {target}; expected one")
+    problem = Problem("", workspace, workspace.centre(start), workspace.centre(target))
+    found = identified.in_problem(problem, float(own["value"].iloc[0]), decimals, edges)
+    rows = []
+    for number, path in reversed(list(enumerate(found.paths))):
+        role = ("accent", "first", "third")[min(number, 2)]
+        name = f"{' '.join(map(str, path))}: length {found.length * workspace.cell:.6f}"
+        points = [{"x": x, "y": y} for x, y in map(workspace.centre, path)]
+        rows += [{"mark": "line", "role": role, "group": f"path {number}", "label": name} | point for point in points]
+    rows += [
+        {"mark": "text", "role": "note", "x": x, "y": y + 0.55 * workspace.cell, "text": str(cell)}
+        for path in found.paths[:1]
+        for cell, (x, y) in zip(path[1:-1], map(workspace.centre, path[1:-1]), strict=True)
+    ]
+    for role, cell in (("start", start), ("target", target)):
+        x, y = workspace.centre(cell)
+        rows.append({"mark": "dots", "role": role, "label": role, "x": x, "y": y})
+    return pd.DataFrame(rows)

@@ -16,6 +16,7 @@ IN_SHORT = {
     "contradicted": "fail",
     "no effect": "fail",
 }
+_OWN = "fail by our criterion alone"
 # Least probability that an experiment of the paper's size shows the same.
 _LIKELY = 0.8
 
@@ -37,8 +38,14 @@ def failing(studies: dict[str, Study]) -> list[tuple[str, Claim]]:
     return [(key, claim) for key, study in studies.items() for claim in _sentences(study) if _fails(claim)]
 
 
+def _in_short(claim: Claim) -> str:
+    """What the verdict on a claim says; a sentence that fails by a criterion of ours alone is no failure of the paper."""
+    said = IN_SHORT.get(claim.verdict, "undecided")
+    return _OWN if said == "fail" and claim.own_criterion else said
+
+
 def _fails(claim: Claim) -> bool:
-    return IN_SHORT.get(claim.verdict) == "fail"
+    return _in_short(claim) == "fail"
 
 
 def _counted(study: Study) -> list[Number]:
@@ -64,17 +71,18 @@ def _numbers(counted: list[Number]) -> Sentence:
 
 
 def _degrees(counted: list[Number]) -> tuple[int, int, int]:
-    """How many numbers are reproduced, how many are not, and how many agree in a test that could hardly have failed."""
+    """How many numbers are reproduced or identified, how many are not, and how many agree in a test that could hardly have failed."""
     found = Counter(number.verdict for number in counted)
-    good, bad = found["reproduced"], found["not reproduced"]
+    good, bad = found["identified"] + found["reproduced"], found["not reproduced"]
     return good, bad, len(counted) - good - bad
 
 
 def _claims(claims: list[Claim]) -> Sentence:
     if not claims:
         return []
-    found = Counter(IN_SHORT.get(claim.verdict, "undecided") for claim in claims)
-    singular = {"hold": "holds", "hold in part": "holds in part", "fail": "fails", "undecided": "is undecided"}
+    found = Counter(map(_in_short, claims))
+    singular = {"hold": "holds", "hold in part": "holds in part", "fail": "fails", _OWN: "fails by our criterion alone"}
+    singular |= {"undecided": "is undecided"}
     plural = {word: word for word in singular} | {"undecided": "are undecided"}
     parts = [f"{found[word]} {_verb(found[word], singular[word], plural[word])}" for word in singular if found[word]]
     return [Part(text=f"Of {len(claims)} claims of the papers, tested at the 95\u00a0% level, {_joined(parts)}.")]

@@ -12,6 +12,7 @@ from bezierplan.figures.page.gather import printed_key
 
 # Verdict -> the class that colours it and its symbol; another verdict gets the last one.
 LOOKS = {
+    "identified": ("good", "◉"),
     "reproduced": ("good", "●"),
     "not told apart": ("open", "◐"),
     "cannot fail": ("open", "○"),

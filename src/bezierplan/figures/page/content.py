@@ -45,7 +45,7 @@ class Number(Record):
     n: float | None = Field(description="number of our runs that count")
     interval: Interval = Field(description="95 % bootstrap interval of ours")
     predicted: Interval = Field(description="95 % prediction interval of an experiment of the published size")
-    verdict: str = Field(description="reproduced, not told apart, cannot fail or not reproduced; empty if not judged")
+    verdict: str = Field(description="identified, reproduced, not told apart, cannot fail or not reproduced; empty if not judged")
     primary: bool = Field(description="whether the row is the paper's reading")
     counted: bool = Field(description="whether it counts in the outcome")
     share_feasible: float | None = Field(description="share of all runs whose path the certified checker accepts")
@@ -113,7 +113,7 @@ class Choice(Record):
     alternative: str
     claim: str = Field(description="id of the claim")
     verdict: str = Field(description="with the alternative in force")
-    changed: bool = Field(description="whether this differs from the verdict with the default")
+    changed: bool = Field(description="whether this differs from the verdict with the default, both being decided")
 
 
 class Claim(Record):
@@ -124,6 +124,7 @@ class Claim(Record):
     place: str = Field(description="where the paper says it")
     statement: str
     finding: bool = Field(description="our own finding rather than a sentence of the paper")
+    own_criterion: bool = Field(False, description="the paper gives no number, and the threshold or margin that decides is ours")
     verdict: str
     holds: str = Field(description="how many comparisons hold")
     where: str = Field(description="where it holds, in words")

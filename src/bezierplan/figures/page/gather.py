@@ -7,7 +7,7 @@ from typing import Any
 
 import pandas as pd
 
-from bezierplan.analysis import summary
+from bezierplan.analysis import sensitivity, summary
 from bezierplan.figures import style
 from bezierplan.figures.page import content, other
 from bezierplan.figures.page.addresses import address, of_cells
@@ -15,7 +15,21 @@ from bezierplan.schema.model import one_or_list
 
 # Columns of claims.csv that the page shows in places of their own, or that repeat the comparison that decides.
 _CLAIM_COLUMNS = {
-    *("study", "id", "variant", "primary", "finding", "place", "statement", "verdict", "holds", "where_it_holds", "published", "reason"),
+    *(
+        "study",
+        "id",
+        "variant",
+        "primary",
+        "finding",
+        "own_criterion",
+        "place",
+        "statement",
+        "verdict",
+        "holds",
+        "where_it_holds",
+        "published",
+        "reason",
+    ),
     *("effect", "effect_size_name", "effect_size", "low95", "high95", "n", "counted", "p", "p_family", "replication_probability", "size"),
     *("artefact", "timed"),
 }
@@ -188,6 +202,7 @@ def _claims(
                 place=_text(row, "place"),
                 statement=_text(row, "statement"),
                 finding=_flag(row, "finding"),
+                own_criterion=_flag(row, "own_criterion"),
                 verdict=_text(row, "verdict"),
                 holds=_text(row, "holds"),
                 where=_text(row, "where_it_holds"),
@@ -262,7 +277,7 @@ def _choices(tried: pd.DataFrame | None, judged: pd.DataFrame) -> list[content.C
             alternative=_text(row, "alternative"),
             claim=row["claim"],
             verdict=row["verdict_alternative"],
-            changed=row["verdict_alternative"] != row["verdict"],
+            changed=sensitivity.changed(row["verdict"], row["verdict_alternative"]) is True,
         )
         for _, row in tried.iterrows()
         if today.get(row["claim"]) == row["verdict"]

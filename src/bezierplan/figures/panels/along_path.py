@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 import numpy as np
 from pydantic import Field
 
+from bezierplan.analysis.measures import CURVATURE_SAMPLES
 from bezierplan.figures import style
 from bezierplan.figures.panels import PICK, Pick, RunsPanel
 from bezierplan.figures.panels.paths import picked, run_note
@@ -21,7 +22,8 @@ if TYPE_CHECKING:
     from bezierplan.analysis.results import Results
 
 
-_SAMPLES = 1001
+# Those of the metric that claims judge.
+_SAMPLES = CURVATURE_SAMPLES
 
 # A peak higher than this many limits would flatten the curve onto the axis: then the scale ends lower, and an arrow marks the peak.
 _HIGHEST_PEAK = 10
@@ -42,7 +44,8 @@ class Options(RunsPanel):
 def data(results: Results, *, pick: dict[str, Any], quantity: Literal["curvature"], limit: float | None) -> pd.DataFrame:
     """One row per sample of a path, uniform in its parameter; columns: those of `paths.picked`, quantity, limit, t (0 to 1), value.
 
-    The value of curvature is its magnitude in 1/unit, empty where the speed is zero. Without a path, one row without t and value.
+    The value of curvature has its sign, with left turns positive, in 1/unit, and is empty where the speed is zero. Without a path, one row
+    without t and value.
 
     pick: the run, as in `analysis.results.pick`. limit: the published one, in 1/unit. Raises ValueError unless all runs are of one problem
     and one method.
@@ -57,7 +60,7 @@ def data(results: Results, *, pick: dict[str, Any], quantity: Literal["curvature
     if path is None:
         return pd.DataFrame([names | {"t": math.nan, "value": math.nan}])
     values, _ = curves.curvature(path, _SAMPLES)
-    frame = pd.DataFrame({"t": np.linspace(0, 1, _SAMPLES), "value": np.abs(values)}).assign(**names)
+    frame = pd.DataFrame({"t": np.linspace(0, 1, _SAMPLES), "value": values}).assign(**names)
     return frame[[*names, "t", "value"]]
 
 
@@ -67,10 +70,13 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     unit = scene.problems[panel["experiment"]][row["problem"]].workspace.unit
     axes.set_xlim(0, 1)
     axes.set_xlabel("curve parameter t")
-    axes.set_ylabel(f"|{row['quantity']}| (1/{unit})")
+    axes.set_ylabel(f"{row['quantity']}, left turns positive (1/{unit})")
     axes.grid(visible=True)
     if not math.isnan(row["limit"]):
-        axes.axhline(row["limit"], label=f"published limit: {row['limit']:g} 1/{unit}", zorder=3, **style.PUBLISHED)
+        axes.axhline(
+            row["limit"], label=f"published limit: {row['limit']:g} 1/{unit}, for turns to either side", zorder=3, **style.PUBLISHED
+        )
+        axes.axhline(-row["limit"], zorder=3, **style.PUBLISHED)
     if frame["value"].isna().all():
         return run_note(frame, "no path" if frame["t"].isna().all() else "the curve is a single point")
     axes.plot(frame["t"], frame["value"], label="path", **style.RUN_SHOWN)
@@ -78,14 +84,15 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
 
 
 def _mark_highest(axes: Axes, frame: pd.DataFrame, unit: str) -> str:
-    """Mark the highest value and fit the scale to it; returns a note about it and about the samples left out."""
-    highest = frame.loc[frame["value"].idxmax()]
-    limit = highest["limit"]
-    cut = highest["value"] > _HIGHEST_PEAK * limit
-    top = _CUT_SCALE * limit if cut else 1.12 * np.nanmax([highest["value"], limit, 1e-3])
-    axes.set_ylim(0, top)
-    mark = {"marker": "^" if cut else "o", "markersize": 5, "color": style.BLACK, "linestyle": "", "label": "highest value"}
-    axes.plot(highest["t"], min(highest["value"], top), clip_on=False, zorder=4, **mark)
-    words = f"highest {highest['value']:.3g} 1/{unit} at t = {highest['t']:.2f}"
+    """Mark the value of largest magnitude and fit the scale to it; returns a note about it and about the samples left out."""
+    highest = frame.loc[frame["value"].abs().idxmax()]
+    limit, magnitude, side = highest["limit"], abs(highest["value"]), np.sign(highest["value"])
+    cut = magnitude > _HIGHEST_PEAK * limit
+    top = _CUT_SCALE * limit if cut else 1.12 * np.nanmax([magnitude, limit, 1e-3])
+    axes.set_ylim(-top, top)
+    marker = ("^" if side > 0 else "v") if cut else "o"
+    mark = {"marker": marker, "markersize": 5, "color": style.BLACK, "linestyle": "", "label": "largest magnitude"}
+    axes.plot(highest["t"], side * min(magnitude, top), clip_on=False, zorder=4, **mark)
+    words = f"largest {highest['value']:.3g} 1/{unit} at t = {highest['t']:.2f}"
     still = int(frame["value"].isna().sum())
     return words + (f"\n{still} of {len(frame)} samples left out (the curve stands still)" if still else "")

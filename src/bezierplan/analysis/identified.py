@@ -1,0 +1,223 @@
+"""Printed lengths that are those of paths through cell centres, to the last digit.
+
+Lengths of polylines between cell centres are sums of a few square roots of whole numbers, so a length with four decimals can tell which
+paths it belongs to. `identify` enumerates every free polyline with a limited number of edges between two cells, keeps those whose length
+rounds to the printed one, and says how likely a number nearby would match by chance.
+
+Lengths are in cells throughout. An edge is free if it passes through no occupied cell; it may touch one.
+"""
+
+import itertools
+import math
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from bezierplan.analysis import possible
+from bezierplan.schema.model import one_or_list
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.problem import Problem
+
+NEARBY = 0.05
+"""Numbers up to this far from the printed one, in cells, are what chance may have printed in its place."""
+
+UNLIKELY = 0.1
+"""A number counts as identified if chance matches less than this share of the numbers nearby."""
+
+MOST_SHOWN = 4
+
+MOST_PATHS = 10_000
+"""More matching paths than this are not listed."""
+
+_ROUNDING = 1e-9
+
+
+class Identified(NamedTuple):
+    """Paths whose length rounds to a printed one.
+
+    paths: the cells of each of those with fewest edges. chance: share of the numbers nearby, as printed, that some path matches. length: of
+    the first path, in cells; NaN without one.
+    """
+
+    paths: list[tuple[int, ...]]
+    chance: float
+    length: float
+
+
+class Ways(NamedTuple):
+    """Free edges between cells. cells: numbers (n,) of the free ones. lengths: (n, n), in cells, infinite where an edge is not free."""
+
+    cells: np.ndarray
+    lengths: np.ndarray
+
+
+def ways(grid: Grid) -> Ways:
+    """All free edges between centres of free cells, of which no one passes along others: an edge is what a planner draws."""
+    import shapely
+
+    _, columns = grid.occupied.shape
+    cells = np.flatnonzero(~grid.occupied)
+    row, column = np.divmod(cells, columns)
+    centres = np.column_stack([column, row]) + 0.5
+    first, second = np.triu_indices(len(cells), 1)
+    edges = shapely.linestrings(np.stack([centres[first], centres[second]], axis=1))
+    # Slightly smaller cells, so that an edge may touch a side or a corner.
+    y, x = np.nonzero(grid.occupied)
+    blocked = shapely.union_all(shapely.box(x + _ROUNDING, y + _ROUNDING, x + 1 - _ROUNDING, y + 1 - _ROUNDING))
+    shapely.prepare(blocked)
+    free = ~shapely.intersects(blocked, edges)
+    lengths = np.full((len(cells), len(cells)), np.inf)
+    found = np.hypot(*(centres[first] - centres[second]).T)[free]
+    lengths[first[free], second[free]] = lengths[second[free], first[free]] = found
+    return Ways(cells, lengths)
+
+
+def identify(given: Ways, start: int, target: int, printed: float, half: float, most_edges: int) -> Identified:
+    """The free polylines of at most `most_edges` edges between two cells whose length is printed so.
+
+    printed, half: the number and half a unit of its last digit, in cells.
+    """
+    first, last = (int(np.searchsorted(given.cells, cell)) for cell in (start, target))
+    reached = _reached(given, first, printed + NEARBY + half, last, most_edges)
+    every = np.unique(np.concatenate([level[last] for level in reached]))
+    paths = _paths(given, reached, last, printed, half)
+    length = sum(given.lengths[one, other] for one, other in itertools.pairwise(paths[0])) if paths else math.nan
+    return Identified([tuple(int(given.cells[place]) for place in path) for path in paths], _chance(every, printed, half), length)
+
+
+def applies(entry: dict, row: dict) -> bool:
+    """Whether an enumeration is declared for a published number, from the columns of its row."""
+    where = {"metric": entry["metric"]} | entry.get("where", {})
+    return all(row.get(column) in one_or_list(wanted) for column, wanted in where.items())
+
+
+def in_problem(problem: Problem, value: float, decimals: int, edges: int) -> Identified | None:
+    """`identify` for a printed length in the problem's unit; None unless start and target are centres of cells of a grid."""
+    grid = problem.workspace
+    if not isinstance(grid, Grid):
+        return None
+    cells = [grid.cell_of(*place) for place in (problem.start, problem.target)]
+    if None in cells:
+        return None
+    first, last = (int(np.ravel_multi_index(cell, grid.occupied.shape)) for cell in cells)
+    if not np.allclose([grid.centre(first), grid.centre(last)], [problem.start, problem.target]):
+        return None
+    half = 0.5 * 10.0**-decimals / grid.cell
+    return identify(_ways_of(grid.occupied.tobytes(), grid.occupied.shape), first, last, value / grid.cell, half, edges)
+
+
+@lru_cache(maxsize=4)
+def _ways_of(cells: bytes, shape: tuple[int, int]) -> Ways:
+    return ways(Grid(np.frombuffer(cells, dtype=bool).reshape(shape), 1.0, ""))
+
+
+def in_words(found: Identified) -> str:
+    """The paths and the chance of a match."""
+    shown = [" ".join(map(str, path)) for path in found.paths[:MOST_SHOWN]]
+    more = len(found.paths) - len(shown)
+    cells = f"cells {' or '.join(shown)}{f' or {more} others' if more else ''}" if shown else "no such path"
+    return f"{cells}; of the numbers nearby, {100 * found.chance:.2g} % match by chance"
+
+
+def of_table(item: str, published: pd.DataFrame, entries: list[dict], problems: dict[str, Problem]) -> list[dict]:
+    """Rows of the audit: each published number for which an enumeration is declared, and one row a declaration with the chance of all.
+
+    published: with the column `printed`, as from `audit.read_published`. problems: by name; a number's is in its column `problem`. A number
+    that no path has is no contradiction.
+    """
+    rows = []
+    for entry in entries:
+        tried = []
+        for row in published.to_dict("records"):
+            problem = problems.get(row.get("problem", row.get("workspace")))
+            if not applies(entry, row) or problem is None:
+                continue
+            found = in_problem(problem, row["value"], possible.decimals(row["printed"]), entry["edges"])
+            if found is None:
+                continue
+            tried.append(found)
+            keys = [key for key in row if key not in ("metric", "statistic", "n", "unit", "value", "printed")]
+            rows.append(
+                {
+                    "item": item,
+                    "place": ", ".join(f"{key}={row[key]}" for key in [*keys, "metric"]),
+                    "rule": f"{entry['because']}: the length of a free polyline of at most {entry['edges']} edges through cell centres",
+                    "printed": row["value"],
+                    "limit": found.length * problem.workspace.cell,
+                    "consistent": True if found.paths else None,
+                    "arithmetic": in_words(found),
+                }
+            )
+        if tried:
+            matched = sum(bool(found.paths) for found in tried)
+            chance = at_least(matched, [found.chance for found in tried])
+            words = f"{matched} of {len(tried)} are such lengths; the chance of as many: {chance:.2g}"
+            place = ", ".join(f"{key}={' or '.join(map(str, one_or_list(wanted)))}" for key, wanted in entry.get("where", {}).items())
+            together = {"item": item, "place": place, "rule": f"{entry['because']}: all numbers together", "printed": matched}
+            rows.append(together | {"limit": len(tried), "consistent": True if matched == len(tried) else None, "arithmetic": words})
+    return rows
+
+
+def at_least(count: int, chances: list[float]) -> float:
+    """The chance that at least so many of independent events happen."""
+    exactly = np.ones(1)
+    for chance in chances:
+        exactly = np.convolve(exactly, [1 - chance, chance])
+    return float(exactly[count:].sum())
+
+
+def _reached(given: Ways, first: int, most: float, last: int, edges: int) -> list[list[np.ndarray]]:
+    """By number of edges and place: the lengths, each once, of the polylines from the first place, as far as they can still end in time."""
+    from scipy.sparse import csgraph
+
+    left = most - csgraph.dijkstra(np.where(np.isfinite(given.lengths), given.lengths, 0), indices=last) + _ROUNDING
+    count = len(given.cells)
+    levels = [[np.zeros(1) if place == first else np.empty(0) for place in range(count)]]
+    neighbours = [np.flatnonzero(np.isfinite(row)) for row in given.lengths]
+    for _ in range(edges):
+        before, level = levels[-1], []
+        for place in range(count):
+            parts = [before[other] + given.lengths[other, place] for other in neighbours[place] if len(before[other])]
+            found = np.concatenate(parts) if parts else np.empty(0)
+            level.append(np.unique(np.round(found[found <= left[place]], 8)))
+        levels.append(level)
+    return levels
+
+
+def _paths(given: Ways, reached: list[list[np.ndarray]], last: int, printed: float, half: float) -> list[tuple[int, ...]]:
+    """Places of the matching polylines with fewest edges, found backwards from their ends."""
+    for edges in range(1, len(reached)):
+        if not _near(reached[edges][last], printed, half).any():
+            continue
+        found: list[tuple[int, ...]] = []
+        _walk(given, reached, edges, (last,), printed, half, found)
+        return found
+    return []
+
+
+def _walk(
+    given: Ways, reached: list[list[np.ndarray]], left: int, path: tuple[int, ...], length: float, half: float, found: list[tuple[int, ...]]
+) -> None:
+    """Extend a path, given from its end, by all places from which the rest of its length is left."""
+    if not left:
+        found.append(path[::-1])
+        return
+    for other in np.flatnonzero(np.isfinite(given.lengths[path[-1]])):
+        rest = length - given.lengths[path[-1], other]
+        if len(found) < MOST_PATHS and _near(reached[left - 1][other], rest, half).any():
+            _walk(given, reached, left - 1, (*path, int(other)), rest, half, found)
+
+
+def _near(lengths: np.ndarray, printed: float, half: float) -> np.ndarray:
+    """Which lengths round to a printed one."""
+    return np.abs(lengths - printed) <= half + 1e-7
+
+
+def _chance(lengths: np.ndarray, printed: float, half: float) -> float:
+    """Share of the printed numbers within `NEARBY` to which some length rounds."""
+    numbers = printed + 2 * half * np.arange(-round(NEARBY / (2 * half)), round(NEARBY / (2 * half)) + 1)
+    at = np.searchsorted(lengths, numbers)
+    padded = np.concatenate([[-np.inf], lengths, [np.inf]])
+    return float(np.mean(np.minimum(numbers - padded[at], padded[at + 1] - numbers) <= half + 1e-7))

@@ -1,0 +1,118 @@
+"""Printed lengths as those of polylines through cell centres, and the rules by which verdicts follow from more than one comparison."""
+
+import itertools
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from studies import FOLDER
+
+from bezierplan.analysis import identified, measures
+from bezierplan.analysis.claims import verdicts
+from bezierplan.analysis.sensitivity import changed
+from bezierplan.workspaces.grid import from_lines
+from bezierplan.workspaces.problem import Path, Problem
+
+OPEN = from_lines(["...", "...", "..."], 10.0, "unit")
+WALL = from_lines([".#.", ".#.", "..."], 10.0, "unit")
+
+
+def found(grid, start, target, value, decimals=4, edges=3):
+    return identified.in_problem(Problem("", grid, grid.centre(start), grid.centre(target)), value, decimals, edges)
+
+
+def by_force(grid, start, target, edges):
+    """Lengths of all free polylines, in units, from every order of cells; edges as `identified.ways` finds them."""
+    ways = identified.ways(grid)
+    places = {int(cell): number for number, cell in enumerate(ways.cells)}
+    for count in range(edges):
+        for inner in itertools.product(places, repeat=count):
+            path = (start, *inner, target)
+            length = sum(ways.lengths[places[one], places[other]] for one, other in itertools.pairwise(path))
+            if math.isfinite(length):
+                yield path, grid.cell * length
+
+
+def test_an_edge_may_touch_an_occupied_cell_but_not_pass_through_it():
+    ways = identified.ways(WALL)
+    at = {int(cell): number for number, cell in enumerate(ways.cells)}
+    assert ways.lengths[at[0], at[2]] == pytest.approx(2)
+    assert math.isinf(ways.lengths[at[3], at[5]])
+    assert ways.lengths[at[3], at[1]] == pytest.approx(math.sqrt(2))
+
+
+def test_all_paths_of_a_printed_length_are_found():
+    for path, length in by_force(WALL, 6, 8, 4):
+        same = {other for other, own in by_force(WALL, 6, 8, 4) if abs(own - length) < 1e-6}
+        fewest = min(map(len, same))
+        own = found(WALL, 6, 8, round(length, 4), edges=4)
+        assert set(own.paths) == {each for each in same if len(each) == fewest}, path
+        assert own.length * 10 == pytest.approx(length)
+
+
+def test_a_length_of_no_path_is_not_identified():
+    own = found(OPEN, 0, 8, 28.2943)
+    assert own.paths == []
+    assert math.isnan(own.length)
+
+
+def test_chance_is_the_share_of_numbers_nearby():
+    assert found(OPEN, 0, 8, 28.2843, edges=1).chance == pytest.approx(1 / 10001, rel=0.01)
+
+
+def test_ends_beside_the_centres_are_not_tried():
+    assert identified.in_problem(Problem("", OPEN, (0.0, 0.0), (25.0, 25.0)), 28.2843, 4, 3) is None
+
+
+def test_chance_of_as_many():
+    assert identified.at_least(2, [0.1, 0.2]) == pytest.approx(0.02)
+    assert identified.at_least(1, [0.1, 0.2]) == pytest.approx(0.28)
+
+
+def test_non_smooth_lengths_of_song2016_are_identified():
+    grid = from_lines((FOLDER / "song2016/workspaces/figure2.txt").read_text().split(), 10.0, "unit")
+    published = pd.read_csv(FOLDER / "song2016/published/table1.csv")
+    published["printed"] = pd.read_csv(FOLDER / "song2016/published/table1.csv", dtype=str)["value"]
+    ends = {name: tuple(map(int, name.split("_"))) for name in published["problem"].unique()}
+    problems = {name: Problem(name, grid, grid.centre(start), grid.centre(target)) for name, (start, target) in ends.items()}
+    entry = {"metric": "objective", "where": {"method": "nonsmooth"}, "edges": 7, "because": "polyline"}
+    *rows, together = identified.of_table("table1", published, [entry], problems)
+    assert [row["consistent"] for row in rows] == [True] * 4
+    assert "240 179 181 235 255;" in rows[2]["arithmetic"]
+    assert (together["printed"], together["limit"]) == (4, 4)
+
+
+@pytest.mark.parametrize(
+    ("marks", "verdict"),
+    [
+        ("++", "supported"),
+        ("+-", "contradicted"),
+        ("?-", "contradicted"),
+        ("+0", "contradicted"),
+        ("00", "no effect"),
+        ("0?", "no effect"),
+        ("+?", "undecided"),
+    ],
+)
+def test_one_comparison_refutes_a_sentence_about_all_together(marks, verdict):
+    assert verdicts.verdict(marks, marks, "together") == verdict
+
+
+def test_an_undecided_verdict_neither_agrees_nor_disagrees():
+    assert changed("undecided", "undecided") is None
+    assert changed("supported", "undecided") is None
+    assert changed("supported", "contradicted") is True
+    assert changed("no effect", "no effect") is False
+
+
+def test_signed_curvature_counts_left_turns_alone():
+    left = Path("bezier", np.array([[0.0, 0], [4, 0], [4, 4]]))
+    right = Path("bezier", np.array([[0.0, 0], [4, 0], [4, -4]]))
+    assert measures.signed_curvature(left) == measures.max_curvature(left) == measures.max_curvature(right) > 0
+    assert measures.signed_curvature(right) < 0
+
+
+def test_generation_by_which_a_share_of_the_improvement_is_made():
+    runs = pd.DataFrame({"history": [np.array([110.0, 102, 101, 100]), np.array([5.0, 5])]})
+    assert measures.first_generation_improved_by(0.9, runs, {}).tolist() == [2, 0]
