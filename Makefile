@@ -18,7 +18,7 @@ UNLOCK = if [ -n "$$(ls .snakemake/locks 2>/dev/null)" ]; then $(SNAKEMAKE) --un
 # Byte code is kept, whatever the environment says: many containers say no, and then each of many processes compiles all modules anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help reproduce smoke extended test lint benchmark mutants compare archive cluster outcome verify-outcome lock newest clean distclean anew
+.PHONY: help reproduce smoke extended test lint docs wheel benchmark mutants compare archive cluster outcome verify-outcome lock newest clean distclean anew
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1|\2/p' Makefile | awk -F '|' '{ printf "%-15s %s\n", $$1, $$2 }'
@@ -47,6 +47,13 @@ lint: .venv/ready ## style of Python, Snakemake and JavaScript files, and who ma
 	.venv/bin/oxlint --quiet --deny-warnings src
 	$(SNAKEMAKE) --lint
 	$(RUN) .venv/bin/lint-imports --no-logo --cache-dir .cache/import-linter
+
+docs: .venv/ready ## the documentation as a site, into .cache/docs/html; every example is run
+	$(RUN) -m sphinx --quiet --fail-on-warning --builder html --doctree-dir .cache/docs/doctrees docs .cache/docs/html
+	@echo 'Documentation: .cache/docs/html/index.html'
+
+wheel: .venv/ready ## a wheel for pip, into dist
+	$(RUN) -m hatchling build --target wheel
 
 benchmark: .venv/ready ## speed of the inner loops, beside the bare minimum
 	$(RUN) tests/benchmark/run.py $(ARGS)
@@ -78,7 +85,7 @@ verify-outcome: .venv/ready ## is this installation sound? minutes of runs, test
 	$(RUN) -m bezierplan verify-outcome
 
 lock: .venv/ready ## renew environment.txt from pyproject.toml (newest versions: ARGS=--upgrade)
-	$(LOCK) $(ARGS) --group dev pyproject.toml -o environment.txt
+	$(LOCK) $(ARGS) --extra workflow --group dev pyproject.toml -o environment.txt
 	$(LOCK) $(ARGS) --group build -c environment.txt -o environment-build.txt
 	$(LOCK) $(ARGS) --group archive -o workflow/archive/requirements.txt
 	$(LOCK) $(ARGS) --group cluster -c environment.txt -o environment-cluster.txt

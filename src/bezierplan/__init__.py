@@ -1,1 +1,37 @@
-"""Experiments on smooth robot path planning with Bezier curves, as one Snakemake workflow."""
+"""Smooth robot paths by genetic algorithms, particle swarms and exact geometry, and the experiments of five papers on them.
+
+The public names are those of `__all__`; they are imported when they are first used.
+"""
+
+from typing import Any
+
+__version__ = "1.0.0"
+
+__all__ = [  # names of `api`, found by `__getattr__`
+    "Answer",
+    "Circles",
+    "Grid",
+    "Judged",
+    "Path",
+    "Polygons",
+    "Problem",
+    "check",
+    "methods",
+    "plan",
+    "read_map",
+    "replay",
+    "results",
+    "shortest_path",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in __all__:
+        raise AttributeError(f"module 'bezierplan' has no attribute {name!r}")
+    from bezierplan import api
+
+    return getattr(api, name)
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])

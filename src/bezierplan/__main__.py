@@ -5,10 +5,16 @@ import importlib
 import os
 import sys
 from functools import partial
+from pathlib import Path
 from typing import NoReturn
 
+import bezierplan
+from bezierplan.places import EXTRA
 from bezierplan.running import watchdog
 from bezierplan.schema import words
+
+PROGRAM = "bezierplan" if Path(sys.argv[0]).name == "bezierplan" else "python -m bezierplan"
+"""How the command was called."""
 
 COMMANDS = {
     "list": "studies, their artefacts, methods, workspaces and numbers of repeats",
@@ -19,6 +25,8 @@ COMMANDS = {
     "plan": "one path on a map, checked by exact geometry",
     "forecast": "how long a target takes on some cores, how much disk, and its longest jobs",
     "effort": "where the CPU time of the last start of the workflow went, by what it was for",
+    "new": "a study of your own, which runs at once",
+    "run": "targets of the workflow, from any folder",
     "verify-outcome": "numbers made here beside those of docs/outcome: is this installation sound?",
     "outcome": "copy the outcome of results/extended and results/full to docs/outcome and into the README",
 }
@@ -34,10 +42,14 @@ class _Parser(argparse.ArgumentParser):
 def main(given: list[str]) -> None:
     """Do what the words of a command line say; a fault ends the process with one line: of input with status 2, of a planner with 1."""
     listed = "\n".join(f"  {name:16}{text}" for name, text in COMMANDS.items())
-    parser = _Parser(prog="python -m bezierplan", epilog=f"commands:\n{listed}", formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = _Parser(prog=PROGRAM, epilog=f"commands:\n{listed}", formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("command", choices=COMMANDS, metavar="COMMAND", help="what to do; `COMMAND --help` tells its arguments")
+    parser.add_argument("--version", action="version", version=f"bezierplan {bezierplan.__version__}")
+    if not given:
+        parser.print_help()
+        return
     name = parser.parse_args(given[:1]).command
-    own = _Parser(prog=f"python -m bezierplan {name}", description=COMMANDS[name])
+    own = _Parser(prog=f"{PROGRAM} {name}", description=COMMANDS[name])
     try:
         importlib.import_module(f"bezierplan.commands.{name.replace('-', '_')}").main(own, given[1:])
         if sys.stdout:  # which a process without one does not have
@@ -46,6 +58,11 @@ def main(given: list[str]) -> None:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except watchdog.PlannerFailure as failure:
         sys.exit(str(failure))
+    except ModuleNotFoundError as missing:
+        if missing.name not in EXTRA:
+            raise
+        print(f"{name}: needs {missing.name}, which is not installed; install it with: pip install 'bezierplan[workflow]'", file=sys.stderr)
+        sys.exit(2)
     except (ValueError, FileNotFoundError) as fault:
         from bezierplan.schema.checked import Fault
 
@@ -53,12 +70,14 @@ def main(given: list[str]) -> None:
         sys.exit(2)
 
 
-if __name__ == "__main__":
-    # A command may execute planners, which can end a process in silence.
-    watchdog.supervise(
-        words.plain(f"python -m bezierplan {' '.join(sys.argv[1:])}", words.LONGEST), partial(print, file=sys.stderr, flush=True)
-    )
+def start() -> None:
+    """Do what the words of this process say, in a child: a command may execute planners, which can end a process in silence."""
+    watchdog.supervise(words.plain(f"{PROGRAM} {' '.join(sys.argv[1:])}", words.LONGEST), partial(print, file=sys.stderr, flush=True))
     try:
         main(sys.argv[1:])
     finally:
         watchdog.settle()
+
+
+if __name__ == "__main__":
+    start()

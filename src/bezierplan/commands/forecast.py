@@ -15,16 +15,15 @@ from math import prod
 from pathlib import Path
 from typing import NamedTuple
 
+from bezierplan.places import TREE
 from bezierplan.planners import planner_module
 from bezierplan.running import records
-from bezierplan.running.digest import PACKAGE
 from bezierplan.running.records import Job, Record
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.study import jobs, reading, targets
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import SCALES
 
-TREE = PACKAGE.parents[1]
 LONGEST = 5
 """How many of the longest jobs are printed."""
 

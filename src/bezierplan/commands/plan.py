@@ -13,6 +13,7 @@ import numpy as np
 from bezierplan.analysis.measures import CURVATURE_SAMPLES
 from bezierplan.geometry import checker, curves, shortest_paths
 from bezierplan.geometry.region import region
+from bezierplan.places import TREE
 from bezierplan.planners import Plan, known_planners, planner_module
 from bezierplan.running import answer, interface, problems, watchdog
 from bezierplan.running.columns import TAKEN
@@ -268,7 +269,7 @@ def _preset(planner: str) -> dict[str, Any]:
     from bezierplan.study import reading
 
     # Away from the project's folder no configuration is found.
-    named = {} if File("config/config.yaml").is_file() else checked.read(reading.PACKAGE.parents[1] / "config" / "config.yaml")
+    named = {} if File("config/config.yaml").is_file() else checked.read(TREE / "config" / "config.yaml")
     for study in reading.load(reading.read_config(named)).values():
         for method in study.methods:
             if study.planner(method) == planner:

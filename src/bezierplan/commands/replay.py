@@ -10,14 +10,10 @@ from bezierplan.analysis import results
 from bezierplan.commands import add_studies
 from bezierplan.commands.digest import read_rows, row_text
 from bezierplan.figures import animation, sheet
-from bezierplan.geometry.region import region
-from bezierplan.running import execution, problems, rides, worlds
-from bezierplan.running.loans import lend
-from bezierplan.schema.checked import Fault, closest
+from bezierplan.running import rides
 from bezierplan.study import reading
 from bezierplan.study.definition import Study
-from bezierplan.study.jobs import job, problems_job
-from bezierplan.workspaces.worlds import from_json, to_json
+from bezierplan.study.replays import replay
 
 SHOWN = ("objective", "length", "bound", "claimed_feasible", "feasible", "collision_at", "collision_depth", "clearance", "evaluations")
 
@@ -40,60 +36,6 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     if found.worlds:
         animate(found, picture.with_suffix(".gif"))
         print(f"{'animation':18}{picture.with_suffix('.gif')}")
-
-
-def replay(name: str, studies: dict[str, Study]) -> results.Results:
-    """Reproduce the run named `study/experiment/condition/method/repeat`: one row, with its problem and bound.
-
-    Raises Fault, which states the unknown part of the name.
-    """
-    parts = name.split("/")
-    if len(parts) != 5:
-        raise Fault(f"{name}: not the name of a run; expected study/experiment/condition/method/repeat")
-    key, experiment, condition_name, method, repeat = parts
-    study = _named(key, studies, f"{name}: study")
-    _named(experiment, study.experiments, f"{name}: experiment")
-    _named(method, dict.fromkeys(study.methods_of(experiment)), f"{name}: method")
-    # Neither the seed nor the settings of a run depend on scale or chunk.
-    described = job(study, experiment, method, "full", 0)
-    conditions = {each.name: each for each in execution.conditions(list(described["problems"]), described["vary"])}
-    condition = _named(condition_name, conditions, f"{name}: condition")
-    if not repeat.isdecimal():
-        raise Fault(f"{name}: repeat: {repeat}; expected a whole number")
-
-    again = _redriven if study.moves(experiment) else _rerun
-    try:
-        return again(described, condition, int(repeat), study)
-    except execution.UnfitAnswer as error:
-        raise Fault(str(error)) from None
-
-
-def _rerun(described: dict, condition: execution.Condition, repeat: int, study: Study) -> results.Results:
-    """A run where nothing moves."""
-    made, _ = problems.build_all(problems_job(study, described["experiment"], "full"), study.folder)
-    problem = made[condition.problem]
-    named = {condition.problem: problem}
-    plan = execution.run(described, condition, repeat, lend(named)[condition.problem].problem)
-    row = execution.row(described, condition, repeat, plan, problem, region(problem.workspace))
-    return results.joined(pd.DataFrame([row]), named, problems.bounds_of(named).to_pandas())
-
-
-def _redriven(described: dict, condition: execution.Condition, repeat: int, study: Study) -> results.Results:
-    """A run in a world that moves."""
-    made, _, found = worlds.build_all(problems_job(study, described["experiment"], "full"), study.folder)
-    problem, world = made[condition.problem], found[condition.problem]
-    ride = rides.run(described, condition, repeat, problem, from_json(to_json(world)))
-    row, _ = rides.row(described, condition, repeat, ride, problem, world)
-    named, moving = {condition.problem: problem}, {condition.problem: world}
-    arrivals = {condition.problem: row["arrival"]} if row["feasible"] else {}
-    joined = results.joined(pd.DataFrame([row]), named, rides.bounds_of(named, moving, arrivals).to_pandas())
-    return joined._replace(worlds=moving, jobs={described["method"]: described})
-
-
-def _named(name: str, known: dict[str, Any], place: str) -> Any:
-    if name not in known:
-        raise Fault(f"{place}: {name}: unknown{closest(name, known)}")
-    return known[name]
 
 
 def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:

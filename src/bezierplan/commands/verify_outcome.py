@@ -10,12 +10,12 @@ import pandas as pd
 
 from bezierplan.analysis import verification
 from bezierplan.commands import outcome
-from bezierplan.running.digest import PACKAGE
+from bezierplan.places import TREE
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
 from bezierplan.study.definition import Study
 
-KEPT = PACKAGE.parents[1] / outcome.KEPT / outcome.NUMBERS_FULL
+KEPT = TREE / outcome.KEPT / outcome.NUMBERS_FULL
 RESULTS = outcome.FULL
 SHOWN = 10
 """Numbers of which a failure tells."""
@@ -51,13 +51,13 @@ def verified(studies: dict[str, Study]) -> pd.DataFrame:
         own = verification.with_width(pd.read_csv(file))
         one = verification.compared(kept[(kept["study"] == key) & (kept["table"] == table)], own)
         if one.empty:
-            raise Fault(f"{file}: none of its numbers is kept in {KEPT.relative_to(PACKAGE.parents[1])}")
+            raise Fault(f"{file}: none of its numbers is kept in {KEPT.relative_to(TREE)}")
         names = one[list(own.columns[: own.columns.get_loc("statistic") + 1])].itertuples(index=False)
         one["number"] = [f"{key}/{table}/{'/'.join(name)}" for name in names]
         found.append(one[["number", "value_kept", "value_own", "p"]])
     numbers = pd.concat(found, ignore_index=True) if found else pd.DataFrame(columns=["number", "p"])
     if numbers["p"].notna().sum() == 0:
-        raise Fault(f"{RESULTS}: no number of {KEPT.relative_to(PACKAGE.parents[1])} is here; expected tables of the configured studies")
+        raise Fault(f"{RESULTS}: no number of {KEPT.relative_to(TREE)} is here; expected tables of the configured studies")
     return numbers
 
 

@@ -198,10 +198,10 @@ def curvature(path: Path, samples: int) -> tuple[np.ndarray, np.ndarray]:
     """
     pieces = bezier_pieces(path)
     piece, t = sample_parameters(len(pieces), samples)
-    return _curvature(pieces[piece], t)
+    return curvatures(pieces[piece], t)
 
 
-def _curvature(pieces: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def curvatures(pieces: np.ndarray, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Curvature (n,) and speed (n,) of the piece pieces[i] (n, degree + 1, 2) at the parameter t[i]."""
     degree = pieces.shape[1] - 1
     first = degree * np.einsum("sk,skd->sd", bernstein(degree - 1, t), np.diff(pieces, axis=1))
@@ -224,7 +224,7 @@ def curvature_jump(path: Path) -> float:
     pieces = bezier_pieces(path)
     if len(pieces) == 1:
         return 0.0
-    ends = [_curvature(pieces, np.full(len(pieces), t)) for t in (0.0, 1.0)]
+    ends = [curvatures(pieces, np.full(len(pieces), t)) for t in (0.0, 1.0)]
     (start, start_speed), (end, end_speed) = ends
     fastest = max(start_speed.max(), end_speed.max())
     moving = (start_speed[1:] > STANDSTILL * fastest) & (end_speed[:-1] > STANDSTILL * fastest)

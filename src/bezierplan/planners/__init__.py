@@ -1,8 +1,8 @@
 """Planners, one file each, and their interface.
 
-A planner is a module with a function
+A planner is a module with a function::
 
-    plan(problem, rng, *, <settings>) -> Plan
+    plan(problem, rng, *, settings) -> Plan
 
 whose keyword-only arguments are its settings, all without default values: annotated with `bool`, `int`, `float`, `Literal[...]`, or
 `Annotated[int, Range(...), About(...)]`. A planner whose kernels read its settings declares the same annotations as the fields of a named

@@ -15,21 +15,16 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-PACKAGE = Path(__file__).parents[1]
+from bezierplan.places import PACKAGE, cache_folder
+
 ROOT = PACKAGE.name
 
 
 # Modules that affect how a job starts and ends, but never what it writes.
-NEUTRAL = {f"{ROOT}.running.{name}" for name in ("digest", "effort", "kernel_cache", "log")}
+NEUTRAL = {f"{ROOT}.{name}" for name in ("places", "running.digest", "running.effort", "running.kernel_cache", "running.log")}
 
 COMPUTING = ("numba", "llvmlite", "numpy", "scipy", "shapely", "pandas", "pyarrow")
 """Libraries whose versions can change a number."""
-
-
-def cache_folder() -> Path:
-    """`.cache` in the working tree or, if that is not writable, in the user's home."""
-    tree = PACKAGE.parents[1]
-    return (tree if os.access(tree, os.W_OK) else Path.home()) / ".cache"
 
 
 class _Module(NamedTuple):

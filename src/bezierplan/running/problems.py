@@ -11,9 +11,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import pyarrow as pa
-import pyarrow.parquet as parquet
-
 from bezierplan.geometry import cell_length
 from bezierplan.geometry.region import blocks, region
 from bezierplan.workspaces import files, lattice, random_blocks
@@ -21,6 +18,8 @@ from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem, Workspace
 
 if TYPE_CHECKING:
+    import pyarrow as pa
+
     from bezierplan.geometry.shortest_paths import Bound
 
 
@@ -122,6 +121,9 @@ def _suitable(maps: Iterator[Grid], description: dict, problem: dict) -> Grid:
 
 def write(problems: dict[str, Problem], workspaces: dict[str, str], file: str) -> None:
     """Write problems, by name, with the names of their workspaces."""
+    import pyarrow as pa
+    import pyarrow.parquet as parquet
+
     rows = [
         {
             "problem": name,
@@ -139,6 +141,8 @@ def write(problems: dict[str, Problem], workspaces: dict[str, str], file: str) -
 
 def read(file: str) -> dict[str, Problem]:
     """The problems of a file, by name, in file order. Problems in the same workspace share one object."""
+    import pyarrow.parquet as parquet
+
     table = parquet.read_table(file).to_pylist()
     drawn = {text: files.from_json(text) for text in {row["drawn"] for row in table}}
     return {
@@ -147,8 +151,10 @@ def read(file: str) -> dict[str, Problem]:
     }
 
 
-def bounds_of(problems: dict[str, Problem]) -> pa.Table:
+def bounds_of(problems: dict[str, Problem]) -> "pa.Table":
     """The straight line and the exact shortest path of each problem, one row each."""
+    import pyarrow as pa
+
     from bezierplan.geometry import shortest_paths
 
     rows = [bound_row(name, problem, shortest_paths.shortest_path(problem), _cell_bound(problem)) for name, problem in problems.items()]

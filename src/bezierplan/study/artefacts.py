@@ -9,6 +9,7 @@ from bezierplan.schema.model import (
     ARGUMENTS,
     Arguments,
     Column,
+    Count,
     Decimals,
     Experiment,
     Flag,
@@ -85,7 +86,7 @@ class Identify(Model):
 
     metric: Metric = Field(description="the metric of the published numbers that are tried")
     where: Where = Field({}, description="column of the published file → value or list of values: those that are tried")
-    edges: Whole = Field(description="most edges of a polyline through cell centres, a whole number of at least 1")
+    edges: Count = Field(description="most edges of a polyline through cell centres, a whole number of at least 1")
     counts: Flag = Field(True, description="whether a number that is such a length counts as identified; left out: true")
     because: Line = Field(description="why the numbers may be such lengths, in words")
 

@@ -9,13 +9,13 @@ from pydantic.fields import FieldInfo
 
 from bezierplan.analysis.claims import kinds
 from bezierplan.figures import panels
-from bezierplan.running.digest import PACKAGE
+from bezierplan.places import TREE
 from bezierplan.schema.model import Model, keys
 from bezierplan.study import artefacts, claims, experiments
 from bezierplan.workspaces import kinds as workspace_kinds
 from bezierplan.workspaces.kinds import changing_cells
 
-README = PACKAGE.parents[1] / "config" / "README.md"
+README = TREE / "config" / "README.md"
 
 GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
     "experiments": [

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any, TypeVar
 
-from bezierplan.running.digest import PACKAGE
+from bezierplan.places import STUDIES
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.model import DEVICES, LONGEST_NAME, Model, parsed
@@ -35,12 +35,11 @@ def read_config(given: Mapping[str, Any], alone: bool = False) -> Folders:
     file = Path("config/config.yaml")
     place = "config of the module" if alone else f"{file} or --config"
     content = parsed(ConfigFile, (checked.read(file) if file.is_file() and not alone else {}) | dict(given), place)
-    root = PACKAGE.parents[1] / "config" / "studies"
     folders: Folders = {}
     for name in content.studies:
-        folder = root / name if "/" not in name else Path(name)
+        folder = STUDIES / name if "/" not in name else Path(name)
         if not (folder / "experiments.yaml").exists():
-            known = [place.parent.name for place in root.glob("*/experiments.yaml")]
+            known = [place.parent.name for place in STUDIES.glob("*/experiments.yaml")]
             raise Fault(f"{place}: studies: {name}: no experiments.yaml in {relative(folder)}{closest(name, known)}")
         folders[folder] = content.settings.get(folder.resolve().name, {})
     names = [folder.resolve().name for folder in folders]
@@ -129,7 +128,6 @@ def _read(folder: Path, name: str, model: type[M]) -> M | None:
 def check_names(given: Mapping[str, Study], taken: Iterable[str]) -> None:
     """Raise Fault for a study whose results or targets would clash with others. taken: names of rules and other targets."""
     owners = dict.fromkeys(taken, "the workflow")
-    home = PACKAGE.parents[1] / "config" / "studies"
     for key, study in given.items():
         place = relative(study.folder)
         if not re.fullmatch("[A-Za-z][A-Za-z0-9_-]*", key) or len(key) > LONGEST_NAME or key.lower() in DEVICES:
@@ -137,7 +135,7 @@ def check_names(given: Mapping[str, Study], taken: Iterable[str]) -> None:
             raise Fault(f"{place}: {key}: not a name of a study; expected {wanted}; rename the folder")
         if {"{", "}"} & set(place):
             raise Fault(f"{place}: Snakemake reads braces as a pattern; expected a folder without them; rename it")
-        if (home / key).is_dir() and not (home / key).samefile(study.folder):
+        if (STUDIES / key).is_dir() and not (STUDIES / key).samefile(study.folder):
             raise Fault(f"{place}: config/studies has a study {key} already, whose results this one would overwrite; rename the folder")
         for target in [key, *(f"{key}_{item}" for item in [*study.tables, *study.figures])]:
             if target in owners:

@@ -21,7 +21,8 @@ from pathlib import Path
 
 import pydantic
 
-from bezierplan.running.digest import PACKAGE, ROOT, cache_folder
+from bezierplan.places import PACKAGE, cache_folder
+from bezierplan.running.digest import ROOT
 from bezierplan.schema.model import Model
 from bezierplan.study.definition import Study
 

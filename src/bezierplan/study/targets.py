@@ -11,7 +11,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
-from bezierplan.running.digest import PACKAGE, content_digest, versioned_digest
+from bezierplan.places import TREE
+from bezierplan.running.digest import content_digest, versioned_digest
 from bezierplan.study import alternatives, choices, definition, design, jobs
 from bezierplan.study.artefacts import Comparison, Pivot
 from bezierplan.study.claims import Claim
@@ -19,7 +20,7 @@ from bezierplan.study.definition import Study
 
 Studies = dict[str, Study]
 
-SCRIPTS = PACKAGE.parents[1] / "workflow" / "scripts"
+SCRIPTS = TREE / "workflow" / "scripts"
 
 
 _HIDDEN = {ord(sign): chr(0xE000 + ord(sign)) for sign in "<>&"}

@@ -1,0 +1,49 @@
+"""Sphinx: the documentation as a site, made by `make docs`."""
+
+import sys
+from pathlib import Path
+
+HERE = Path(__file__).parent
+sys.path[:0] = [str(HERE.parent / "src"), str(HERE)]
+
+import bezierplan  # noqa: E402
+
+project = "bezierplan"
+author = copyright = "The bezierplan authors"
+version = release = bezierplan.__version__
+
+extensions = [
+    "generate",
+    "myst_parser",
+    "numpydoc",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.autosummary",
+    "sphinx.ext.doctest",
+    "sphinx.ext.mathjax",
+    "sphinx.ext.viewcode",
+]
+exclude_patterns = ["outcome/*.md", "python.md", "*.in.md"]
+suppress_warnings = ["myst.header"]
+myst_enable_extensions = ["dollarmath", "deflist", "colon_fence", "attrs_inline"]
+myst_heading_anchors = 3
+
+numpydoc_show_class_members = False
+autosummary_generate = True
+autodoc_typehints = "none"
+autodoc_member_order = "bysource"
+nitpicky = False
+
+html_theme = "pydata_sphinx_theme"
+html_title = "bezierplan"
+html_theme_options = {
+    "show_nav_level": 1,
+    "navigation_with_keys": False,
+    "show_prev_next": False,
+    "secondary_sidebar_items": ["page-toc"],
+    "footer_start": ["copyright"],
+    "footer_end": ["sphinx-version"],
+    "pygments_light_style": "a11y-high-contrast-light",
+    "pygments_dark_style": "a11y-high-contrast-dark",
+}
+html_static_path = []
+html_show_sourcelink = False

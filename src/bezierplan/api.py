@@ -1,0 +1,545 @@
+"""The public interface: `import bezierplan as bp`, then `bp.plan`, `bp.check`, `bp.shortest_path` and the rest.
+
+The command line and the documentation use the same functions.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path as File
+from types import ModuleType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.polygons import Polygons
+from bezierplan.workspaces.problem import Path, Problem, Workspace
+
+if TYPE_CHECKING:
+    import pandas as pd
+    from matplotlib.axes import Axes
+
+    from bezierplan.geometry.samples import Samples
+
+__all__ = [
+    "Answer",
+    "Circles",
+    "Grid",
+    "Judged",
+    "Path",
+    "Polygons",
+    "Problem",
+    "check",
+    "methods",
+    "plan",
+    "read_map",
+    "replay",
+    "results",
+    "shortest_path",
+]
+
+Method = str | Callable[..., Any] | ModuleType
+
+SHARE = 0.02
+"""The turning radius of `plan` without a method, as a share of the map's longer side."""
+
+
+@dataclass(frozen=True)
+class Judged:
+    """A path and the certified checker's verdict on it.
+
+    Attributes
+    ----------
+    problem : Problem
+    path : Path or None
+        None if there is none to judge.
+    length : float
+        Exact arc length, in the map's unit; nan without a path.
+    feasible : bool
+        Whether the path stays out of every obstacle and within the border.
+    collision : tuple of float or None
+        The first point (x, y) at which it enters an obstacle.
+    depth : float
+        How deeply it enters, in the map's unit; 0 if it is feasible.
+    clearance : float
+        Least distance to an obstacle or the border, in the map's unit; 0 if it is not feasible.
+    curvature : float
+        Largest absolute curvature of samples, in 1/unit; corners have none.
+    corners : bool
+        Whether the direction of travel jumps somewhere.
+    shortest : float
+        Length of the exact shortest path; infinite if there is none.
+    """
+
+    problem: Problem = field(repr=False)
+    path: Path | None = field(repr=False)
+    length: float
+    feasible: bool
+    collision: tuple[float, float] | None
+    depth: float
+    clearance: float
+    curvature: float
+    corners: bool
+    shortest: float
+
+    @property
+    def gap(self) -> float:
+        """How much longer the path is than the exact shortest one, as a share of that."""
+        return self.length / self.shortest - 1 if self.shortest else 0.0
+
+    def sample(self, n: int | None = None, *, step: float | None = None) -> Samples:
+        """Points at equal distances along the path, with heading and curvature.
+
+        Parameters
+        ----------
+        n : int, optional
+            Number of points, both ends included.
+        step : float, optional
+            Largest distance between two points, in the map's unit. Exactly one of `n` and `step` is given.
+
+        Returns
+        -------
+        Samples
+
+        Raises
+        ------
+        ValueError
+            If there is no path, or for an `n` or `step` out of range.
+        """
+        from bezierplan.geometry import samples
+
+        return samples.along(self._path(), n, step)
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw map, path and exact shortest path on matplotlib's `axes`, or on new ones, which are returned."""
+        from bezierplan.figures import drawn_path
+        from bezierplan.geometry import shortest_paths
+
+        if axes is None:
+            import matplotlib.pyplot as plt
+
+            axes = plt.figure(layout="constrained").add_subplot()
+        bound = shortest_paths.shortest_path(self.problem)
+        drawn_path.draw(axes, self.problem, self.path, bound.points, self.collision)
+        return axes
+
+    def to_csv(self, file: str | File, *, step: float | None = None) -> None:
+        """Write distance, x, y, heading and curvature along the path; `step` as in `sample`, by default a thousandth of the length."""
+        from bezierplan.geometry import path_files
+
+        path_files.write_csv(File(file), self.sample(step=step or self.length / 1000))
+
+    def to_geojson(self, file: str | File, *, step: float | None = None) -> None:
+        """Write the path as a GeoJSON feature of kind LineString, with the verdict among its properties."""
+        from bezierplan.geometry import path_files
+
+        verdict = {"feasible": self.feasible, "length": self.length, "clearance": self.clearance}
+        path_files.write_geojson(File(file), self.sample(step=step or self.length / 1000), verdict)
+
+    def to_ros(self, file: str | File, *, step: float | None = None, frame: str = "map") -> None:
+        """Write the path as a `nav_msgs/Path` message in YAML, as `ros2 topic pub` reads it."""
+        from bezierplan.geometry import path_files
+
+        path_files.write_ros(File(file), self.sample(step=step or self.length / 1000), frame)
+
+    def _path(self) -> Path:
+        if self.path is None:
+            raise ValueError("no path was found, so there is nothing to sample, to draw or to write")
+        return self.path
+
+
+@dataclass(frozen=True)
+class Answer(Judged):
+    """What a method answered to a problem, with the certified checker's verdict.
+
+    Attributes
+    ----------
+    method : str
+        Name of the method or the planner.
+    settings : dict
+        All settings in force.
+    claimed_feasible : bool
+        The planner's own verdict.
+    objective : float
+        Its final objective value, by its own definition.
+    evaluations : int
+        Number of paths whose objective it evaluated.
+    history : ndarray
+        Best objective after each generation, (generations + 1,).
+    stop : str
+        Why it ended.
+    """
+
+    method: str
+    settings: dict[str, Any]
+    claimed_feasible: bool
+    objective: float
+    evaluations: int
+    history: np.ndarray = field(repr=False)
+    stop: str
+
+
+@dataclass(frozen=True)
+class Shortest:
+    """The exact shortest path: its length, in the map's unit (infinite without a free path), and its points (n, 2).
+
+    Among circles the points are the vertices of a chain of chords and tangents that is within 1e-6 of the path.
+    """
+
+    length: float
+    points: np.ndarray = field(repr=False)
+
+
+def read_map(
+    file: str | File,
+    *,
+    cell: float | None = None,
+    rule: str | None = None,
+    robot_radius: float | None = None,
+    unit: str | None = None,
+    most_pixels: int | None = None,
+) -> Workspace:
+    """Read a map from a file.
+
+    Parameters
+    ----------
+    file : str or Path
+        GeoJSON polygons (.geojson, .json), an occupancy map of ROS's map_server (.yaml), a MovingAI grid (.map), or cells as text (.txt).
+    cell : float, optional
+        Side of a cell. Of text, 1 by default. Of polygons: makes a grid of them, for methods that need cells.
+    rule : {"overlap", "centre"}, optional
+        Which cells polygons occupy; overlap by default.
+    robot_radius : float, optional
+        By how much the obstacles of a ROS map grow, in metres.
+    unit : str, optional
+        Name of the unit of length; by default m, of grids cell.
+    most_pixels : int, optional
+        The most pixels of a ROS map's image.
+
+    Returns
+    -------
+    Grid or Polygons
+
+    Raises
+    ------
+    ValueError
+        Names file, place and what is expected.
+    """
+    from bezierplan.workspaces import files, map_files
+
+    source = File(file)
+    given = {"cell": cell, "rule": rule, "robot_radius": robot_radius, "unit": unit, "most_pixels": most_pixels}
+    return files.load(map_files.described(source, **given), source.parent)
+
+
+def shortest_path(problem: Problem) -> Shortest:
+    """The exact shortest path of a point from start to target.
+
+    Raises ValueError for a start or target outside or in an obstacle.
+
+    Examples
+    --------
+    >>> disc = Circles((-5.0, 5.0, -5.0, 5.0), centres=np.array([[0.0, 0.0]]), radii=np.array([1.0]), unit="m")
+    >>> round(shortest_path(Problem("disc", disc, (-2.0, 0.0), (2.0, 0.0))).length, 5)
+    4.5113
+    """
+    from bezierplan.geometry import shortest_paths
+
+    bound = shortest_paths.shortest_path(_placed(problem))
+    return Shortest(bound.length, bound.points)
+
+
+def check(problem: Problem, path: Path) -> Judged:
+    """Judge any path by exact geometry.
+
+    Parameters
+    ----------
+    problem : Problem
+    path : Path
+        A curve kind and its control points (n, 2); its ends need not be those of the problem.
+
+    Returns
+    -------
+    Judged
+
+    Raises
+    ------
+    ValueError
+        For a curve kind that is unknown, points of the wrong shape, or coordinates that are not finite or too large.
+
+    Examples
+    --------
+    >>> room = Grid(np.zeros((4, 4), dtype=bool), cell=1.0, unit="m")
+    >>> judged = check(Problem("room", room, (0.5, 0.5), (3.5, 0.5)), Path("bezier", np.array([(0.5, 0.5), (2.0, 3.0), (3.5, 0.5)])))
+    >>> judged.feasible, round(judged.length, 3), round(judged.clearance, 3)
+    (True, 4.03, 0.5)
+    """
+    return Judged(**_verdict(_placed(problem), path))
+
+
+def _verdict(problem: Problem, path: Path | None) -> dict[str, Any]:
+    from bezierplan.analysis.measures import CURVATURE_SAMPLES
+    from bezierplan.geometry import checker, curves, shortest_paths
+    from bezierplan.geometry.region import region
+
+    shortest = shortest_paths.shortest_path(problem).length
+    if path is None:
+        nothing = dict.fromkeys(("length", "depth", "clearance", "curvature"), math.nan)
+        return {"problem": problem, "path": None, **nothing, "feasible": False, "collision": None, "corners": False, "shortest": shortest}
+    pieces = curves.bezier_pieces(path)
+    verdict = checker.check(pieces, region(problem.workspace))
+    kappa, _ = curves.curvature(path, max(CURVATURE_SAMPLES, 20 * len(pieces) + 1))
+    collision = None if verdict.feasible else tuple(curves.point_at(path, verdict.collision_at).tolist())
+    return {
+        "problem": problem,
+        "path": path,
+        "length": curves.length(path),
+        "feasible": verdict.feasible,
+        "collision": collision,
+        "depth": verdict.depth,
+        "clearance": verdict.clearance,
+        "curvature": float(np.nan_to_num(np.abs(kappa)).max()),
+        "corners": not math.isfinite(curves.curvature_jump(path)),
+        "shortest": shortest,
+    }
+
+
+def plan(problem: Problem, method: Method | None = None, *, seed: int = 0, **settings: Any) -> Answer:
+    """Plan one path and judge it by exact geometry.
+
+    Parameters
+    ----------
+    problem : Problem
+    method : str, module or callable, optional
+        A study's method such as ``"song2016/smooth"``, whose settings are the defaults; a planner such as ``"prm"``, with the settings of
+        the first study that uses it; the path of a planner's file; or a planner's module or its function ``plan``. Without it, the exact
+        shortest path with rounded corners.
+    seed : int
+        Of the random numbers.
+    **settings
+        Settings in place of the method's own.
+
+    Returns
+    -------
+    Answer
+
+    Raises
+    ------
+    ValueError
+        Names the argument or the setting and what is expected: an unknown method, a wrong setting, a start in an obstacle, a map that the
+        planner does not serve.
+    TypeError
+        For a problem that is no `Problem`, or a method that is none of the above.
+
+    Examples
+    --------
+    >>> wall = np.zeros((8, 8), dtype=bool)
+    >>> wall[2:6, 3:5] = True
+    >>> problem = Problem("a block", Grid(wall, cell=1.0, unit="m"), start=(0.5, 4.0), target=(7.5, 4.0))
+    >>> answer = plan(problem, turning_radius=0.5)
+    >>> answer.feasible, round(answer.length, 3), round(answer.gap, 4)
+    (True, 8.416, 0.0016)
+    """
+    from bezierplan.running import answer as door
+    from bezierplan.running.columns import TAKEN
+    from bezierplan.running.loans import lend
+
+    problem = _placed(problem)
+    if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
+        raise ValueError(f"seed: {seed!r}; expected a whole number of at least 0")
+    name, module, preset = _method(method, problem)
+    chosen = preset | settings
+    _check_settings(name, module, chosen, problem)
+    loan = lend({problem.name: problem})[problem.name]
+    answered = module.plan(loan.problem, np.random.default_rng(seed), **chosen)
+    try:
+        found = door.accepted(answered, problem, {*TAKEN, *chosen})
+    except door.Unfit as fault:
+        raise ValueError(f"the answer of planner {name}: {fault}") from None
+    if fault := loan.thorough_fault():
+        raise ValueError(f"planner {name}: {fault}")
+    return Answer(
+        **_verdict(problem, found.path),
+        method=name,
+        settings=chosen,
+        claimed_feasible=found.claimed_feasible,
+        objective=found.objective,
+        evaluations=found.evaluations,
+        history=found.history,
+        stop=found.stop,
+    )
+
+
+def _placed(problem: Problem) -> Problem:
+    """A problem whose start and target are known to be free. Raises TypeError and ValueError."""
+    from bezierplan.running import problems
+
+    if not isinstance(problem, Problem):
+        raise TypeError(f"problem: is a {type(problem).__name__}; expected a Problem")
+    return problems.build(problem.name, {"start": problem.start, "target": problem.target}, problem.workspace)
+
+
+class _Function:
+    """A planner's function in the place of its module."""
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self.plan = function
+
+
+def _method(method: Method | None, problem: Problem) -> tuple[str, Any, dict[str, Any]]:
+    """Name, module and settings of a method."""
+    from bezierplan.planners import known_planners, planner_module
+    from bezierplan.schema.checked import closest
+
+    if method is None:
+        x_low, x_high, y_low, y_high = problem.workspace.bounds
+        radius = SHARE * max(x_high - x_low, y_high - y_low)
+        return "rounded_shortest_path", planner_module("rounded_shortest_path"), {"turning_radius": radius, "offset": 0.0}
+    if isinstance(method, ModuleType):
+        return method.__name__, method, {}
+    if callable(method):
+        return getattr(method, "__name__", "a function"), _Function(method), {}
+    if not isinstance(method, str):
+        raise TypeError(f"method: is a {type(method).__name__}; expected a name, a planner's module, or its function plan")
+    if method.endswith(".py"):
+        if not File(method).is_file():
+            raise ValueError(f"method: {method}: no such file")
+        return method, planner_module(method), {}
+    if method in known_planners():
+        return method, planner_module(method), _first_use(method)
+    key, _, name = method.partition("/")
+    if key not in _keys() or name not in _study(key).methods:
+        raise ValueError(f"method: {method}: unknown{closest(method, [*methods(), *known_planners()])}")
+    return method, planner_module(_study(key).planner(name)), _study(key).resolved(name)
+
+
+@cache
+def _study(key: str) -> Any:
+    """A study of this project, which its tests have checked."""
+    from bezierplan.places import STUDIES
+    from bezierplan.study import reading
+
+    return reading.read_study(STUDIES / key)
+
+
+def _keys() -> list[str]:
+    from bezierplan.places import STUDIES
+
+    return sorted(file.parent.name for file in STUDIES.glob("*/experiments.yaml"))
+
+
+def _first_use(planner: str) -> dict[str, Any]:
+    """A planner's settings in the first study that uses it; none if none does."""
+    for study in map(_study, _keys()):
+        for name in study.methods:
+            if study.planner(name) == planner:
+                return study.resolved(name)
+    return {}
+
+
+def _check_settings(name: str, module: Any, settings: Mapping[str, Any], problem: Problem) -> None:
+    """Raise ValueError unless a planner takes exactly these settings and serves this problem."""
+    from bezierplan.running import interface
+
+    interface.refuse_unknown(module, settings, name)
+    interface.check_settings(module, dict(settings), f"{name}: settings")
+    served = getattr(module, "workspaces", None)
+    kind = KINDS[type(problem.workspace)]
+    if served is not None and kind not in served:
+        hint = "; read the map with a cell to have a grid" if "grid" in served and kind == "polygons" else ""
+        raise ValueError(f"problem: {name} serves workspaces of kind {', '.join(served)}, and this one is {kind}{hint}")
+    if hasattr(module, "serves"):
+        module.serves(problem)
+
+
+KINDS = {Grid: "grid", Circles: "circles", Polygons: "polygons"}
+"""Type of a workspace -> its kind, by which planners say what they serve."""
+
+
+def methods() -> dict[str, str]:
+    """The methods of the project's studies: ``"study/method"`` -> planner.
+
+    Examples
+    --------
+    >>> methods()["song2016/smooth"]
+    'binary_genetic'
+    """
+    return {f"{key}/{name}": study.planner(name) for key in _keys() for study in [_study(key)] for name in study.methods}
+
+
+def results(folder: str | File, experiment: str) -> pd.DataFrame:
+    """The runs of an experiment as one table, with the bounds of their problems and their times.
+
+    Parameters
+    ----------
+    folder : str or Path
+        Results of a study at a scale, such as ``"results/full/song2016"``.
+    experiment : str
+        Name of one of its experiments, such as ``"routes"``.
+
+    Returns
+    -------
+    DataFrame
+        A row a run; results/README.md explains the columns.
+
+    Raises
+    ------
+    ValueError
+        If there are no such results, or they are damaged.
+    """
+    from bezierplan.schema.checked import closest
+
+    place = File(folder) / "runs"
+    if not place.is_dir():
+        raise ValueError(f"folder: {folder}: no runs here; expected results of a study, such as results/full/song2016")
+    files = sorted(str(file) for file in place.glob(f"{experiment}/*/*.parquet") if file.stem.isdecimal())
+    if not files:
+        known = [each.name for each in place.iterdir()]
+        raise ValueError(f"experiment: {experiment}: no runs of it in {place}{closest(experiment, known)}")
+    from bezierplan.analysis import results as stored
+
+    made = File(folder) / "problems" / experiment
+    return stored.read(files, 10**9, f"{made}.parquet", f"{made}.bounds.parquet").runs
+
+
+def replay(run: str) -> Answer:
+    """Run one run of the project's studies again, bit for bit.
+
+    Parameters
+    ----------
+    run : str
+        Its name: ``"study/experiment/condition/method/repeat"``.
+
+    Returns
+    -------
+    Answer
+
+    Raises
+    ------
+    ValueError
+        States the unknown part of the name; a drive through a moving world has no single path and is replayed at the command line.
+    """
+    from bezierplan.analysis.results import path_of
+    from bezierplan.planners import planner_module, planner_settings
+    from bezierplan.study import replays
+
+    made = replays.replay(run, {key: _study(key) for key in _keys()})
+    row, study, method = made.runs.iloc[0], run.split("/")[0], run.split("/")[3]
+    if made.worlds:
+        raise ValueError(f"run: {run}: is a drive; expected a run in a world that stands still, or `bezierplan replay`")
+    names = planner_settings(planner_module(row["planner"]))
+    return Answer(
+        **_verdict(made.problems[row["problem"]], path_of(row)),
+        method=f"{study}/{method}",
+        settings={name: row[name] for name in names},
+        claimed_feasible=bool(row["claimed_feasible"]),
+        objective=float(row["objective"]),
+        evaluations=int(row["evaluations"]),
+        history=np.array(row["history"], dtype=float),
+        stop=str(row["stop"]),
+    )

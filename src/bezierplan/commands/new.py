@@ -1,0 +1,71 @@
+"""A new study: `python -m bezierplan new FOLDER` copies one that runs at once, `--from MAP` puts a map of your own into it."""
+
+import re
+import shutil
+from argparse import ArgumentParser
+from pathlib import Path
+
+import yaml
+
+from bezierplan.places import PACKAGE
+from bezierplan.schema.checked import Fault
+from bezierplan.workspaces import files
+from bezierplan.workspaces.map_files import described, point
+
+TEMPLATE = PACKAGE / "template"
+
+
+def main(parser: ArgumentParser, words: list[str]) -> None:
+    """Make the folder of a study. Raises Fault."""
+    parser.add_argument("folder", type=Path, metavar="FOLDER", help="where the study will lie; its name is the study's")
+    parser.add_argument("--from", type=Path, dest="map", metavar="MAP", help="a map file of your own; needs --start and --target")
+    parser.add_argument("--start", metavar="X,Y", help="where paths begin on that map, in its unit")
+    parser.add_argument("--target", metavar="X,Y", help="where they end")
+    given = parser.parse_args(words)
+    if not re.fullmatch("[A-Za-z][A-Za-z0-9_-]*", given.folder.name):
+        raise Fault(f"{given.folder}: not a name of a study; expected letters, digits, _ and -, a letter first")
+    if given.folder.exists():
+        raise Fault(f"{given.folder}: is there already; expected a new folder")
+    if not given.folder.parent.is_dir():
+        raise Fault(f"{given.folder}: no folder {given.folder.parent}; expected one that exists")
+    if given.map is None and (given.start or given.target):
+        raise Fault("--start and --target: expected only with --from, a map of your own")
+    own = _own_map(given.map, given.start, given.target) if given.map else None
+    shutil.copytree(TEMPLATE, given.folder, ignore=shutil.ignore_patterns("__pycache__"))
+    readme = given.folder / "README.md"
+    readme.write_text(readme.read_text(encoding="utf-8").replace("mystudy", given.folder.name), encoding="utf-8")
+    if own:
+        _put(given.folder, *own)
+    print(f"{given.folder}: a study; next: bezierplan run {given.folder}")
+
+
+Ends = dict[str, list[float]]
+
+
+def _own_map(file: Path, start: str | None, target: str | None) -> tuple[list[Path], dict, Ends]:
+    """The files of a map, its workspace as a study describes it, and the ends of the paths. Raises ValueError for a faulty map."""
+    ends = {"start": list(point("--start", start)), "target": list(point("--target", target))}
+    workspace = described(file, needs_cells=True)
+    files.load(workspace, file.parent)
+    return files.sources(workspace, file.parent), workspace, ends
+
+
+def _put(folder: Path, sources: list[Path], workspace: dict, ends: Ends) -> None:
+    """Put a map in the place of the room. The claims and the published number are about the room, so they go."""
+    for source in sources:
+        shutil.copyfile(source, folder / source.name)
+    (folder / "room.txt").unlink()
+    shutil.rmtree(folder / "published")
+    (folder / "claims.yaml").unlink()
+    artefacts = folder / "artefacts.yaml"
+    artefacts.write_text(artefacts.read_text(encoding="utf-8").replace("    published: lengths.csv\n", ""), encoding="utf-8")
+    experiments = folder / "experiments.yaml"
+    lines = experiments.read_text(encoding="utf-8").splitlines(keepends=True)
+    replaced = {"  room:": f"  room: {_flow(workspace)}", "  across:": f"  across: {_flow({'workspace': 'room'} | ends)}"}
+    experiments.write_text(
+        "".join(next((new for key, new in replaced.items() if line.startswith(key)), line) for line in lines), encoding="utf-8"
+    )
+
+
+def _flow(mapping: dict) -> str:
+    return yaml.safe_dump(mapping, default_flow_style=True, sort_keys=False, width=1000)

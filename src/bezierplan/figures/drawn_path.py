@@ -1,0 +1,40 @@
+"""One path on its map, in the style of the studies' figures."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bezierplan.figures import style
+from bezierplan.figures.panels import paths, workspace
+from bezierplan.workspaces.problem import Path, Problem
+
+if TYPE_CHECKING:
+    from pathlib import Path as File
+
+    from matplotlib.axes import Axes
+
+
+def draw(axes: Axes, problem: Problem, path: Path | None, shortest: np.ndarray, collision: tuple[float, float] | None) -> None:
+    """The map, the exact shortest path (n, 2), the path, if any, and the first collision, if any."""
+    workspace.shade(axes, workspace.parts(problem.workspace))
+    workspace.scale(axes, problem.workspace.unit)
+    drawn = {"path": paths.steps(path)} if path else {}
+    drawn |= {"bound": shortest, "start": [problem.start], "target": [problem.target]}
+    if collision:
+        drawn["collision"] = [collision]
+    paths.draw_parts(axes, paths.table(drawn), narrow=False, clip=True)
+
+
+def save(file: File, problem: Problem, path: Path | None, shortest: np.ndarray, collision: tuple[float, float] | None) -> None:
+    """The same as a picture with a legend, of the kind that the file's suffix names."""
+    import matplotlib as mpl
+    from matplotlib.figure import Figure
+
+    with mpl.rc_context(style.SETTINGS):
+        figure = Figure(figsize=(style.NARROW, style.NARROW), layout="constrained")
+        axes = figure.add_subplot()
+        draw(axes, problem, path, shortest, collision)
+        figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)
+        figure.savefig(file, dpi=300)

@@ -1,0 +1,41 @@
+"""Files of a sampled path: csv, GeoJSON, and ROS's message of a path."""
+
+import json
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bezierplan.geometry.samples import Samples
+
+
+def write_csv(file: Path, samples: Samples) -> None:
+    """A heading row, then distance, x, y, heading and curvature of each sample."""
+    np.savetxt(file, np.column_stack(samples), fmt="%.9g", delimiter=",", header=",".join(Samples._fields), comments="")
+
+
+def write_geojson(file: Path, samples: Samples, properties: Mapping[str, Any]) -> None:
+    """A feature of kind LineString; nan and infinity, which JSON does not know, become null."""
+    known = {name: value if not isinstance(value, float) or math.isfinite(value) else None for name, value in properties.items()}
+    line = {"type": "LineString", "coordinates": np.column_stack([samples.x, samples.y]).tolist()}
+    file.write_text(json.dumps({"type": "Feature", "properties": known, "geometry": line}) + "\n", encoding="utf-8")
+
+
+def write_ros(file: Path, samples: Samples, frame: str) -> None:
+    """A `nav_msgs/Path` message as YAML; a pose's orientation is the heading as a quaternion about z."""
+    import yaml
+
+    poses = [
+        {
+            "header": {"frame_id": frame},
+            "pose": {
+                "position": {"x": float(x), "y": float(y), "z": 0.0},
+                "orientation": {"x": 0.0, "y": 0.0, "z": math.sin(heading / 2), "w": math.cos(heading / 2)},
+            },
+        }
+        for x, y, heading in zip(samples.x, samples.y, samples.heading, strict=True)
+    ]
+    with file.open("w", encoding="utf-8") as lines:
+        yaml.safe_dump({"header": {"frame_id": frame}, "poses": poses}, lines, sort_keys=False)

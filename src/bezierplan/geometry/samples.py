@@ -1,0 +1,145 @@
+"""A path as a robot follows it: points at distances along it, with heading, curvature and the speed that limits allow."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from bezierplan.geometry import curves
+from bezierplan.workspaces.problem import Path
+
+# Intervals of a piece's parameter on which arc length is summed, by quadrature of this order; then Newton's method refines each parameter.
+_INTERVALS = 64
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+_NEWTON_STEPS = 4
+
+
+class Samples(NamedTuple):
+    """Points along a path, each field (n,).
+
+    distance: along the path from its start, in the path's unit. x, y: in that unit. heading: direction of travel, in radians from the
+    x-axis. curvature: signed, positive to the left, in 1/unit; 0 where the curve stands still or turns on the spot.
+    """
+
+    distance: np.ndarray
+    x: np.ndarray
+    y: np.ndarray
+    heading: np.ndarray
+    curvature: np.ndarray
+
+
+def along(path: Path, n: int | None = None, step: float | None = None) -> Samples:
+    """Samples of a path at equal distances, both ends included.
+
+    Parameters
+    ----------
+    path : Path
+    n : int, optional
+        Number of samples, at least 2.
+    step : float, optional
+        Largest distance between two samples, in the path's unit. Exactly one of `n` and `step` is given.
+
+    Returns
+    -------
+    Samples
+
+    Raises
+    ------
+    ValueError
+        If neither or both are given, or one is out of range.
+
+    Examples
+    --------
+    >>> corner = Path("polyline", np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 1.0]]))
+    >>> samples = along(corner, step=1.0)
+    >>> samples.x.tolist(), samples.y.tolist()
+    ([0.0, 1.0, 2.0, 3.0, 3.0], [0.0, 0.0, 0.0, 0.0, 1.0])
+    """
+    if (n is None) == (step is None):
+        raise ValueError("expected either n, a number of samples, or step, a distance between two")
+    pieces = curves.bezier_pieces(path)
+    speeds, knots = _lengths(pieces)
+    cumulative = np.concatenate([[0.0], np.cumsum(speeds)])
+    length = cumulative[-1]
+    if n is None:
+        if not 0 < step < math.inf:
+            raise ValueError(f"step: {step}; expected a number above 0")
+        n = max(2, math.ceil(length / step * (1 - 1e-12)) + 1)
+    if not isinstance(n, int | np.integer) or n < 2:
+        raise ValueError(f"n: {n!r}; expected a whole number of at least 2")
+    distance = np.linspace(0.0, length, n)
+    interval = np.clip(np.searchsorted(cumulative, distance, side="right") - 1, 0, len(speeds) - 1)
+    piece, low = interval // _INTERVALS, knots[interval % _INTERVALS]
+    rest = distance - cumulative[interval]
+    width = 1.0 / _INTERVALS
+    share = np.divide(rest, speeds[interval], out=np.zeros(n), where=speeds[interval] > 0)
+    t = low + width * share
+    for _ in range(_NEWTON_STEPS):
+        ran = _integral(pieces[piece], low, t)
+        rate = _speed(pieces[piece], t)
+        change = np.divide(rest - ran, rate, out=np.zeros(n), where=rate > 0)
+        t = np.clip(t + change, low, low + width)
+    t[0], t[-1] = 0.0, 1.0
+    points = _values(pieces[piece], t)
+    points[0], points[-1] = pieces[0, 0], pieces[-1, -1]
+    return Samples(distance, points[:, 0], points[:, 1], _headings(pieces[piece], t), _curvatures(pieces[piece], t))
+
+
+def speeds(samples: Samples, limit: float, lateral: float = math.inf) -> np.ndarray:
+    """The speed (n,) at each sample, in units a second, under a limit of speed and one of lateral acceleration in units a second squared.
+
+    Raises ValueError for limits that are not above 0.
+    """
+    for name, value in (("limit", limit), ("lateral", lateral)):
+        if not value > 0:
+            raise ValueError(f"{name}: {value}; expected a number above 0")
+    bend = np.abs(samples.curvature)
+    return np.minimum(limit, np.sqrt(np.divide(lateral, bend, out=np.full(len(bend), math.inf), where=bend > 0)))
+
+
+def _lengths(pieces: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Arc lengths (pieces * intervals,) of all intervals, and where in a piece's parameter they begin (intervals,)."""
+    knots = np.arange(_INTERVALS) / _INTERVALS
+    repeated = np.repeat(pieces, _INTERVALS, axis=0)
+    low = np.tile(knots, len(pieces))
+    return _integral(repeated, low, low + 1 / _INTERVALS), knots
+
+
+def _integral(pieces: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Arc length (n,) of pieces (n, degree + 1, 2) between two parameters each (n,)."""
+    half = (high - low) / 2
+    total = np.zeros(len(low))
+    for node, weight in zip(_NODES, _WEIGHTS, strict=True):
+        total += weight * _speed(pieces, low + half * (node + 1))
+    return half * total
+
+
+def _values(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
+    return np.einsum("sk,skd->sd", curves.bernstein(pieces.shape[1] - 1, t), pieces)
+
+
+def _derivatives(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
+    degree = pieces.shape[1] - 1
+    return degree * _values(np.diff(pieces, axis=1), t)
+
+
+def _speed(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
+    return np.hypot(*_derivatives(pieces, t).T)
+
+
+def _headings(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
+    """Direction of travel (n,); where the curve stands still, that to a point just ahead, or at a piece's end from one just behind."""
+    direction = _derivatives(pieces, t)
+    size = np.abs(np.diff(pieces, axis=1)).max(axis=(1, 2))
+    still = np.hypot(*direction.T) <= curves.STANDSTILL * size
+    if still.any():
+        ahead = np.where(t < 0.5, t + 1e-3, t)
+        behind = np.where(t < 0.5, t, t - 1e-3)
+        direction[still] = (_values(pieces, ahead) - _values(pieces, behind))[still]
+    return np.arctan2(direction[:, 1], direction[:, 0])
+
+
+def _curvatures(pieces: np.ndarray, t: np.ndarray) -> np.ndarray:
+    if pieces.shape[1] == 2:
+        return np.zeros(len(t))
+    return np.nan_to_num(curves.curvatures(pieces, t)[0])
