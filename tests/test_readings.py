@@ -33,7 +33,7 @@ def studies():
 def numbers(in_range: list[bool], table: list[str] | None = None) -> pd.DataFrame:
     values = np.arange(float(len(in_range)))
     frame = {"method": list("abcdefgh")[: len(in_range)], "metric": "length", "statistic": "mean", "value_published": values}
-    return pd.DataFrame(frame | {"low": values, "high": values, "in_range": in_range, "table": table or "table1"})
+    return pd.DataFrame(frame | {"low": values, "high": values, "in_range": in_range, "possible": True, "table": table or "table1"})
 
 
 # The grid.
@@ -245,9 +245,9 @@ def test_summary_says_what_no_reading_gives_and_what_the_best_one_does():
     better = Evaluated({"O1": 2}, numbers([True, True, True, False], tables), {"table1": 0.0, "table2": -1.0})
     text = told(in_force, better)
     assert text.startswith("**The first.** No reading gives 1 of the numbers (1 of table2). Of 4 numbers, 1 are in range")
-    assert "The best of 2 readings, O1=2, brings 3 into range" in text
+    assert "The most likely of 2 readings, O1=2, has a likelihood 10^2 times that of the one in force, and brings 3 into range" in text
     assert text.endswith("readings bring 3, that in force 1: the tables held out agree with a change.")
-    assert "None of 1 readings does better." in told(in_force)
+    assert "None of 1 readings is more likely." in told(in_force)
     assert "explains their level" not in text
     # Ranges so wide that each holds every printed number of its kind say nothing about how these differ.
     wide = Evaluated({"O1": 2}, better.numbers.assign(low=-10.0, high=10.0, in_range=True), better.likelihoods)
@@ -262,6 +262,17 @@ def test_summary_does_not_follow_a_reading_that_other_tables_refuse():
     assert text.startswith("**The first.** Each number is in range under some reading.")
     assert text.endswith("held out, table2 (0 instead of 1) speaks against a change.")
     assert explained.section(pd.DataFrame(), pd.DataFrame(), pd.DataFrame(), {}) == []
+
+
+def test_a_reading_under_which_a_printed_number_is_impossible_is_ruled_out_whatever_its_score():
+    in_force = Evaluated({}, numbers([True, False]), {"table1": -9.0})
+    likely = Evaluated({"O1": 2}, numbers([True, True]).assign(possible=[True, False]), {"table1": 0.0})
+    assert max([in_force, likely], key=lambda each: each.rank) is in_force
+    found = explained.readings_table("study", [in_force, likely], CHOICES)
+    assert found[["reading", "impossible"]].to_numpy().tolist() == [["in force", 0], ["O1=2", 1]]
+    text = told(in_force, likely)
+    assert "1 of 2 readings is ruled out: under it a printed mean or extreme lies below the exact bound of its map." in text
+    assert "None of 2 readings is more likely." in text
 
 
 def test_figure_shows_every_choice_that_some_reading_makes():

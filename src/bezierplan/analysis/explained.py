@@ -8,7 +8,8 @@ Columns of readings.csv, one row per reading, the best first:
 | one column per choice | its value, empty for the one in force |
 | in_range, numbers | how many of the published numbers lie in range, and of how many |
 | by_chance | how many would if each printed number were exchanged with another of its kind in the same table (expected value) |
-| score | sum of the logarithms of the tables' likelihoods |
+| impossible | printed means and extremes below the exact bound of their map under this reading; with one, it is ruled out |
+| score | sum of the logarithms of the tables' likelihoods, by which readings that are not ruled out are compared |
 | in_range_<table> | the same by table |
 
 Columns of explained.csv, one row per published number, those that no reading gives first: study, table, the table's keys, metric,
@@ -19,6 +20,7 @@ Columns of held_out.csv, one row per table: the reading that is best on all othe
 under that reading (`chosen`), under the one in force (`in_force`) and at most (`most`), of how many (`numbers`).
 """
 
+import math
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -37,9 +39,14 @@ class Evaluated(NamedTuple):
     likelihoods: dict[str, float]
 
     @property
-    def rank(self) -> tuple[int, float]:
-        """By which readings are compared: the higher, the better."""
-        return int(self.numbers["in_range"].sum()), sum(self.likelihoods.values())
+    def impossible(self) -> int:
+        """Printed numbers that no run could have."""
+        return int((~self.numbers["possible"]).sum())
+
+    @property
+    def rank(self) -> tuple[bool, float]:
+        """By which readings are compared, the higher, the better: whether it is not ruled out, and its score."""
+        return not self.impossible, sum(self.likelihoods.values())
 
 
 def name_of(reading: Reading) -> str:
@@ -57,7 +64,7 @@ def readings_table(study: str, tried: list[Evaluated], choices: list[dict]) -> p
             {"study": study, "reading": name_of(each.reading)}
             | {choice["id"]: each.reading.get(choice["id"], "") for choice in choices}
             | {"in_range": int(numbers["in_range"].sum()), "numbers": len(numbers), "by_chance": by_chance(numbers)}
-            | {"score": sum(each.likelihoods.values())}
+            | {"impossible": each.impossible, "score": sum(each.likelihoods.values())}
             | {f"in_range_{table}": int(count) for table, count in by_table.items()}
         )
     return pd.DataFrame(rows)
@@ -77,7 +84,7 @@ def by_chance(numbers: pd.DataFrame) -> float:
 def explained_table(study: str, tried: list[Evaluated]) -> pd.DataFrame:
     """explained.csv."""
     best, in_force = max(tried, key=lambda each: each.rank), tried[0]
-    described = in_force.numbers.drop(columns=["low", "high", "in_range"])
+    described = in_force.numbers.drop(columns=["low", "high", "in_range", "possible"])
     counts = np.sum([each.numbers["in_range"].to_numpy(dtype=int) for each in tried], axis=0)
     found = {"in_force": in_force.numbers["in_range"].to_numpy(), "best": best.numbers["in_range"].to_numpy(), "readings": counts}
     table = described.assign(study=study, **found)[["study", *described.columns, *found]]
@@ -89,7 +96,7 @@ def held_out_table(study: str, tried: list[Evaluated]) -> pd.DataFrame:
     rows = []
     for table in tried[0].likelihoods:
         own = [int(each.numbers.loc[each.numbers["table"] == table, "in_range"].sum()) for each in tried]
-        others = [(each.rank[0] - count, each.rank[1] - each.likelihoods[table]) for each, count in zip(tried, own)]
+        others = [(each.rank[0], each.rank[1] - each.likelihoods[table]) for each in tried]
         chosen = max(range(len(tried)), key=lambda n: others[n])
         numbers = int((tried[0].numbers["table"] == table).sum())
         row = {"study": study, "table": table, "reading": name_of(tried[chosen].reading), "chosen": own[chosen]}
@@ -125,13 +132,19 @@ def sentences(readings: pd.DataFrame, explained: pd.DataFrame, held_out: pd.Data
         f"Of {in_force['numbers']} numbers, {in_force['in_range']} are in range under the reading in force; {in_force['by_chance']:.0f} "
         "would be if numbers of one kind in one table were exchanged."
     )
+    ruled_out = int((readings["impossible"] > 0).sum())
+    if ruled_out:
+        parts.append(
+            f"{ruled_out} of {len(readings)} readings {'is' if ruled_out == 1 else 'are'} ruled out: under "
+            f"{'it' if ruled_out == 1 else 'them'} a printed mean or extreme lies below the exact bound of its map."
+        )
     if best["reading"] == IN_FORCE:
-        parts.append(f"None of {len(readings)} readings does better.")
+        parts.append(f"None of {len(readings)} readings is more likely.")
     else:
         level = ": it explains their level, not how they differ" if best["in_range"] <= best["by_chance"] + 0.5 else ""
         parts.append(
-            f"The best of {len(readings)} readings, {best['reading']}, brings {best['in_range']} into range ({best['by_chance']:.0f} when "
-            f"exchanged{level})."
+            f"The most likely of {len(readings)} readings, {best['reading']}, has a likelihood {_times(best['score'] - in_force['score'])} "
+            f"that of the one in force, and brings {best['in_range']} into range ({best['by_chance']:.0f} when exchanged{level})."
         )
     if len(held_out) > 1:
         parts.append(
@@ -139,6 +152,12 @@ def sentences(readings: pd.DataFrame, explained: pd.DataFrame, held_out: pd.Data
             f"{held_out['in_force'].sum()}: {_advice(held_out)}."
         )
     return " ".join(parts)
+
+
+def _times(difference: float) -> str:
+    """A ratio of likelihoods in words, from the difference of their logarithms."""
+    power = difference / math.log(10)
+    return f"{10**power:.1f} times" if power < 2 else f"10^{power:.0f} times"
 
 
 def _by_table(never: pd.DataFrame) -> str:

@@ -1,9 +1,10 @@
 """Which reading of what a paper leaves open explains its published numbers? A search over the choices of `study.choices`.
 
-A reading assigns a value to some choices, by id; all others keep the value in force. It is scored by how many published numbers lie in the
-central 95 % of what experiments of the paper's size would print (`statistics.prediction`), ties by the joint likelihood of the
-numbers of each table: whole experiments are drawn from our runs, so that numbers from the same runs stay correlated, and the published
-numbers are placed in the multivariate t distribution of these draws.
+A reading assigns a value to some choices, by id; all others keep the value in force. It is scored by the joint likelihood of the numbers of
+each table: whole experiments are drawn from our runs, so that numbers from the same runs stay correlated, and the published numbers are
+placed in the multivariate t distribution of these draws. Beside the score stands how many published numbers lie in the central 95 % of what
+experiments of the paper's size would print (`statistics.prediction`). A reading under which a printed mean or extreme lies below the exact
+bound of its map is ruled out, whatever its score: no runs at all could have it.
 """
 
 import hashlib
@@ -30,6 +31,8 @@ logger = logging.getLogger(__name__)
 
 # Starts of the search where the grid is too large to be searched completely.
 STARTS = 3
+# Statistics that cannot lie below the least value of a run, but for a relative rounding error.
+_BOUNDED, _ROUNDING = ("mean", "median", "min", "max"), 1e-9
 # Draws of whole experiments.
 EXPERIMENTS = 500
 
@@ -86,7 +89,8 @@ def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str)
     """The published numbers of a table under a reading, and the logarithm of their joint likelihood.
 
     results: the runs of the table's methods. spec: its description, restricted to the reading's world. published: as from
-    `comparison.read_published`. name: seeds the draws. Columns: the table's keys, metric, statistic, value_published, low, high, in_range.
+    `comparison.read_published`. name: seeds the draws. Columns: the table's keys, metric, statistic, value_published, low, high, in_range,
+    possible (it does not lie below what every run has at least).
     Seconds are left out; with fewer than `statistics.LEAST_RUNS` runs no number is in range.
     """
     given = published.columns[: published.columns.get_loc("metric")].to_list()
@@ -111,10 +115,12 @@ def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str)
         # Without enough runs nothing is in range: a reading under which most runs fail explains nothing.
         enough = len(row["numbers"]) >= statistics.LEAST_RUNS
         described = {key: row[key] for key in [*given, "metric", "statistic", "value_published"]}
-        rows.append(described | {"low": low - half, "high": high + half, "in_range": bool(enough and low - half <= value <= high + half)})
+        inside = bool(enough and low - half <= value <= high + half)
+        below = row["statistic"] in _BOUNDED and value + half < row["least"] * (1 - _ROUNDING)
+        rows.append(described | {"low": low - half, "high": high + half, "in_range": inside, "possible": not below})
         own = runs[np.logical_and.reduce([runs[key] == row[key] for key in given])].assign(value=measured[row["metric"]])
         draws.append(_experiments(own, row, name) if enough else np.full(EXPERIMENTS, np.nan))
-    frame = pd.DataFrame(rows, columns=[*given, "metric", "statistic", "value_published", "low", "high", "in_range"])
+    frame = pd.DataFrame(rows, columns=[*given, "metric", "statistic", "value_published", "low", "high", "in_range", "possible"])
     return frame, _likelihood(frame["value_published"].to_numpy(dtype=float), np.array(draws), results)
 
 
@@ -240,12 +246,12 @@ def search(choices: list[dict], evaluate: Callable[[Reading], Evaluated | None],
     """
     tried: dict[str, Evaluated | None] = {}
 
-    def rank(reading: Reading) -> tuple[int, float]:
+    def rank(reading: Reading) -> tuple[bool, float]:
         key = name_of(reading)
         if key not in tried and len(tried) < most:
             tried[key] = evaluate(reading)
         found = tried.get(key)
-        return found.rank if found else (-1, -math.inf)
+        return found.rank if found else (False, -math.inf)
 
     rank({})
     if math.prod(len(choice["values"]) for choice in choices) <= most:

@@ -46,7 +46,8 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
 
     Columns: the keys; value (the entry's number), metric, statistic, decimals; numbers, sorted (n,): the metric of the runs that count,
     which satisfy the entry's `where` and have one; asked: how many satisfy `where`, with or without one; groups: the numbers as one
-    array for each value of the column `within`, None without that key; least, most: the range of the metric for one run; and over all
+    array for each value of the column `within`, None without that key; least, most: the range of the metric for one run (`least` of an
+    entry is stronger than that of its metric); and over all
     runs of the group: runs (how many), share_claimed, share_feasible, bound (median) and gap (median of the feasible ones) of the
     metric's kind of length.
     """
@@ -63,7 +64,8 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
         else measured[entry["metric"]]
         for entry, metric in zip(entries, described)
     ]
-    named = {name for metric in described for name in (metric.bound, metric.least) if isinstance(name, str)}
+    leasts = [entry.get("least", metric.least) for entry, metric in zip(entries, described)]
+    named = {name for metric, least in zip(described, leasts) for name in (metric.bound, least) if isinstance(name, str)}
     bounds = {name: runs[name].to_numpy(dtype=float) for name in named}
     feasible, claimed = runs["feasible"].to_numpy(), runs["claimed_feasible"].to_numpy()
     asked = [runs.index.isin(select(runs, entry.get("where", {})).index) for entry in entries]
@@ -77,7 +79,7 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
             of_group = {
                 "bound": _median(bounds[metric.bound][place]),
                 "gap": _median(measured[metric.gap][place]),
-                "least": np.fmin.reduce(bounds[metric.least][place]) if isinstance(metric.least, str) else metric.least,
+                "least": np.fmin.reduce(bounds[leasts[value]][place]) if isinstance(leasts[value], str) else leasts[value],
                 "most": metric.most,
             }
             own = place[asked[value][place]]

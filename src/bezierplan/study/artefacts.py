@@ -20,6 +20,7 @@ from bezierplan.schema.model import (
     Model,
     Name,
     Names,
+    Quantity,
     Setting,
     Statistic,
     Where,
@@ -59,6 +60,9 @@ class TableValue(Model):
         "and ours is then the median"
     )
     where: Where = Field({}, description="column of the runs table → value or list of values: the runs that count")
+    least: Quantity = Field(
+        None, description="a column of numbers of the runs table that no value of these runs can lie below, if the metric has no such bound"
+    )
     label: Label = Field(description="how the value is printed, at most 80 characters, 30 a word")
     decimals: Decimals = Field(description="how many decimals are printed, a whole number from 0 to 15")
 
