@@ -68,6 +68,66 @@ def marks(claim: dict, *runs: pd.DataFrame, **material) -> list[str]:
     return judge(claim, *runs, **material)[1]["mark"].to_list()
 
 
+def together(*findings: Finding) -> tuple[str, int]:
+    """The mark of comparisons that are judged as one, and which of them decides."""
+    found, decisive = verdicts.conjunction(findings)
+    return verdicts.mark(found, found.p), decisive
+
+
+def test_comparisons_together_hold_if_all_do_and_fail_if_one_does():
+    sure, unsure = Finding(toward=1, p=0.001), Finding(toward=1, p=0.04)
+    against, weakly, alike = Finding(toward=-1, p=0.002), Finding(toward=-1, p=0.02), Finding(p=0.6, negligible=True)
+    assert together(sure, unsure) == ("+", 1)
+    assert together(sure, Finding(toward=1, p=0.2)) == ("?", 1)
+    assert together(sure, against, unsure) == ("-", 1)
+    # The surest of three needs a third of 5 %.
+    assert together(sure, weakly, unsure) == ("?", 1)
+    assert together(sure, weakly) == ("-", 1)
+    # A sentence that asks for a difference from each is refuted by one that is alike.
+    assert together(sure, alike) == ("0", 1)
+    assert together(sure, alike, against) == ("-", 2)
+    assert together(sure, Finding(mark="?")) == ("?", 1)
+    assert together(Finding(mark="+"), sure) == ("+", 1)
+    assert together(Finding(mark="-"), sure) == ("-", 0)
+    assert together(Finding(mark="0"), Finding(mark="?")) == ("0", 0)
+
+
+def test_a_superlative_is_one_comparison_at_a_place_and_its_pairs_are_details():
+    """Of three rivals a beats two: no third of the sentence is true."""
+    check = LOWER | {"than": ["b", "c", "d"], "together": True, "every": ["workspace"]}
+    best = table({"a": sample("a"), "b": sample("b", 1), "c": sample("c", 2), "d": sample("d", 3)})
+    third = table({"a": sample("a", 1), "b": sample("b"), "c": sample("c", 2), "d": sample("d", 3)}, workspace="other")
+    claims, checks = judge({"checks": [check]}, best, third)
+    assert claims.iloc[0][["verdict", "holds"]].to_list() == ["in part", "1 of 2"]
+    assert "workspace" in claims.iloc[0]["where_it_holds"] or "in grid" in claims.iloc[0]["where_it_holds"]
+    deciding = checks[checks["primary"]]
+    assert deciding["comparison"].to_list() == ["all 3 together"] * 2
+    assert deciding["mark"].to_list() == ["+", "-"]
+    assert checks.loc[~checks["primary"], "mark"].to_list() == ["+", "+", "+", "-", "+", "+"]
+    assert judged(check | {"every": []}, third)["verdict"] == "contradicted"
+    # By chance alone, experiments of the paper's size find a the best nearly always, or nearly never.
+    assert judged(check | {"every": []}, best)["replication_probability"] > 0.6
+    assert judged(check | {"every": []}, third)["replication_probability"] < 0.1
+
+
+def test_a_superlative_holds_in_the_printed_numbers_if_all_of_it_does():
+    check = LOWER | {"than": ["b", "c"], "together": True}
+    runs = table({name: sample(name, mean) for name, mean in (("a", 0), ("b", 1), ("c", 2))})
+    for other, held in ((3.0, "1 of 1"), (0.5, "0 of 1")):
+        printed = pd.DataFrame({"method": ["a", "b", "c"], "metric": "objective", "statistic": "mean", "value": [1.0, 2.0, other], "n": 10})
+        artefacts = {"t": {"experiment": "tried", "published": "t.csv"}}
+        assert judged(check, runs, published={"t": printed}, artefacts=artefacts)["published"] == held
+
+
+def test_a_median_of_seconds_is_set_beside_the_printed_mean():
+    check = LOWER | {"metric": "cpu_s", "scale": "relative", "statistic": "median", "margin": 0.25}
+    runs = table({"a": sample("a", 10), "b": sample("b", 20)}, metric="cpu_s")
+    printed = pd.DataFrame({"method": ["a", "b"], "metric": "cpu_s", "statistic": "mean", "value": [1.0, 2.0], "n": 10})
+    artefacts = {"t": {"experiment": "tried", "published": "t.csv"}}
+    row = judged(check, runs, published={"t": printed}, artefacts=artefacts)
+    assert row[["verdict", "published"]].to_list() == ["supported", "1 of 1"]
+
+
 def over_x(slope: float, std: float = 1.0) -> pd.DataFrame:
     """Runs of one method at five values of `particles`; the mean grows with slope, the standard deviation is std times the number."""
     return pd.concat(

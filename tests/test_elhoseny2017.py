@@ -106,6 +106,12 @@ def test_the_text_swaps_two_counts_and_has_eta_end_at_0(rows):
     assert last["limit"] == pytest.approx(0.358, abs=5e-4)
 
 
+def test_a_falling_eta_accepts_less_and_two_of_four_mutations_stay_in_the_subspace(rows):
+    assert broken(rows, "more similar solutions are accepted") == {"3.3"}
+    subspace = rows[rows["rule"].str.contains("subspace")].iloc[0]
+    assert (subspace["printed"], subspace["limit"], bool(subspace["consistent"])) == (4, 2, False)
+
+
 def test_the_title_has_a_dynamic_field_and_no_table_obstacles_that_move(rows):
     assert broken(rows, "dynamic field") == {"title"}
 

@@ -15,6 +15,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
+from bezierplan.analysis import metrics
 from bezierplan.analysis.results import Results
 from bezierplan.figures import panels as kinds_of_panel
 from bezierplan.figures import sheet, style
@@ -749,3 +750,24 @@ def test_data_takes_the_defaults_of_the_options():
     pd.testing.assert_frame_equal(boxes.data(found, metric="objective"), boxes.data(found, **given))
     with pytest.raises(TypeError, match="metric"):
         boxes.data(found)
+
+
+def test_a_band_around_occupied_cells_is_shaded_and_the_clearance_written(tmp_path):
+    found = results((True, True, True))
+    frame = paths.data(found, pick=LOWEST, band=2.5)
+    clearance = frame["obstacle_clearance"].iloc[0]
+    assert clearance == pytest.approx(metrics.values(found.runs, "obstacle_clearance", found.problems).iloc[-1])
+    figure = drawn(found, [panels()[0] | {"band": 2.5}], 1, tmp_path)
+    assert any(f"clearance {clearance:.3f}" in text for text in words(figure))
+    assert not any("clearance" in text for text in words(drawn(found, panels()[:1], 1, tmp_path)))
+    (axes, *_) = figure.axes
+    band = [patch for patch in axes.patches if patch.get_zorder() == 0.6]
+    (left, bottom), (right, top) = band[0].get_path().get_extents().get_points()
+    # The occupied cells fill 10 to 30 in x and in y.
+    assert (left, bottom, right, top) == pytest.approx((7.5, 7.5, 32.5, 32.5))
+
+
+def test_a_band_needs_occupied_cells():
+    found = comparison()
+    with pytest.raises(ValueError, match="band: field: not a grid"):
+        paths.data(found._replace(runs=found.runs[found.runs["method"] == "smooth"]), pick=LOWEST, band=1.0)

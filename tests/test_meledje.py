@@ -23,7 +23,7 @@ from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
 from bezierplan.study.jobs import job, problems_job
 from bezierplan.workspaces import files, grid
-from bezierplan.workspaces.ground import centres, cheapest, edge_energy, ground_of, obstacles_met
+from bezierplan.workspaces.ground import centres, cheapest, edge_energy, ground_of, least_energy, obstacles_met
 from bezierplan.workspaces.problem import Path, Problem
 
 FOLDER = File(__file__).parents[1] / "config" / "studies" / "meledje"
@@ -356,3 +356,16 @@ def test_bad_maps_are_told_before_any_run(yard, told, tmp_path):
 
 def test_schemas_know_heights():
     assert checked.read(FOLDER / "experiments.yaml")["workspaces"]["hill"]["heights"] == "workspaces/hill_heights.txt"
+
+
+def test_closed_corners_contradict_five_printed_means_on_the_reconstructed_maps():
+    """Assumption M19 prints the optima."""
+    reason = next(each.reason for each in STUDY.assumptions if each.id == "M19")
+    below = 0
+    for table, name in (("table2", "env1_initial"), ("table3", "env1_modified"), ("table4", "env2_initial"), ("table5", "env2_modified")):
+        made = workspace(name)
+        least = least_energy(made, 1.0, True, 0, made.occupied.size - 1)
+        assert f"{least:.4f}" in reason
+        means = PUBLISHED[table].query("metric == 'objective'")["value"]
+        below += int((means < least).sum())
+    assert below == 5

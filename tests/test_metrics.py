@@ -37,6 +37,32 @@ def history_values(name: str, *history: list[float]) -> list[float]:
     return metrics.values(runs(history=list(history)), name, PROBLEMS).to_list()
 
 
+@pytest.mark.parametrize(
+    ("points", "spare"),
+    [
+        ([(25, 5), (35, 35)], 0),
+        ([(5, 5), (5, 35), (35, 35)], 0),  # the leg past the corner would enter the occupied cell
+        ([(5, 15), (5, 25), (15, 25)], 1),  # it may touch the cell's corner
+        ([(25, 5), (35, 5), (35, 35)], 1),
+        ([(25, 5), (30, 5), (35, 5), (35, 35)], 1),  # a node on a straight way is no corner
+        ([(5, 5), (20, 5), (20, 20), (35, 35)], 1),
+        ([(25, 5), (25, 5), (35, 5), (35, 35)], 1),
+        ([(25, 5), (25, 5)], 0),
+    ],
+)
+def test_corners_that_can_be_left_out(points, spare):
+    assert value("spare_corners", "polyline", points) == spare
+
+
+def test_a_curve_has_no_corners_to_leave_out():
+    assert math.isnan(value("spare_corners", "bezier", [(5, 5), (35, 5), (35, 35)]))
+
+
+def test_deviation_of_the_work_is_from_the_median_of_the_condition():
+    table = runs(experiment=["e"] * 4, condition=["a", "a", "a", "b"], method=["m"] * 4, evaluations=[90, 100, 120, 50])
+    assert metrics.values(table, "work_deviation", PROBLEMS).to_list() == pytest.approx([0.1, 0.0, 0.2, 0.0])
+
+
 def test_infeasible_run_has_no_length_but_an_objective():
     table = runs(objective=[3.0, 9.0], length=[3.0, 2.0], bound=[2.0, 2.0], feasible=[True, False])
     assert metrics.values(table, "length", PROBLEMS).to_list() == pytest.approx([3.0, math.nan], nan_ok=True)

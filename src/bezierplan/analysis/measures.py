@@ -19,6 +19,7 @@ from bezierplan.workspaces.grid import ON_LINE, Grid, embed
 
 if TYPE_CHECKING:
     import pandas as pd
+    from shapely import Geometry
 
     from bezierplan.workspaces.problem import Path, Problem, Workspace
 
@@ -128,8 +129,17 @@ def history_mean(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray
 
 def deviation(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
     """Absolute relative deviation (n,) of the length from the median of its method and condition."""
-    median = runs.groupby(["experiment", "condition", "method"])["length"].transform("median")
-    return (runs["length"] / median - 1).abs()
+    return _from_median(runs, "length")
+
+
+def work_deviation(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
+    """Absolute relative deviation (n,) of the number of evaluations from the median of its method and condition."""
+    return _from_median(runs, "evaluations")
+
+
+def _from_median(runs: pd.DataFrame, column: str) -> pd.Series:
+    median = runs.groupby(["experiment", "condition", "method"])[column].transform("median")
+    return (runs[column] / median - 1).abs()
 
 
 def gap(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
@@ -363,6 +373,35 @@ def corners(path: Path) -> int:
 
     legs = [steps for steps in map(_steps, curves.bezier_pieces(path)) if len(steps)]
     return sum(int(_headings(np.array([one[-1], other[0]]))[0] > CORNER) for one, other in itertools.pairwise(legs))
+
+
+def spare_corners(path: Path, grid: Grid) -> float:
+    """Corners of a polyline that can be left out: a straight leg that enters no occupied cell joins the corners before and after. NaN for a
+    curve.
+    """
+    import shapely
+
+    if path.curve != "polyline":
+        return np.nan
+    steps = np.diff(path.points, axis=0)
+    moved = np.hypot(*steps.T) > 0
+    places, headings = path.points[1:][moved], _headings(steps[moved])
+    turns = np.concatenate([path.points[:1], places[:-1][headings > CORNER], places[-1:]])
+    legs = shapely.linestrings(np.stack([turns[:-2], turns[2:]], axis=1))
+    inside = _inside(grid.occupied.shape, grid.occupied.tobytes(), grid.cell, grid.origin)
+    return float((~shapely.intersects(inside, legs)).sum())
+
+
+@lru_cache(maxsize=8)
+def _inside(shape: tuple[int, int], occupied: bytes, cell: float, origin: tuple[float, float]) -> Geometry:
+    """What a path must not enter: the occupied cells of a grid, a billionth of a cell smaller, since a path may touch them."""
+    import shapely
+
+    rows, columns = np.nonzero(np.frombuffer(occupied, dtype=bool).reshape(shape))
+    x, y = origin[0] + cell * columns, origin[1] + cell * rows
+    whole = shapely.union_all(shapely.box(x, y, x + cell, y + cell)).buffer(-1e-9 * cell)
+    shapely.prepare(whole)
+    return whole
 
 
 def length_over_polygon(path: Path) -> float:

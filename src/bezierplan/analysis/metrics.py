@@ -207,6 +207,13 @@ METRICS: dict[str, Metric] = {
     "corners": Metric(
         "-", "joints of a path's pieces at which its heading changes", True, partial(measures.of_path, measures.corners), step=1.0
     ),
+    "spare_corners": Metric(
+        "-",
+        "corners of a polyline that can be left out, because a free leg joins the corners before and after; none for a curve",
+        True,
+        partial(measures.of_path_on_grid, measures.spare_corners),
+        step=1.0,
+    ),
     "length_over_polygon": Metric(
         "-", "length / length of the control polygon", True, partial(measures.of_path, measures.length_over_polygon)
     ),
@@ -279,6 +286,9 @@ METRICS: dict[str, Metric] = {
     "history_mean": Metric("u", "mean over the generations of the best objective so far", False, measures.history_mean),
     "deviation": Metric(
         "-", "absolute deviation of the length from the median of its condition and method, relative", True, measures.deviation
+    ),
+    "work_deviation": Metric(
+        "-", "absolute deviation of the evaluations from the median of their condition and method, relative", False, measures.work_deviation
     ),
     "distinct_chromosomes": Metric("-", "different chromosomes in the population, mean over the generations", False),
     "mean_q": Metric("-", "mean Q statistic of the pool, mean over the generations", False),

@@ -10,6 +10,9 @@ comparisons, every comparison a mark:
 | 0 | neither, and the interval of the effect lies within the margin |
 | ? | none of these, or too little data to test |
 
+Comparisons that a check takes `together` (a superlative: the best of all in a column, or on a map) are judged as one, and are shown below
+it as secondary ones.
+
 A comparison has one mark on its own and one in the family of all comparisons of the claim's primary checks (`verdicts` explains the
 procedure). If all have to hold, every mark on its own must be + to support the claim; everything else follows from the family's marks:
 
@@ -119,7 +122,10 @@ MOST_UNITS = 10**9
 
 
 class _Judged(NamedTuple):
-    """One comparison; `comparison` is None if no runs are compared. primary: False for a secondary check."""
+    """One comparison; `comparison` is None if no runs are compared. primary: False for a secondary check.
+
+    parts: the comparisons that it takes together, if any; `comparison` is then the decisive one.
+    """
 
     number: int
     check: dict
@@ -131,6 +137,7 @@ class _Judged(NamedTuple):
     mark: str = "?"
     mark_family: str = ""
     p_family: float = math.nan
+    parts: tuple[Comparison, ...] = ()
 
 
 def judge(
@@ -257,13 +264,26 @@ def _findings(number: int, check: dict, claim: dict, name: str, material: Materi
         return [_Judged(number, check, primary, condition, words, None, finding) for condition, words, finding in found]
     if _is_timed(check) and option(check, "scale") != "relative":
         raise Untestable("absolute seconds say nothing about another machine")
-    return [
+    found = [
         _Judged(
             *(number, check, primary, comparison.place, comparison.name, comparison),
             kind.find(check, comparison, f"{name}/{number}/{comparison.name}"),
         )
         for comparison in comparisons.comparisons(check, claim, material)
     ]
+    return _together(found) if option(check, "together") else found
+
+
+def _together(found: list[_Judged]) -> list[_Judged]:
+    """The comparisons of each place as one, followed by themselves as secondary ones."""
+    places = dict.fromkeys(each.condition for each in found)
+    judged = []
+    for own in ([each for each in found if each.condition == place] for place in places):
+        finding, decisive = verdicts.conjunction([each.finding for each in own])
+        parts = tuple(each.comparison for each in own)
+        whole = own[decisive]._replace(name=f"all {len(own)} together", finding=finding, parts=parts)
+        judged += [whole, *(each._replace(primary=False) for each in own)]
+    return judged
 
 
 def _marked(judged: list[_Judged]) -> list[_Judged]:
@@ -283,7 +303,7 @@ def _in_words(each: _Judged, deciding: list[_Judged]) -> verdicts.Marked:
     metrics_differ = len({(other.check.get("metric"), other.check.get("statistic")) for other in deciding}) > 1
     factors: dict[str, Any] = {}
     if each.comparison is not None:
-        if kind_of(each.check).Options.against:
+        if kind_of(each.check).Options.against and not each.parts:
             group, other = (_group_in_words(each.check, cell) for cell in each.comparison.cells)
             factors |= {"against": other, "group": group}
         factors |= dict(each.comparison.factors)
@@ -339,10 +359,12 @@ def _printed(each: _Judged) -> tuple[float, bool | None]:
     """The effect in the printed numbers, and whether the sentence holds in them; None if they are not printed."""
     if kind_of(each.check).Options.of_printed:
         return each.finding.effect, each.mark == "+"
-    if each.comparison is None or np.isnan(each.comparison.printed).any():
+    parts = each.parts or (each.comparison,)
+    if None in parts or any(np.isnan(part.printed).any() for part in parts):
         return math.nan, None
-    effect = effects.effect(each.check, each.comparison.printed, each.comparison.cells)
-    return float(effect), bool(effects.claimed(each.check, effect, each.finding.margin))
+    printed = [effects.effect(each.check, part.printed, part.cells) for part in parts]
+    held = all(bool(effects.claimed(each.check, effect, each.finding.margin)) for effect in printed)
+    return float(effects.effect(each.check, each.comparison.printed, each.comparison.cells)), held
 
 
 def _published(deciding: list[_Judged]) -> str:
@@ -360,14 +382,17 @@ def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> 
         return math.prod(each.comparison.typical if "pick" in each.check else math.nan for each in deciding)
     held = []
     for each in deciding:
-        comparison = each.comparison
-        if comparison is None or comparison.paper_units is None:
+        every = each.parts or (each.comparison,)
+        if None in every or any(part.paper_units is None for part in every):
             return math.nan
-        points = effects.drawn_points(comparison, effects.point_statistic(each.check), name, comparison.paper_units)
-        drawn = effects.effect(each.check, points, comparison.cells)
-        if np.isnan(drawn).any():
-            return math.nan
-        held.append(effects.claimed(each.check, drawn, each.finding.margin))
+        own = []
+        for part in every:
+            points = effects.drawn_points(part, effects.point_statistic(each.check), name, part.paper_units)
+            drawn = effects.effect(each.check, points, part.cells)
+            if np.isnan(drawn).any():
+                return math.nan
+            own.append(effects.claimed(each.check, drawn, each.finding.margin))
+        held.append(np.all(own, axis=0))
     together = np.any(held, axis=0) if holds == "any" else np.all(held, axis=0)
     return float(together.mean())
 

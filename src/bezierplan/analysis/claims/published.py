@@ -9,6 +9,7 @@ import pandas as pd
 
 from bezierplan.analysis.claims import effects
 from bezierplan.analysis.claims.kinds import option
+from bezierplan.analysis.metrics import METRICS
 
 # Statistics for a check that names none: the first that is printed for every cell is used.
 _ANY_STATISTIC = ("mean", "median", "unstated", "share", "count", "min", "max")
@@ -26,8 +27,9 @@ def printed(check: dict, found: Sequence[Sequence[Printed | None]]) -> tuple[np.
 
     found: of each condition, of each cell, its rows as from `rows_of_cell`.
 
-    All use one statistic: the check's own or an unstated one; if it names none, the first of `_ANY_STATISTIC` that is printed for every
-    cell. NaN where a cell is not printed, or where two cells share a row (the paper does not distinguish them).
+    All use one statistic: the check's own or an unstated one, for a median of seconds also another; if it names none, the first of
+    `_ANY_STATISTIC` that is printed for every cell. NaN where a cell is not printed, or where two cells share a row (the paper does not
+    distinguish them).
     """
     cells = len(found[0])
     nothing = np.full(cells, np.nan), None
@@ -37,13 +39,21 @@ def printed(check: dict, found: Sequence[Sequence[Printed | None]]) -> tuple[np.
     rows = [(each.table, row) for each in found for row, _, _ in each.statistics.values()]
     if len(set(rows)) < len(rows):
         return nothing
-    named = option(check, "statistic")
-    for statistic in _ANY_STATISTIC if named in (None, "rank") else (named, "unstated"):
+    for statistic in _wanted(check):
         if all(statistic in each.statistics for each in found):
             values, runs = np.array([each.statistics[statistic][1:] for each in found]).T
             numbers = (values / runs if statistic == "count" else values).reshape(-1, cells).mean(axis=0)
             return effects.event(check, numbers), None if np.isnan(runs).all() else int(np.nanmin(runs))
     return nothing
+
+
+def _wanted(check: dict) -> tuple[str, ...]:
+    """The printed statistics that serve a check, the best first. Papers print mean times; other programs disturb medians less."""
+    named = option(check, "statistic")
+    timed = check["metric"] in METRICS and METRICS[check["metric"]].unit == "s"
+    if named in (None, "rank"):
+        return _ANY_STATISTIC
+    return (named, "unstated", *(_ANY_STATISTIC if timed and named == "median" else ()))
 
 
 class PrintedTable(NamedTuple):

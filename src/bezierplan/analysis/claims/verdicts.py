@@ -13,9 +13,12 @@ variant. The procedure is a standard one at each step:
   Comparisons that share a method are positively dependent, which the procedure allows (Benjamini and Yekutieli 2001, Ann. Stat. 29,
   1165). The least p of ten pairs is 0.002: Holm's correction over 30 comparisons can never bring it below 0.05; this one can.
 - In addition to p, a `+` or `-` needs an effect as large as the margin (Goodman, Spruill and Komaroff 2019, Am. Stat. 73, 168).
+- Comparisons that a check takes together are one comparison in the family: `+` by the intersection-union test, `-` by Bonferroni within
+  it (`conjunction`).
 - A `0` needs an interval within the margin (two one-sided tests, Schuirmann 1987, J. Pharmacokinet. Biopharm. 15, 657).
 """
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
@@ -46,6 +49,35 @@ def mark(finding: Finding, p: float) -> str:
     if finding.toward and p < ALPHA:
         return "+" if finding.toward > 0 else "-"
     return "0" if finding.negligible else "?"
+
+
+def conjunction(findings: Sequence[Finding]) -> tuple[Finding, int]:
+    """The finding that all of some (at least one) hold together, and the number of the decisive one, whose effect it has.
+
+    It holds as surely as the least sure of them (intersection-union), and fails if the surest contrary one does, corrected by Bonferroni
+    for their number. It is negligible if one of them is, since the sentence asks for a difference in each.
+    """
+    tested = [_as_tested(each) for each in findings]
+    against = [number for number, each in enumerate(tested) if each.toward < 0]
+    order = {number: 2.0 if math.isnan(each.p) else each.p for number, each in enumerate(tested)}
+    if against:
+        decisive = min(against, key=order.__getitem__)
+        p, toward = min(1.0, len(tested) * tested[decisive].p), -1
+    else:
+        open_ones = [number for number, each in enumerate(tested) if not each.toward] or list(order)
+        decisive = max(open_ones, key=lambda number: (tested[number].negligible, order[number]))
+        p, toward = tested[decisive].p, min(each.toward for each in tested)
+    negligible = any(each.negligible and not each.toward for each in tested)
+    return findings[decisive]._replace(mark="", p=p, toward=toward, negligible=negligible), decisive
+
+
+def _as_tested(finding: Finding) -> Finding:
+    """A finding whose mark does not follow from p as one that has the same mark by its p."""
+    toward = {"+": 1, "-": -1, "0": 0, "?": 0}
+    if not finding.mark:
+        return finding
+    p = 1.0 if finding.mark == "?" else 0.0
+    return finding._replace(toward=toward[finding.mark], p=p, negligible=finding.mark == "0")
 
 
 def verdict(alone: Sequence[str], together: Sequence[str], holds: str) -> str:

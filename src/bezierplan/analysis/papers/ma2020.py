@@ -5,7 +5,9 @@ import math
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis.results import Results, path_of, select
+from bezierplan.analysis.claims.material import Untestable
+from bezierplan.analysis.measures import obstacle_clearance
+from bezierplan.analysis.results import Results, path_of, pick, select
 from bezierplan.geometry import curves
 from bezierplan.planners.parts.genetic import swap_tails
 
@@ -42,7 +44,8 @@ def corners_and_curve(*, points: list[list[float]]) -> pd.DataFrame:
 def crossover(*, parents: list[list[int]], bits: int, cut: int) -> pd.DataFrame:
     """Marks of Figure 2, column `drawn`: two chromosomes as rows of cell numbers before and after the crossover's tails are swapped.
 
-    bits: of a cell number. cut: the number of genes before the cut.
+    parents: cells, counted from 0 as the planner does; they are shown as equation (10) counts, from 1. bits: of a cell number. cut: the
+    number of genes before the cut.
     """
     own = np.array(parents)
     children = own.copy()
@@ -55,7 +58,9 @@ def crossover(*, parents: list[list[int]], bits: int, cut: int) -> pd.DataFrame:
                 role = "accent" if gene == own[0, place] else "muted"
                 box = {"mark": "cell", "role": role, "x": place, "y": height, "width": 0.96, "height": 0.8}
                 frames.append(
-                    pd.DataFrame([box, {"mark": "text", "role": "note", "x": place, "y": height, "text": str(gene)}]).assign(drawn=drawn)
+                    pd.DataFrame([box, {"mark": "text", "role": "note", "x": place, "y": height, "text": str(gene + 1)}]).assign(
+                        drawn=drawn
+                    )
                 )
         line = _line(np.array([(cut - 0.5, -0.7), (cut - 0.5, 2.0)]), "second", f"cut between genes {cut} and {cut + 1}")
         frames.append(line.assign(drawn=drawn))
@@ -72,6 +77,24 @@ def _dots(points: np.ndarray, role: str, label: str) -> pd.DataFrame:
 
 def _marks(mark: str, points: np.ndarray, role: str, label: str) -> pd.DataFrame:
     return pd.DataFrame({"mark": mark, "group": label, "role": role, "x": points[:, 0], "y": points[:, 1], "label": label})
+
+
+def drawn_farther(
+    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame], *, method: str, other: str
+) -> tuple[str, float, None, int]:
+    """Claim C6: whether the path drawn of one method, its shortest, stays farther from obstacles than that drawn of another, on every map.
+
+    The effect is the least excess in clearance, the units are the paths. Raises Untestable if a method has no feasible run on a map.
+    """
+    found = results[check["experiment"]]
+    excess = []
+    for _, runs in found.runs.groupby("problem"):
+        drawn = [pick(runs[runs["method"] == name], {"lowest": "length"}) for name in (method, other)]
+        if any(run is None for run in drawn):
+            raise Untestable("a method has no feasible run on a map")
+        own, beside = obstacle_clearance(pd.DataFrame(drawn), found.problems)
+        excess.append(own - beside)
+    return "+" if min(excess) > 0 else "-", float(min(excess)), None, 2 * len(excess)
 
 
 def nearest_lattice_length(length: float, side: int) -> tuple[int, int]:
@@ -188,6 +211,14 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
         cells = parameters[workspace, "obstacle_coverage"] / 100 * parameters[workspace, "grid_size"] ** 2
         rule = "a share of the cells is a whole number of cells"
         rows.append(_said("parameters", f"workspace={workspace}", rule, cells, round(cells), abs(cells - round(cells)) < 1e-9))
+    # Equation (11) as printed: M + ceil(num, M) + 0.5, where ceil rounds down.
+    heights = side + np.arange(1, side * side + 1) // side + 0.5
+    rule = "equation (11) gives the heights of the cells' centres: cells whose height lies on the map"
+    inside = int((heights < side).sum())
+    rows.append(_said("text", "3.2, equation (11)", rule, inside, side * side, inside == side * side))
+    listed = int((published["parameters"]["parameter"] == "control_points").sum())
+    rule = "Data Availability: all required parameters are listed, here: the number of control points"
+    rows.append(_said("text", "Data Availability", rule, listed, 1, listed >= 1))
     return rows
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pandas as pd
 import shapely
 
+from bezierplan.analysis.results import Results, select
 from bezierplan.analysis.statistics import holm
 from bezierplan.planners import node_genetic, planner_settings
 from bezierplan.planners.parts.node_mutation import Direction, Mutation, ObstacleNode, Ref21Test, WithoutObstacle, mutate
@@ -160,6 +161,35 @@ def _path(places: Sequence[tuple[float, float]], role: str, label: str) -> Itera
     """Marks of a line through places and of its nodes."""
     for x, y in places:
         yield {"mark": "line", "role": role, "group": label, "x": x, "y": y, "label": label}
+
+
+def less_work_for_a_path(
+    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame], *, group: str, other: str
+) -> tuple[str, float, tuple[float, float], int]:
+    """Claim C7: whether one kind of first population takes less work than another until a run ends feasible, in every environment.
+
+    The work is the mean number of evaluations of a run over the share of feasible ones. The effect is the largest ratio of both kinds'
+    work, with the least and largest ratio that their Clopper-Pearson intervals allow; the units are the runs of the smaller kind.
+    """
+    runs = select(results[check["experiment"]].runs, check["where"])
+    ratios = []
+    for _, own in runs.groupby("workspace"):
+        (least, typical, most), (least_other, typical_other, most_other) = (_work(own[own["initial"] == name]) for name in (group, other))
+        ratios.append((typical / typical_other, least / most_other, most / least_other))
+    typical, low, high = (max(each) for each in zip(*ratios, strict=True))
+    mark = "+" if high < 1 else "-" if low > 1 else "?"
+    return mark, typical, (low, high), int(runs.groupby(["workspace", "initial"]).size().min())
+
+
+def _work(runs: pd.DataFrame) -> tuple[float, float, float]:
+    """Evaluations for each feasible path: least, found and most, infinite where no run is feasible."""
+    from scipy import stats
+
+    found = stats.binomtest(int(runs["feasible"].sum()), len(runs))
+    share = found.proportion_ci(method="exact")
+    with np.errstate(divide="ignore"):
+        least, typical, most = (float(np.divide(runs["evaluations"].mean(), each)) for each in (share.high, found.statistic, share.low))
+    return least, typical, most
 
 
 def audit(published: dict[str, pd.DataFrame]) -> list[dict]:

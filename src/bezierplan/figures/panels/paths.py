@@ -18,7 +18,7 @@ from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.figures.panels.lines import axis_label, published
 from bezierplan.geometry import curves
 from bezierplan.schema.checked import closest
-from bezierplan.schema.model import Column, Experiment, Flag, Label, Line, Metric, Model, Names, PrintedTable, at_most, wrong
+from bezierplan.schema.model import Column, Experiment, Flag, Label, Line, Metric, Model, Names, Positive, PrintedTable, at_most, wrong
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.kinds import of_length
 from bezierplan.workspaces.limits import LARGEST
@@ -142,6 +142,10 @@ class Options(RunsPanel):
         None, description="the name of another problem of the experiment, on cells as many: those that differ from it are marked"
     )
     cell_optimum: Flag = Field(False, description="whether the least path from cell centre to cell centre is drawn, true or false")
+    band: Positive = Field(
+        None,
+        description="a distance from the occupied cells of a grid: the band around them is shaded, and the path's clearance is written",
+    )
     printed: PrintedTable = Field(None, description="the name of a published table whose shortest length is given beside the run's")
     view: View = Field(None, description="what is seen: [lowest x, highest x, lowest y, highest y]", min_length=4, max_length=4)
 
@@ -185,6 +189,7 @@ def data(
     letters: Sequence[str] | None,
     changed_from: str | None,
     cell_optimum: bool,
+    band: float | None,
     printed: str | None,
     view: Sequence[float] | None,
 ) -> pd.DataFrame:
@@ -199,8 +204,9 @@ def data(
     of its values, which the rows name, and drawn without control points; the column `measure` has its value of this metric. bare: only
     start and target, whatever the run. control: whether control points are drawn with polygon and hull, alone, or not at all. letters:
     those next to start and target. changed_from: the problem with different occupied cells. cell_optimum: whether the shortest path along
-    cell centres is drawn. printed: a published table; the column of this name has its shortest length for the runs. view: the visible part
-    of the workspace, as bounds; the rows still include everything.
+    cell centres is drawn. band: a distance from occupied cells; the column obstacle_clearance has that of the path. printed: a published
+    table; the column of this name has its shortest length for the runs. view: the visible part of the workspace, as bounds; the rows still
+    include everything.
     Raises ValueError unless either pick or explicit is given and all runs, of one value of hue, are of one problem and one method, and if a
     curve cannot have such points.
     """
@@ -228,6 +234,10 @@ def data(
         return table(drawn).assign(problem=problem.name)
     if printed is not None and results.published is not None:
         names["printed"] = _shortest_printed(results, printed)
+    if band is not None:
+        if not isinstance(problem.workspace, Grid):
+            raise ValueError(f"band: {problem.name}: not a grid, and has no occupied cells")
+        names["obstacle_clearance"] = _clearance(results, run)
     if cell_optimum:
         drawn["optimum"] = _cell_optimum(problem, results.runs.iloc[0])
     path = None if run is None else path_of(run)
@@ -284,6 +294,13 @@ def _cell_optimum(problem: Problem, run: pd.Series) -> np.ndarray:
     return np.array([grid.centre(number) for number in way[::-1]])
 
 
+def _clearance(results: Results, run: pd.Series | None) -> float:
+    """The least distance of a run's path to occupied cells; NaN if it has none or collides."""
+    if run is None:
+        return np.nan
+    return float(metrics.values(results.runs.loc[[run.name]], "obstacle_clearance", results.problems).iloc[0])
+
+
 def _shortest_printed(results: Results, name: str) -> float:
     """The shortest length in a published table for the runs; NaN without one."""
     table = results.published[results.published["table"] == name]
@@ -323,6 +340,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
         workspaces.shade(axes, workspaces.parts(workspace))
         workspaces.scale(axes, workspace.unit)
         _draw_changes(axes, frame, workspace)
+        if panel.get("band"):
+            _draw_band(axes, workspace, panel["band"])
     if "hue" in panel:
         note = _draw_side_by_side(axes, frame, scene, panel)
     else:
@@ -335,6 +354,18 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     if scene.narrow:
         axes.locator_params(nbins=4, integer=True)
     return note
+
+
+def _draw_band(axes: Axes, grid: Grid, width: float) -> None:
+    """Shade what is nearer to occupied cells than a width."""
+    import shapely
+    from shapely.plotting import patch_from_polygon
+
+    rows, columns = np.nonzero(grid.occupied)
+    x, y = grid.origin[0] + grid.cell * columns, grid.origin[1] + grid.cell * rows
+    cells = shapely.union_all(shapely.box(x, y, x + grid.cell, y + grid.cell))
+    for part in shapely.get_parts(shapely.difference(shapely.buffer(cells, width), cells)):
+        axes.add_patch(patch_from_polygon(part, facecolor=style.LIGHT_BLUE, edgecolor="none", zorder=0.6))
 
 
 def _draw_changes(axes: Axes, frame: pd.DataFrame, workspace: Workspace) -> None:
@@ -351,12 +382,10 @@ def _draw_changes(axes: Axes, frame: pd.DataFrame, workspace: Workspace) -> None
 
 def _write_letter(axes: Axes, place: np.ndarray, letter: str) -> None:
     """Write a letter next to a place, on the side towards the panel's centre."""
-    from matplotlib import patheffects
-
     inwards = np.where(place <= [np.mean(axes.get_xlim()), np.mean(axes.get_ylim())], 1, -1)
-    halo = [patheffects.withStroke(linewidth=2, foreground=style.FREE)]
     beside = {"xytext": (13, 5) * inwards, "textcoords": "offset points", "ha": "center", "va": "center"}
-    axes.annotate(letter, place, weight="bold", zorder=7, path_effects=halo, **beside)
+    # Without a halo, which would look like a gap in a path.
+    axes.annotate(letter, place, weight="bold", zorder=7, **beside)
 
 
 def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
@@ -394,18 +423,25 @@ def _note(frame: pd.DataFrame, unit: str, narrow: bool) -> str:
         return run_note(frame, "no path")
     if narrow:
         repeat = row["run"].rpartition("/")[2]
-        return f"repeat {repeat}{'' if row['feasible'] else ' (not feasible)'}\nlength {row['length']:.2f} {unit}"
+        words = [f"length {row['length']:.2f} {unit}", *_clear(row)]
+        return f"repeat {repeat}{'' if row['feasible'] else ' (not feasible)'}\n" + ", ".join(words)
     control = frame.loc[frame["part"].isin(["control", "points"]), ["x", "y"]]
     words = [f"length {row['length']:.2f} {unit}"]
     if not control.empty:
         words.append(f"{len(control.drop_duplicates())} of {len(control)} control points distinct")
-    lines = [", ".join(words), feasible_note(frame)]
+    lines = [", ".join([*words, *_clear(row)]), feasible_note(frame)]
     if "printed" in frame and np.isfinite(row["printed"]):
         lines.append(f"shortest printed {row['printed']:.2f} {unit}")
     if (frame["part"] == "optimum").any():
         cells, bound = (_joined(frame[frame["part"] == part]) for part in ("optimum", "bound"))
         lines.append(f"shortest between cell centres {cells:.2f}, at any angle {bound:.2f}")
     return run_note(frame, *lines)
+
+
+def _clear(row: pd.Series) -> list[str]:
+    """The clearance of the path, if the band is drawn."""
+    clearance = row.get("obstacle_clearance", np.nan)
+    return [f"clearance {clearance:.3f}"] if np.isfinite(clearance) else []
 
 
 def _joined(points: pd.DataFrame) -> float:

@@ -70,6 +70,10 @@ MARGIN = (
     "difference of the same cells if it is smaller"
 )
 WORK = "the metric of counted work that is judged instead of seconds, which differ from machine to machine and are only reported"
+TOGETHER = (
+    "true: a sentence such as `the best of all`, whose comparisons at one place (one combination of `every`) make one mark: + if all "
+    "are +, - if any is -; they are shown as secondary ones; left out otherwise"
+)
 POOL = "a list of columns whose values are averaged with equal weight"
 GROUPS = "a list of values of the column `across`, or rest: the artefact's groups that are not named"
 THAN = "likewise: what the groups are compared with, each with each"

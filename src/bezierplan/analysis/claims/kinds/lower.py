@@ -53,6 +53,7 @@ from bezierplan.analysis.claims.kinds import (
     SIDE,
     STATISTIC,
     THAN,
+    TOGETHER,
     WORK,
     Columns,
     Comparing,
@@ -85,6 +86,7 @@ class Options(Comparing):
     direction: Literal["lower", "higher"] = Field(description=SIDE)
     statistic: Literal["rank", "mean", "median", "iqr", "range", "min", "max"] = Field("rank", description=STATISTIC)
     least: Positive = Field(None, description="the claimed least effect, a number above 0; left out: any effect")
+    together: Literal[True] = Field(None, description=TOGETHER)
     work: Metric = Field(None, description=WORK)
     failures: Literal["drop", "last", "count"] = Field("drop", description=FAILURES)
 

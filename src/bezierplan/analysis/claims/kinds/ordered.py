@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims.effects import BETWEEN_GROUPS, pairs_in_words
-from bezierplan.analysis.claims.kinds import PAIRED, SECONDARY, SIDE, STATISTIC, Comparing, Group, lower, with_itself
+from bezierplan.analysis.claims.kinds import PAIRED, SECONDARY, SIDE, STATISTIC, TOGETHER, Comparing, Group, lower, with_itself
 from bezierplan.schema.model import Flag, listed
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ class Options(Comparing):
     order: listed(listed(Group), least=2) = Field(description="tiers, the best first: a list of lists of groups")
     direction: Literal["lower", "higher"] = Field(description=SIDE)
     statistic: Literal["rank", "mean", "median", "iqr", "range", "min", "max"] = Field("rank", description=STATISTIC)
+    together: Literal[True] = Field(None, description=TOGETHER)
 
     @model_validator(mode="after")
     def _check_order(self) -> Options:

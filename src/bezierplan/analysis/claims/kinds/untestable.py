@@ -1,0 +1,22 @@
+"""A sentence of the paper that nothing here can test, with the reason."""
+
+from __future__ import annotations
+
+from typing import NoReturn
+
+from pydantic import Field
+
+from bezierplan.analysis.claims.kinds import Check
+from bezierplan.analysis.claims.material import Material, Untestable
+from bezierplan.schema.model import Line
+
+
+class Options(Check):
+    """Keys of a check."""
+
+    reason: Line = Field(description="why nothing here can test it, one line")
+
+
+def findings(check: dict, claim: dict, material: Material) -> NoReturn:
+    """None. Raises Untestable with the reason."""
+    raise Untestable(check["reason"])
