@@ -74,7 +74,8 @@ def study(claims: list[content.Claim], numbers: list[content.Number]) -> content
     return content.Study(
         address="one",
         title=HOSTILE,
-        outcome={"numbers": 2, "reproduced": 1, "supported": 1},
+        paper=content.Paper(title=HOSTILE, where="A journal, 2000", doi="10.1/x"),
+        outcome={"numbers": 2, "agrees": 1, "supported": 1},
         claims=claims,
         tables=[table, listing],
         figures=[],
@@ -130,7 +131,11 @@ def run(feasible: bool) -> content.Run:
 
 def page() -> content.Page:
     """A study `one` with three claims, four numbers, two tables, an open choice, a check, three runs and two drives."""
-    numbers = [number("a/length", "reproduced"), number("b/length", "not reproduced"), number("a/objective", "not told apart")]
+    numbers = [
+        number("a/length", "agrees"),
+        number("b/length", "disagrees"),
+        number("a/objective", "inconclusive", why="interval without an end on that side"),
+    ]
     numbers.append(number("c/length", "", published=None, primary=False, counted=False))
     own = {"one": study([claim("C1", "supported"), claim("C2", "contradicted"), claim("C3", "undecided", finding=True)], numbers)}
     workspace = {"kind": "grid", "unit": "unit", "cell": 1, "rows": ["....", ".##.", "...."], "bounds": [0, 4, 0, 3]}
@@ -149,4 +154,8 @@ def page() -> content.Page:
     runs = {f"one/first/p/a/{n}": run(feasible=n < 2) for n in range(3)}
     runs |= {"one/circles/p/a/0": drive("circles", True), "one/cells/p/a/0": drive("cells", False)}
     made = {"problems": {"one/first/p": problem} | moving, "workspaces": {"one/first/p": workspace, "one/circles/p": round_things}}
-    return content.Page(scale="smoke", answer=answer.answer(own), studies=own, runs=runs, **made)
+    row = ["One et al. (2000)", "1 / 1 / 1 of 3"]
+    said = content.Headline(sentences=["Of 3 published numbers, 1 agrees."], columns=["paper", HOSTILE], rows={"one": row})
+    return content.Page(
+        scale="smoke", about_scale=["Scale smoke is small."], headline=said, answer=answer.answer(own), studies=own, runs=runs, **made
+    )

@@ -31,7 +31,7 @@ STEP, NOISE = 3.0, 0.0005
 TRUTHS = {"claimed_feasible", "feasible", "optimal", "near_optimal", "infeasible", "keeps_distance", "best_corridor", "collided"}
 SPREADS = ("iqr", "std", "range")
 PROBLEM = Problem("", from_lines(["..", ".."], 1.0, "m"), (0.5, 0.5), (1.5, 1.5))
-FALSE_VERDICTS = {"contradicted", "no effect", "seldom", "in part"}
+FALSE_VERDICTS = {"contradicted", "no effect", "partly"}
 
 
 @cache

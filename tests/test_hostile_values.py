@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import metrics, statistics, summary
+from bezierplan.analysis import headline, metrics, statistics, summary
 from bezierplan.figures import sheet
 from bezierplan.running.digest import source_digest
 from bezierplan.schema.checked import Fault
@@ -733,8 +733,8 @@ def test_numbers_without_claims_are_audited(folder):
 
 def test_a_summary_without_claims():
     claims = summary.read_claims([])
-    numbers = pd.DataFrame({"study": ["walks"], "counted": [True], "verdict": ["reproduced"]})
-    assert summary.outcome(numbers, claims).loc["walks", ["numbers", "reproduced", "supported"]].to_list() == [1, 1, 0]
+    numbers = pd.DataFrame({"study": ["walks"], "counted": [True], "verdict": ["agrees"]})
+    assert headline.outcome(numbers, claims).loc["walks", ["numbers", "agrees", "supported"]].to_list() == [1, 1, 0]
 
 
 def test_a_folder_of_a_study_with_braces(folder):

@@ -6,7 +6,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import summary
+from bezierplan.analysis import headline, summary
 from bezierplan.commands import outcome
 from bezierplan.schema.checked import Fault
 
@@ -19,28 +19,28 @@ def test_readme_shows_the_outcome_that_is_kept():
 
 
 def comparison(values, ours, methods=("plain", "other")):
-    reproduced = [abs(a - b) < 1 for a, b in zip(values, ours, strict=True)]
+    in_range = [abs(a - b) < 1 for a, b in zip(values, ours, strict=True)]
     frame = {"problem": "a", "method": methods, "metric": "length", "value_published": values, "value_ours": ours}
-    verdict = ["reproduced" if each else "not reproduced" for each in reproduced]
-    return pd.DataFrame(frame | {"statistic": "mean", "n_published": 10, "reproduced": reproduced, "verdict": verdict, "possible": True})
+    verdict = ["agrees" if each else "disagrees" for each in in_range]
+    return pd.DataFrame(frame | {"statistic": "mean", "n_published": 10, "in_range": in_range, "verdict": verdict, "possible": True})
 
 
 def test_readings_that_do_not_decide_are_not_counted():
     numbers = summary.numbers({("one", "table1"): comparison([1.0, 9.0], [1.2, 1.2])}, {"one": ["other"]})
     claims = pd.DataFrame(
-        {"study": "one", "id": ["C1", "C1", "C2"], "primary": [True, False, True], "verdict": ["supported", "in part", "no effect"]}
+        {"study": "one", "id": ["C1", "C1", "C2"], "primary": [True, False, True], "verdict": ["supported", "partly", "no effect"]}
         | {"finding": False}
     )
-    found = summary.outcome(numbers, claims).loc["one"]
-    assert (found["numbers"], found["reproduced"]) == (1, 1)
-    assert (found["supported"], found["in part"], found["no effect"]) == (1, 0, 1)
+    found = headline.outcome(numbers, claims).loc["one"]
+    assert (found["numbers"], found["agrees"]) == (1, 1)
+    assert (found["supported"], found["partly"], found["no effect"]) == (1, 0, 1)
 
 
-def test_published_number_that_is_wrong_is_counted_as_not_reproduced():
+def test_published_number_that_is_wrong_is_counted_as_one_that_disagrees():
     numbers = summary.numbers({("one", "table1"): comparison([1.0, 9.0], [1.2, 1.2])}, {"one": []})
     claims = pd.DataFrame({"study": ["one"], "id": ["C1"], "primary": [True], "finding": [False], "verdict": ["supported"]})
-    found = summary.outcome(numbers, claims).loc["one"]
-    assert (found["numbers"], found["reproduced"]) == (2, 1)
+    found = headline.outcome(numbers, claims).loc["one"]
+    assert (found["numbers"], found["agrees"]) == (2, 1)
 
 
 def test_numbers_without_a_published_value_are_left_out():
@@ -68,8 +68,9 @@ def test_repeats_in_another_table_are_counted_once():
 
 def test_impossible_and_unjudged_numbers_are_not_counted():
     table = comparison([1.0, 9.0], [1.2, 9.0])
-    assert counted(table.assign(possible=[True, False])) == [True, False]
-    assert counted(table.assign(reproduced=pd.array([None, True], dtype="boolean"))) == [False, True]
+    assert counted(table.assign(possible=[True, False], metric="feasible")) == [True, False]
+    assert counted(table.assign(possible=[True, False])) == [True, True]  # a length below the bound is impossible on our map alone
+    assert counted(table.assign(in_range=pd.array([None, True], dtype="boolean"))) == [False, True]
 
 
 def test_counts_that_add_up_are_one_number_fewer():
@@ -80,34 +81,34 @@ def test_counts_that_add_up_are_one_number_fewer():
 
 
 def test_outcome_counts_verdicts_of_numbers():
-    words = ["reproduced", "not told apart", "cannot fail", "not reproduced"]
+    words = ["agrees", "disagrees", "inconclusive", "inconclusive"]
     table = comparison([1.0, 2.0, 3.0, 9.0], [1.2, 2.2, 3.2, 4.0], list("abcd")).assign(verdict=words)
     claims = pd.DataFrame({"study": ["one"], "id": ["C1"], "primary": [True], "finding": [False], "verdict": ["supported"]})
-    found = summary.outcome(summary.numbers({("one", "table1"): table}, {"one": []}), claims).loc["one"]
-    assert found[["numbers", *words]].to_list() == [4, 1, 1, 1, 1]
+    found = headline.outcome(summary.numbers({("one", "table1"): table}, {"one": []}), claims).loc["one"]
+    assert found[["numbers", "agrees", "disagrees", "inconclusive"]].to_list() == [4, 1, 1, 2]
 
 
 def test_readings_that_agree_stand_next_to_the_verdict():
     claims = pd.DataFrame({"study": "one", "id": ["C1", "C1", "C2", "C3"], "variant": ["", "other", "", ""]})
-    claims = claims.assign(primary=[True, False, True, True], finding=False, verdict=["supported", "in part", "no effect", "undecided"])
+    claims = claims.assign(primary=[True, False, True, True], finding=False, verdict=["supported", "partly", "no effect", "undecided"])
     tried = pd.DataFrame({"study": "one", "claim": ["C1", "C1", "C2"], "changed": [False, False, True]})
     found = summary.with_readings(claims, tried)
     assert found["readings"].to_list() == ["3 of 3", "", "1 of 2", ""]
     assert found["verdict"].equals(claims["verdict"])
     numbers = summary.numbers({("one", "table1"): comparison([1.0], [1.2], ["plain"])}, {"one": []})
-    assert summary.outcome(numbers, found).loc["one", "stable"] == "1 of 2"
-    assert "stable" not in summary.outcome(numbers, claims)
+    assert headline.outcome(numbers, found).loc["one", "stable"] == "1 of 2"
+    assert "stable" not in headline.outcome(numbers, claims)
 
 
 def test_verdict_at_the_papers_size_stands_next_to_that_of_many_runs():
     claims = pd.DataFrame({"study": "one", "id": ["C1", "C1", "C2"], "variant": ["", "other", ""]})
     extended, full = (
-        claims.assign(verdict=["supported", "mostly", "contradicted"]),
-        claims.assign(verdict=["undecided", "in part", "contradicted"]),
+        claims.assign(verdict=["supported", "partly", "contradicted"]),
+        claims.assign(verdict=["undecided", "partly", "contradicted"]),
     )
     found = summary.with_papers_size(extended, full.iloc[::-1])
-    assert found["verdict"].to_list() == ["supported", "mostly", "contradicted"]
-    assert found["verdict_papers_size"].to_list() == ["undecided", "in part", "contradicted"]
+    assert found["verdict"].to_list() == ["supported", "partly", "contradicted"]
+    assert found["verdict_papers_size"].to_list() == ["undecided", "partly", "contradicted"]
 
 
 def test_missing_results_are_told_in_one_line(tmp_path, monkeypatch):

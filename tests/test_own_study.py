@@ -132,8 +132,8 @@ def test_own_planner_stands_in_the_table_and_the_comparison(results):
 
 def test_wrong_published_number_is_flagged(results):
     comparison = pd.read_csv(results / "tables" / "lengths.comparison.csv").query("metric == 'length'").set_index("method")
-    assert comparison.loc["low", "reproduced"]
-    assert not comparison.loc["high", "reproduced"]
+    assert comparison.loc["low", "in_range"]
+    assert not comparison.loc["high", "in_range"]
 
 
 def test_published_length_below_the_bound_is_audited(results):
@@ -182,4 +182,5 @@ def test_figure_shows_the_own_planner(results):
 
 def test_summary_counts_the_study(results):
     summary = (results.parent / "summary.md").read_text()
-    assert "| bends | 2 | 1 | 0 | 0 | 1 | 1 | 0 | 0 | 0 | 1 | 0 | 0 | 0 |" in summary
+    assert "Of 2 published numbers, 1 agrees and 1 disagrees. Of 2 claims, 1 is supported and 1 is contradicted." in summary
+    assert "| 1 / 1 / 0 of 2 |" in summary

@@ -128,7 +128,7 @@ def test_numbers_sort_by_value_and_stay_linked(visit, small):
     tab = visit(small, "one/table1/b/length/mean")
     cell = tab.locator("[id='one/table1/b/length/mean']")
     expect(cell).to_be_visible()
-    expect(cell).to_contain_text("not reproduced")
+    expect(cell).to_contain_text("disagrees")
     expect(tab.locator("#page-tip")).to_be_visible()
     expect(tab.locator("#page-tip")).to_contain_text("95 % interval 10.2 to 11.1")
 
@@ -171,7 +171,7 @@ def test_search_finds_a_number_by_the_words_of_its_table(visit, small):
 @pytest.mark.parametrize(
     ("question", "addresses", "answer"),
     [
-        ("What are the published and the reproduced mean objective of a?", ["one/table1/a/objective/mean"], "10.51 → 10.71 not told apart"),
+        ("What are the published and the reproduced mean objective of a?", ["one/table1/a/objective/mean"], "10.51 → 10.71 inconclusive"),
         ("Are the paths of a lower than those of b?", ["one/C1", "one/C2", "one/C3"], "Method a is the best (C1)."),
         ("Which claims of one fail?", ["one/C2"], "C2 Method a is the best (C2)."),
         ("Which claims of one hold", ["one/C1"], "claim, supported"),

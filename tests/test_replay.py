@@ -1,5 +1,7 @@
 """One run again, from its name alone."""
 
+import re
+
 import pandas as pd
 import pytest
 from studies import study
@@ -55,3 +57,19 @@ def test_a_run_of_equal_length_but_another_verdict_or_path_is_not_equal(column, 
     stored = {"length": 3.0, "feasible": True, "collision_at": 1.0, "path_points": [0.0, 0.0, 1.0, 2.0]}
     assert replay.equal(pd.Series(stored), stored)
     assert not replay.equal(pd.Series(stored), stored | {column: other})
+
+
+def told(name):
+    found = replay.replay(name, STUDIES)
+    run = found.runs.iloc[0]
+    return dict(replay.described(run, found.problems[run["problem"]], STUDIES["song2016"].experiments["routes"]))
+
+
+def test_a_run_is_told_in_words_with_units_and_four_digits():
+    feasible = told("song2016/routes/0_15/rounded/0")
+    assert re.fullmatch(r"[0-9.]{4,6} unit, [0-9.]+ % above the shortest path", feasible["length"])
+    assert (feasible["feasible"], feasible["planner's check"], feasible["clearance"]) == ("yes", "feasible", "0 unit")
+    assert "note" not in feasible
+    colliding = told("song2016/routes/0_15/straight_line/99999")
+    assert re.fullmatch(r"no: enters an obstacle at [0-9.]+,[0-9.]+, at most [0-9.]+ unit deep", colliding["feasible"])
+    assert colliding["note"].startswith("no table has this repeat: this experiment has ")

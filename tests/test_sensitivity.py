@@ -22,7 +22,7 @@ def test_a_verdict_changes_where_the_alternative_has_another_one():
     }
     tried = {
         "O2_8": pd.DataFrame(
-            {"id": ["C1", "C2"], "verdict": ["supported", "in part"], "holds": ["1 of 1", "2 of 3"], "effect": [1.25, -2.0]}
+            {"id": ["C1", "C2"], "verdict": ["supported", "partly"], "holds": ["1 of 1", "2 of 3"], "effect": [1.25, -2.0]}
         ),
         "O3_0": pd.DataFrame({"id": ["C3"], "verdict": ["supported"], "holds": ["1 of 1"], "effect": [0.5]}),
     }
@@ -30,7 +30,7 @@ def test_a_verdict_changes_where_the_alternative_has_another_one():
     assert table[["assumption", "alternative", "claim"]].to_numpy().tolist() == [["O2", 8, "C1"], ["O2", 8, "C2"], ["O3", 0, "C3"]]
     assert table["changed"].to_list() == [False, True, True]
     assert table["verdict"].to_list() == ["supported", "contradicted", "no effect"]
-    assert table["verdict_alternative"].to_list() == ["supported", "in part", "supported"]
+    assert table["verdict_alternative"].to_list() == ["supported", "partly", "supported"]
     assert table["effect"].to_list() == [1.5] * 3
     assert table["effect_alternative"].to_list() == [1.25, -2.0, 0.5]
     assert table["default"].to_list() == ['{"mine": 4}', '{"mine": 4}', "1"]

@@ -141,14 +141,14 @@ OURS = np.random.default_rng(3).normal(100, 5, size=60)
 
 @pytest.mark.parametrize("size", [None, 1, 10, 60])
 @pytest.mark.parametrize(("published", "quantile"), [(0.0, 0.0), (200.0, 1.0)])
-def test_value_far_outside_is_not_reproduced(size, published, quantile):
+def test_value_far_outside_is_out_of_range(size, published, quantile):
     assert prediction("mean", OURS, published, size, 2, generator("far"))[:2] == (quantile, False)
 
 
 @pytest.mark.parametrize("size", [None, 1, 10, 60])
-def test_value_in_the_middle_is_reproduced(size):
-    quantile, reproduced, *_ = prediction("mean", OURS, float(np.median(OURS)), size, 2, generator("middle"))
-    assert reproduced
+def test_value_in_the_middle_is_in_range(size):
+    quantile, in_range, *_ = prediction("mean", OURS, float(np.median(OURS)), size, 2, generator("middle"))
+    assert in_range
     assert 0.2 < quantile < 0.8
 
 
@@ -175,9 +175,9 @@ def test_too_few_runs_are_not_judged():
 
 @pytest.mark.parametrize(("values", "published"), [(np.array([]), 1.0), (OURS, math.nan)])
 def test_nothing_to_judge(values, published):
-    quantile, reproduced, *_ = prediction("mean", values, published, 10, 2, generator("nothing"))
+    quantile, in_range, *_ = prediction("mean", values, published, 10, 2, generator("nothing"))
     assert math.isnan(quantile)
-    assert reproduced is None
+    assert in_range is None
 
 
 def _drawn(name: str, size: int, rng: np.random.Generator) -> np.ndarray:
@@ -254,7 +254,7 @@ def test_test_can_fail_on_the_side_of_the_published_number_alone(published, ends
 
 
 def test_power_is_the_share_of_numbers_beyond_the_ends():
-    assert statistics.told_apart(np.array([1.0, 2.0, 3.0, 9.0]), (2.0, 4.0)) == 0.5
+    assert statistics.power(np.array([1.0, 2.0, 3.0, 9.0]), (2.0, 4.0)) == 0.5
 
 
 def test_no_extreme_lies_beyond_what_is_possible():
@@ -273,7 +273,7 @@ def test_predicted_mean_has_the_error_of_both_samples():
 
 
 def test_prediction_interval_is_what_the_quantile_accepts():
-    """A published number is reproduced where it lies between the ends, and beyond them it is not."""
+    """A published number is in range where it lies between the ends, and beyond them it is not."""
     values = np.random.default_rng(0).normal(10, 2, 30)
     for name in ("mean", "median", "min"):
         *_, low, high = prediction(name, values, 10.0, 10, None, generator(name))
@@ -300,8 +300,8 @@ def test_experiments_within_one_group_vary_as_the_groups_do():
     drawn = statistics.predicted_within("mean", groups, 10, generator("within"))
     assert set(drawn) == set(map(float, range(8)))
     together = np.concatenate(groups)
-    quantile, reproduced, *_ = prediction("mean", together, 7.0, 10, None, generator("within"), groups=groups)
-    assert reproduced
+    quantile, in_range, *_ = prediction("mean", together, 7.0, 10, None, generator("within"), groups=groups)
+    assert in_range
     assert quantile == pytest.approx(1 - 1 / 16, abs=0.03)
     assert prediction("mean", together, 7.0, 10, None, generator("within"))[1] is False
 

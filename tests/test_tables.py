@@ -130,7 +130,7 @@ def test_empty_group_gives_an_empty_cell():
     assert tables.pivot(ours, SPEC, {})["length: fast"].to_list() == ["", ""]
     found = row(compare(ours), "long", "fast", "length")
     assert found["n_ours"] == 0
-    assert found[["value_ours", "best", "low95_ours", "quantile_published", "reproduced", "gap"]].isna().all()
+    assert found[["value_ours", "best", "low95_ours", "quantile_published", "in_range", "gap"]].isna().all()
     assert found["share_feasible"] == 0
 
 
@@ -202,7 +202,7 @@ def test_columns_of_the_comparison():
     assert ",".join(compare(results()).columns) == (
         "problem,method,metric,statistic,unit,n_published,value_published,n_ours,n_asked,value_ours,best,mean,median,"
         "quartile1,quartile3,"
-        "low95_ours,high95_ours,low95_predicted,high95_predicted,quantile_published,reproduced,can_fail,power,verdict,identified,possible,"
+        "low95_ours,high95_ours,low95_predicted,high95_predicted,quantile_published,in_range,can_fail,power,verdict,why,identified,possible,"
         "share_claimed,share_feasible,bound,gap"
     )
 
@@ -221,7 +221,7 @@ def test_published_numbers_and_those_of_variants():
     assert row(table, "long", "faster", "length")["value_published"] == 10
     assert row(table, "long", "faster", "evaluations")["n_published"] == 20
     empty = row(table, "brief", "plain", "length")
-    assert empty[["n_published", "value_published", "quantile_published", "reproduced"]].isna().all()
+    assert empty[["n_published", "value_published", "quantile_published", "in_range"]].isna().all()
     assert empty["low95_ours"] < empty["value_ours"] < empty["high95_ours"]
 
 
@@ -231,11 +231,11 @@ def test_statistic_is_named_as_in_the_paper():
     assert set(table.loc[table["metric"] == "evaluations", "statistic"]) == {"median"}
 
 
-@pytest.mark.parametrize(("number", "reproduced"), [(10.0, True), (10.9, False), (8.1, False)])
-def test_wrong_published_number_is_flagged(number, reproduced):
+@pytest.mark.parametrize(("number", "in_range"), [(10.0, True), (10.9, False), (8.1, False)])
+def test_wrong_published_number_is_flagged(number, in_range):
     found = row(compare(results(), plain=number), "long", "plain", "length")
     assert found["value_published"] == number
-    assert found["reproduced"] == reproduced
+    assert found["in_range"] == in_range
 
 
 def test_seconds_of_another_machine_are_shown_but_not_judged():
@@ -247,7 +247,7 @@ def test_seconds_of_another_machine_are_shown_but_not_judged():
     spec = SPEC | {"values": [{"metric": "cpu_s", "statistic": "mean", "label": "time", "decimals": 3}]}
     found = row(comparison.compare(ours, spec, given, {}, [], "study/table1"), "long", "plain", "cpu_s")
     assert (found["value_published"], found["value_ours"]) == (200.0, pytest.approx(0.01))
-    assert pd.isna(found["reproduced"])
+    assert pd.isna(found["in_range"])
 
 
 def test_shares_bound_and_gap():
@@ -268,30 +268,30 @@ def least(plain, fast=11.0, n=20):
     return row(table, "long", "plain", "length")
 
 
-def test_published_minimum_below_the_bound_is_not_reproduced():
+def test_published_minimum_below_the_bound_disagrees():
     found = least(8.99)
-    assert not found["reproduced"]
-    assert (found["can_fail"], found["verdict"], found["possible"]) == (True, "not reproduced", False)
+    assert not found["in_range"]
+    assert (found["can_fail"], found["verdict"], found["possible"]) == (True, "disagrees", False)
 
 
 def test_published_minimum_between_the_bound_and_ours_cannot_fail():
     found = least(9.0)
-    assert found["reproduced"]
+    assert found["in_range"]
     assert found["low95_predicted"] == 9.0
-    assert (found["can_fail"], found["verdict"]) == (False, "cannot fail")
+    assert (found["can_fail"], found["verdict"], found["why"]) == (False, "inconclusive", "interval without an end on that side")
 
 
-def test_what_would_accept_another_method_too_is_not_told_apart():
+def test_what_would_accept_another_method_too_is_inconclusive():
     ours = results().runs.query("feasible and problem == 'long' and method == 'plain'")["length"]
     apart, alike = (compare(results(), plain=f"{ours.median()}"), least(float(ours.min()) + 0.05, fast=float(ours.min()) + 0.06))
-    assert (alike["reproduced"], alike["power"], alike["verdict"]) == (True, 0.0, "not told apart")
+    assert (alike["in_range"], alike["power"], alike["verdict"]) == (True, 0.0, "inconclusive")
     found = row(apart, "long", "plain", "length")
-    assert (found["power"], found["verdict"]) == (float(found["low95_predicted"] > 10 or found["high95_predicted"] < 10), "not told apart")
+    assert (found["power"], found["verdict"]) == (float(found["low95_predicted"] > 10 or found["high95_predicted"] < 10), "inconclusive")
 
 
 def test_without_another_method_a_tenth_is_what_matters():
     found = row(compare(results()), "long", "fast", "evaluations")
-    assert (found["power"], found["verdict"]) == (1.0, "reproduced")
+    assert (found["power"], found["verdict"]) == (1.0, "agrees")
 
 
 def test_number_that_the_metric_cannot_have_is_not_possible():
@@ -338,13 +338,13 @@ def test_published_file(tmp_path):
 def test_table_without_published_numbers():
     table = comparison.compare(results(), SPEC, comparison.read_published(None, SPEC), {}, [], "study/extra")
     assert len(table) == 8
-    assert table[["n_published", "value_published", "quantile_published", "reproduced"]].isna().all(axis=None)
+    assert table[["n_published", "value_published", "quantile_published", "in_range"]].isna().all(axis=None)
     assert table["value_ours"].notna().all()
 
 
 def test_too_few_runs_are_not_judged():
     table = compare(results(repeats=3))
-    assert table["reproduced"].isna().all()
+    assert table["in_range"].isna().all()
     assert not row(table, "long", "plain", "length")[["quantile_published"]].isna().any()
 
 
@@ -370,7 +370,7 @@ def test_a_comparison_shows_published_numbers_with_what_chance_gives(tmp_path):
     second = pd.DataFrame([("plain", 3, "length", "mean", 10, 4.5, 10, 4.0, 3.0, 5.0)], columns=["method", "obstacles", *columns])
     rows = pd.concat([first, first.assign(workspace="other"), first.assign(value_published=None), first.assign(metric="rank")])
     for name, table in (("table3", rows), ("table6", second)):
-        table.assign(quantile_published=0.25, reproduced=True, verdict="reproduced").to_csv(
+        table.assign(quantile_published=0.25, in_range=True, verdict="agrees", why="").to_csv(
             tmp_path / f"{name}.comparison.csv", index=False
         )
     spec = {"kind": "comparison", "of": ["table3", "table6"], "metrics": ["length"], "where": {"workspace": "equal"}}

@@ -116,9 +116,11 @@ def test_the_section_has_a_sentence_for_each_study():
 
 
 def test_the_section_stands_in_the_summary():
-    comparison = pd.DataFrame({"method": ["tried"], "metric": ["length"], "statistic": ["mean"], "value_published": [1.0]})
+    comparison = pd.DataFrame(
+        {"method": ["tried"], "metric": ["length"], "statistic": ["mean"], "value_published": [1.0], "value_ours": [1.0]}
+    )
     numbers = summary.numbers(
-        {("one", "table1"): comparison.assign(reproduced=True, possible=True, n_published=1, verdict="reproduced")}, {"one": []}
+        {("one", "table1"): comparison.assign(in_range=True, possible=True, n_published=1, verdict="agrees", n_asked=1)}, {"one": []}
     )
     claims = pd.DataFrame(columns=["study", "id", "primary", "finding", "verdict"])
     text = summary.report(numbers, claims, pd.DataFrame([described()]), {"one": "The first"}, "full")

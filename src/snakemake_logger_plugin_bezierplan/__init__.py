@@ -1,10 +1,12 @@
 """What Snakemake shows while it works: in a terminal a bar a rule with jobs done, jobs in all, and time left; without one a line every 15
-seconds or less often; at the end where the results are, or the one line in which each job that failed says why.
+seconds or less often; at the end where the results are, how long it took and what came out, or the one line in which each job that failed
+says why.
 
 Snakemake finds a logger by its package's name; `logger: bezierplan` in profiles/default names this one.
 It is the rich logger with other columns.
 """
 
+import re
 import time
 from datetime import timedelta
 from logging import LogRecord
@@ -22,6 +24,8 @@ LOCKED = (
     "LockException: {}: another Snakemake works in this folder, or was killed here; if none works, free it by `snakemake --unlock` and "
     "start again (`make smoke`, `make reproduce` and `make extended` do so themselves)"
 )
+KNOWN: set[str] = set()
+"""Names of targets, which the workflow tells."""
 BETWEEN_LINES = 15.0
 """Least time between two lines of progress without a terminal, in seconds."""
 
@@ -42,6 +46,7 @@ class LogHandler(RichHandler):
         )
         self.started = self.last_line = time.monotonic()
         self.folders: set[str] = set()
+        self.pages: set[Path] = set()
         self.reasons: list[str] = []
         self.frames: LogRecord | None = None  # Snakemake's account of a failed job, until it is known whether the job's own is better
 
@@ -58,16 +63,30 @@ class LogHandler(RichHandler):
         if event == LogEvent.ERROR and exception == "LockException":
             self.reasons.append(LOCKED.format(Path.cwd()))
             return
+        if event == LogEvent.ERROR and exception == "MissingRuleException" and (reason := unknown_target(record.getMessage())):
+            self.reasons.append(reason)
+            return
+        if event is None and record.getMessage().startswith("Elapsed time: "):
+            return
         self.show_frames()
         super().emit(record)
         if event == LogEvent.JOB_INFO:
             self.folders.update(folder for file in record.output or [] if (folder := results_folder(file)))
+            self.pages.update(Path(file) for file in record.output or [] if Path(file).name == "index.html")
         elif event == LogEvent.JOB_FINISHED and not self.console.is_terminal:
             self.show_progress()
         elif event is None and "Complete log" in record.getMessage():
             done, total = self.event_handler.completed, self.event_handler.total_jobs
             if done == total and self.folders:
-                self.console.print(f"Results: {', '.join(sorted(self.folders))}", soft_wrap=True, highlight=False)
+                self.show_end()
+
+    def show_end(self) -> None:
+        """Print where the results are, how long it took, what came out, and last the page."""
+        lines = [f"Results: {', '.join(sorted(self.folders))}", f"Time: {shown(time.monotonic() - self.started)}"]
+        for page in sorted(self.pages):
+            lines += [*headline(page.parent), f"Open {page} in a browser: file://{page.resolve()}"]
+        for line in lines:
+            self.console.print(line, soft_wrap=True, highlight=False, markup=False)
 
     def reason_of(self, job: int) -> str:
         """Why a job failed, as its log says in its last line; empty if it does not."""
@@ -108,6 +127,27 @@ def results_folder(file: str) -> str | None:
     """The folder of results that a reader looks into for an output file, such as results/full/song2016; None for other files."""
     parts = Path(file).parts
     return "/".join(parts[: min(3, len(parts) - 1)]) if parts[0] == "results" and len(parts) > 2 else None
+
+
+def unknown_target(message: str) -> str:
+    """What to say of a target that no rule makes, from Snakemake's words; empty for other words."""
+    from bezierplan.schema.checked import closest
+
+    found = re.search(r"No rule to produce (\S+)", message)
+    if not found or not KNOWN:
+        return ""
+    if "/" in found[1]:
+        return f"{found[1]}: no rule makes this file; `python -m bezierplan list` lists what there is"
+    return f"{found[1]}: no target{closest(found[1], KNOWN)}"
+
+
+def headline(folder: Path) -> list[str]:
+    """The headline of the results in a folder, as its summary has it, one sentence per line; none if there is no summary."""
+    file = folder / "summary.md"
+    if not file.is_file():
+        return []
+    bold = [line for line in file.read_text(encoding="utf-8").splitlines() if line.startswith("**Of ") and line.endswith("**")]
+    return bold[0].strip("*").replace(". ", ".\n").splitlines() if bold else []
 
 
 def shown(seconds: float) -> str:

@@ -17,11 +17,12 @@ One row for each group of runs, metric and statistic; an empty cell means that t
 | low95_ours, high95_ours | 95 % bootstrap interval of value_ours; empty below two runs, and for min, max and range |
 | low95_predicted, high95_predicted | 95 % prediction interval for the number printed by an experiment of n_published runs |
 | quantile_published | quantile of the published number in experiments of n_published runs; in our runs if n_published is empty |
-| reproduced | whether it lies in the central 95 %. Ours are rounded like the printed one, ties count; empty for times, and below six runs |
+| in_range | whether it lies in the central 95 %. Ours are rounded like the printed one, ties count; empty for times, and below six runs |
 | can_fail | whether a number on the published one's side of ours could have been rejected (`statistics.can_fail`) |
 | power | share of the numbers that matter (`_rivals`) that would have been rejected instead of the published one |
 | identified | cells of the paths whose length the published number is to the last digit (`identified`), and the chance of a match |
-| verdict | identified; not reproduced; cannot fail; not told apart (reproduced, with a power below one half); reproduced |
+| verdict | identified; disagrees; inconclusive; agrees |
+| why | why it is inconclusive: the interval has no end on that side, or contains most of the numbers that matter |
 | possible | whether the metric can have the published value, and ranks add up. A length below the bound of our map is judged all the same |
 | share_claimed | share of all runs whose path passed the planner's own test |
 | share_feasible | share of all runs whose path the certified checker accepts |
@@ -42,16 +43,21 @@ from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.seeds import generator
 
 LEAST_POWER = 0.5
-"""Share of the numbers that matter which a test has to refuse before what it accepts counts as reproduced."""
+"""Share of the numbers that matter which an interval has to exclude before a number in it agrees."""
 
 MATTERS = 0.1
 """Where the paper prints no other method's number in a place, numbers that differ from ours by this share are those that matter."""
 
+VERDICTS = ("identified", "agrees", "disagrees", "inconclusive")
+
+NO_END, TOO_WIDE = "interval without an end on that side", "interval that contains most numbers of the competing methods"
+"""Why a number in the interval is inconclusive: the test could not have failed, or has no power."""
+
 _COLUMNS = [
     *("metric", "statistic", "unit", "n_published", "value_published", "n_ours", "n_asked", "value_ours"),
     *("best", "mean", "median", "quartile1", "quartile3", "low95_ours", "high95_ours"),
-    *("low95_predicted", "high95_predicted", "quantile_published", "reproduced", "can_fail", "power", "verdict", "identified", "possible"),
-    *("share_claimed", "share_feasible", "bound", "gap"),
+    *("low95_predicted", "high95_predicted", "quantile_published", "in_range", "can_fail", "power", "verdict", "why"),
+    *("identified", "possible", "share_claimed", "share_feasible", "bound", "gap"),
 ]
 
 
@@ -91,7 +97,7 @@ def compare(
     table.loc[_impossible_ranks(both, published, spec), "possible"] = False
     found = pd.Series([_identified(row, spec.get("identify", []), results.problems) for row in both.to_dict("records")], dtype=object)
     table["identified"], table["verdict"] = found, table["verdict"].astype(object).mask(found.notna(), "identified")
-    whole, marks = ("n_published", "n_ours", "n_asked"), ("reproduced", "can_fail", "possible")
+    whole, marks = ("n_published", "n_ours", "n_asked"), ("in_range", "can_fail", "possible")
     return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))
 
 
@@ -167,7 +173,7 @@ def _rivals(row: dict[str, Any], given: list[str], printed: dict[str, np.ndarray
 def _described(row: dict[str, Any], keys: list[str], name: str, rivals: np.ndarray) -> dict[str, Any]:
     """Our side of one row, and the published number's position in it; empty for a published number without runs of ours."""
     if pd.isna(row["runs"]):
-        return {"n_ours": 0, "n_asked": 0, "reproduced": None, "can_fail": None, "possible": None}
+        return {"n_ours": 0, "n_asked": 0, "in_range": None, "can_fail": None, "possible": None}
     numbers = row["numbers"]
     statistic = row["statistic"]
     row_name = "/".join([name, *(f"{key}={row[key]}" for key in keys), row["metric"], statistic])
@@ -184,7 +190,7 @@ def _described(row: dict[str, Any], keys: list[str], name: str, rivals: np.ndarr
         statistic, numbers, published, size, row["decimals"], generator(f"{row_name}/prediction"), single, groups
     )
     # Seconds of another machine are shown, not judged.
-    reproduced = None if row["unit"] == "s" else placed.reproduced
+    in_range = None if row["unit"] == "s" else placed.in_range
     return {
         "n_ours": len(numbers),
         "n_asked": int(row["asked"]),
@@ -196,13 +202,13 @@ def _described(row: dict[str, Any], keys: list[str], name: str, rivals: np.ndarr
         "low95_predicted": placed.low,
         "high95_predicted": placed.high,
         "quantile_published": placed.quantile,
-        "reproduced": reproduced,
-        **_judged(row, reproduced, statistics.statistic(statistic, numbers), (placed.low, placed.high), size, rivals),
+        "in_range": in_range,
+        **_judged(row, in_range, statistics.statistic(statistic, numbers), (placed.low, placed.high), size, rivals),
     }
 
 
 def _judged(
-    row: dict[str, Any], reproduced: bool | None, ours: float, predicted: tuple[float, float], size: int | None, rivals: np.ndarray
+    row: dict[str, Any], in_range: bool | None, ours: float, predicted: tuple[float, float], size: int | None, rivals: np.ndarray
 ) -> dict[str, Any]:
     """Whether the test of one row could have failed, its power, and its verdict; empty if it is not judged."""
     published = row["value_published"]
@@ -211,18 +217,19 @@ def _judged(
     limits = _limits(row["statistic"], (row["least"], row["most"]), size)
     half = 0.0 if pd.isna(row["decimals"]) else 0.5 * 10.0 ** -row["decimals"]
     judged = {"possible": not (published < limits[0] - half or published > limits[1] + half)}
-    if reproduced is None:
+    if in_range is None:
         return judged | {"can_fail": None}
     ends = (predicted[0] - half, predicted[1] + half)
-    can_fail = not reproduced or statistics.can_fail(published, ours, predicted, limits)
-    power = statistics.told_apart(rivals if len(rivals) else ours * np.array([1 - MATTERS, 1 + MATTERS]), ends)
-    if not reproduced:
-        verdict = "not reproduced"
-    elif not can_fail:
-        verdict = "cannot fail"
-    else:
-        verdict = "reproduced" if power >= LEAST_POWER else "not told apart"
-    return judged | {"can_fail": can_fail, "power": power, "verdict": verdict}
+    can_fail = not in_range or statistics.can_fail(published, ours, predicted, limits)
+    power = statistics.power(rivals if len(rivals) else ours * np.array([1 - MATTERS, 1 + MATTERS]), ends)
+    why = "" if not in_range else NO_END if not can_fail else _without_power(len(rivals)) if power < LEAST_POWER else ""
+    verdict = "disagrees" if not in_range else "inconclusive" if why else "agrees"
+    return judged | {"can_fail": can_fail, "power": power, "verdict": verdict, "why": why}
+
+
+def _without_power(rivals: int) -> str:
+    """Why an interval that excludes too few of the numbers that matter is inconclusive. rivals: how many the paper prints."""
+    return TOO_WIDE if rivals else f"interval that contains numbers {MATTERS:.0%} off ours".replace("%", " %")
 
 
 def _limits(statistic: str, single: tuple[float, float], size: int | None) -> tuple[float, float]:

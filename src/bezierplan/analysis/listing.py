@@ -18,8 +18,9 @@ _SHOWN = {
     "low95_predicted": "95 % prediction interval, from",
     "high95_predicted": "to",
     "quantile_published": "quantile of the published",
-    "reproduced": "within",
+    "in_range": "within",
     "verdict": "verdict",
+    "why": "why inconclusive",
 }
 _DECIMALS = 3
 

@@ -209,13 +209,13 @@ def predicted_within(name: str, groups: list[np.ndarray], size: int, rng: np.ran
 class Prediction(NamedTuple):
     """A published number among those that experiments of the paper's size would print, judging by our runs.
 
-    quantile: its position, ties counted half. reproduced: whether it is within the central 95 %, ties counted in its favour; None below
+    quantile: its position, ties counted half. in_range: whether it is within the central 95 %, ties counted in its favour; None below
     `LEAST_RUNS` values. low, high: ends of the central 95 %. If our values do not determine how far the least or the largest of others may
     lie, an end is the least or the largest possible value, or infinite.
     """
 
     quantile: float
-    reproduced: bool | None
+    in_range: bool | None
     low: float
     high: float
 
@@ -246,8 +246,8 @@ def prediction(
     if decimals is not None:
         least, most, published = np.round(least, decimals), np.round(most, decimals), round(published, decimals)
     below, above = np.mean(most < published), np.mean(least > published)
-    reproduced = bool(below <= 1 - tail and above <= 1 - tail) if len(values) >= LEAST_RUNS else None
-    return Prediction(float((below + 1 - above) / 2), reproduced, float(low), float(high))
+    in_range = bool(below <= 1 - tail and above <= 1 - tail) if len(values) >= LEAST_RUNS else None
+    return Prediction(float((below + 1 - above) / 2), in_range, float(low), float(high))
 
 
 def _experiments(
@@ -301,7 +301,7 @@ def _trimmed_mean(values: np.ndarray) -> float:
     return float(np.sort(values)[cut : n - cut].mean())
 
 
-def told_apart(others: np.ndarray, ends: tuple[float, float]) -> float:
+def power(others: np.ndarray, ends: tuple[float, float]) -> float:
     """The share of other numbers (n,), n at least 1, that lie beyond the ends of an interval: the power of a test against them."""
     return float(np.mean((others < ends[0]) | (others > ends[1])))
 

@@ -3,13 +3,12 @@
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis import explained, worth
+from bezierplan.analysis import explained, headline, worth
 from bezierplan.analysis.claims.judge import CLAIM_COLUMNS
-from bezierplan.analysis.claims.verdicts import VERDICTS
+from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.metrics import METRICS
 
 HEADING = "# Outcome at scale "
-NUMBERS = ("identified", "reproduced", "not told apart", "cannot fail", "not reproduced")
 
 
 def read_claims(files: list[str]) -> pd.DataFrame:
@@ -53,7 +52,7 @@ def _counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
     # A length below the bound is impossible on our map alone.
     of_map = numbers["metric"].map(lambda metric: isinstance(METRICS[metric].least, str)).astype(bool)
     possible = numbers["possible"].astype("boolean").fillna(True) | of_map
-    counted = (numbers["primary"] & numbers["reproduced"].notna() & possible).to_numpy(dtype=bool)
+    counted = (numbers["primary"] & numbers["in_range"].notna() & possible).to_numpy(dtype=bool)
     same = ["study", "metric", "statistic", "value_published", *({"method"} & set(keys))]
     for _, rows in numbers[counted].groupby(same, dropna=False, sort=False):
         for n, (index, row) in enumerate(rows.iterrows()):
@@ -71,20 +70,6 @@ def _counted(numbers: pd.DataFrame, keys: list[str]) -> np.ndarray:
 def _same_place(one: pd.Series, other: pd.Series, keys: list[str]) -> bool:
     """Whether two rows have the same key columns as far as both have them."""
     return all(one[key] == other[key] for key in keys if not (pd.isna(one[key]) or pd.isna(other[key])))
-
-
-def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
-    """One row per study: the published numbers that count, in total and by verdict of the test (`comparison`), and claims by verdict.
-
-    numbers: as from `numbers`. claims: as from `claims.judge`. Only primary readings and variants count.
-    """
-    judged = numbers[numbers["counted"]]
-    deciding = claims[claims["primary"] & ~claims["finding"].astype(bool)]
-    verdicts = pd.crosstab(deciding["study"], deciding["verdict"]).reindex(columns=VERDICTS, fill_value=0)
-    counts = pd.crosstab(judged["study"], judged["verdict"]).reindex(columns=NUMBERS, fill_value=0)
-    counts.insert(0, "numbers", counts.sum(axis=1))
-    table = counts.join(verdicts, how="outer").fillna(0).astype(int)
-    return table.join(_stable(deciding)) if "readings" in deciding else table
 
 
 def with_readings(claims: pd.DataFrame, tried: pd.DataFrame) -> pd.DataFrame:
@@ -115,21 +100,6 @@ def with_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
     return both[columns]
 
 
-def _stable(claims: pd.DataFrame) -> pd.Series:
-    """How many of a study's claims have the same verdict under all readings, out of those on which alternatives were tried, as text."""
-    tried = claims[claims["readings"].fillna("") != ""]
-    agree = tried["readings"].str.split(" of ")
-    stable = (agree.str[0] == agree.str[1]).groupby(tried["study"]).agg(["sum", "size"])
-    return pd.Series({study: f"{same} of {total}" for study, same, total in stable.itertuples()}, name="stable", dtype=object)
-
-
-def markdown(table: pd.DataFrame) -> str:
-    """A table as markdown, its index first."""
-    rows = [[table.index.name or "", *table.columns], ["---"] * (table.shape[1] + 1)]
-    rows += [[name, *values] for name, values in zip(table.index, table.to_numpy().tolist(), strict=True)]
-    return "\n".join("| " + " | ".join(str(cell).replace("|", "\\|") for cell in row) + " |" for row in rows)
-
-
 def report(
     numbers: pd.DataFrame,
     claims: pd.DataFrame,
@@ -138,24 +108,19 @@ def report(
     scale: str,
     readings: tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame] | None = None,
 ) -> str:
-    """The summary of a scale as markdown: the outcome of each study, what its methods are worth, then its claims with their
+    """The summary of a scale as markdown: the headline, the methods beside the baseline, then the claims of each study with their
     verdicts.
 
     measured: rows with the columns `worth.COLUMNS`. readings: the tables of `explained`, if the search for readings has been made.
     """
     parts = [
         f"{HEADING}{scale}",
-        "`numbers`: published numbers that can be judged and say something new. `identified`: those that are to the last digit the length "
-        "of a path that an enumeration finds (`audit.csv` names it). `reproduced`: those within the central 95 % of what our runs give by "
-        "chance in an experiment of the paper's size, where that range refuses at least half of the numbers that the paper prints of other "
-        "methods in the same place (where it prints none, a number 10 % lower or higher). `not told apart`: within the "
-        "range, which refuses fewer of them. `cannot fail`: within the range, which on the printed number's side of ours has no end, or "
-        "ends where nothing possible lies beyond. `not reproduced`: outside. The other columns count claims by verdict; our own findings "
-        "are not among them. `stable`: claims with the same verdict under every reading of what the paper leaves open, out of those on "
-        "which other readings were tried, at the paper's number of runs. `verdict_papers_size`: the verdict from as many runs as the paper "
-        "made; `replication_probability`: how often an experiment of that size shows what the claim says. Readings that do not decide are "
-        "left out here; `numbers.csv` and `claims.csv` have them.",
-        markdown(outcome(numbers, claims)),
+        headline.markdown(headline.headline(numbers, claims, measured, titles)),
+        "Numbers count if they can be judged and say something new; our own findings are not among the claims. `audit.csv` names the paths "
+        "of identified numbers. The verdict is the same under every interpretation of what the paper leaves open for so many of the claims "
+        "on which others were tried, at the paper's number of runs. `verdict_papers_size`: the verdict from as many runs as the paper "
+        "made; `replication_probability`: how often an experiment of that size shows what the claim says. Interpretations that do not "
+        "decide are left out here; `numbers.csv` and `claims.csv` have them.",
         *worth.section(measured, titles),
         *(explained.section(*readings, titles) if readings else []),
     ]
@@ -179,7 +144,7 @@ def _listed(claims: pd.DataFrame) -> str:
     # Read from a file with gaps, whole numbers are floats.
     for column in shown.columns.intersection(["units_to_decide", "n"]):
         shown[column] = [f"{value:.0f}" if isinstance(value, float) else value for value in shown[column]]
-    return markdown(shown)
+    return table_text(shown)
 
 
 def with_block(text: str, name: str, block: str) -> str:

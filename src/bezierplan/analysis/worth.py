@@ -29,8 +29,11 @@ COLUMNS = (
 # A path whose largest curvature times its length is below this, in radians, is straight.
 _STRAIGHT = 1e-6
 
-# In the sentence, ratios closer to 1 than this are equal to it.
-_EQUAL = 1e-3
+# In sentences, ratios closer to 1 than this are equal to it.
+EQUAL = 1e-3
+
+BASELINE = "the exact shortest path with rounded corners"
+"""What the baseline is, in words."""
 
 
 def measured(found: dict[str, Results], baseline: str) -> pd.DataFrame:
@@ -82,7 +85,7 @@ def section(rows: pd.DataFrame, titles: dict[str, str]) -> list[str]:
     if rows.empty:
         return []
     return [
-        "## Beside the exact shortest path with rounded corners",
+        f"## Comparison with {BASELINE}",
         "The baseline is what a practitioner could drive without any of these planners. `worth.csv` has the numbers: medians over "
         "conditions of a method's median over the baseline's.",
         *(f"**{titles[study]}** {sentence(own)}" for study, own in rows.groupby("study", sort=False)),
@@ -93,13 +96,13 @@ def sentence(own: pd.DataFrame) -> str:
     """What follows from the rows of one study."""
     count = len(own)
     parts = [
-        f"{_counted(count, 'method')}: feasible in {_span(100 * own['feasible'])} % of the runs (baseline: "
-        f"{_number(100 * own['feasible_baseline'].min())} %), at {_span(own['cpu'])} times the baseline's CPU time."
+        f"{_counted(count, 'method')}: feasible in {span(100 * own['feasible'])} % of the runs (baseline: "
+        f"{number(100 * own['feasible_baseline'].min())} %), at {span(own['cpu'])} times the baseline's CPU time."
     ]
     if own["length"].notna().any():
-        cornered, less = np.isinf(own["curvature"]).sum(), (own["curvature"] < 1 - _EQUAL).sum()
+        cornered, less = np.isinf(own["curvature"]).sum(), (own["curvature"] < 1 - EQUAL).sum()
         parts.append(
-            f"Feasible paths are {_span(own['length'])} times as long; those of {less} of {_counted(count, 'method')} curve less, those of "
+            f"Feasible paths are {span(own['length'])} times as long; those of {less} of {_counted(count, 'method')} curve less, those of "
             f"{cornered} have corners."
         )
     return " ".join([*parts, _verdict(own)])
@@ -108,7 +111,7 @@ def sentence(own: pd.DataFrame) -> str:
 def _verdict(own: pd.DataFrame) -> str:
     """Whether a method that is feasible as often as the baseline is shorter or curves less."""
     reliable = own[own["feasible"] >= own["feasible_baseline"]]
-    better = reliable[(reliable["length"] < 1 - _EQUAL) | (reliable["curvature"] < 1 - _EQUAL)]
+    better = reliable[(reliable["length"] < 1 - EQUAL) | (reliable["curvature"] < 1 - EQUAL)]
     if reliable.empty:
         return "No method is feasible as often as the baseline."
     if better.empty:
@@ -117,7 +120,7 @@ def _verdict(own: pd.DataFrame) -> str:
     found = "is shorter or curves less" if len(better) == 1 else "are shorter or curve less"
     return (
         f"Of the {len(reliable)} feasible as often as the baseline, {len(better)} {found}; the least curved, {best['method']}, has "
-        f"{_number(best['curvature'])} times the curvature, {_number(best['length'])} times the length and {_number(best['cpu'])} times "
+        f"{number(best['curvature'])} times the curvature, {number(best['length'])} times the length and {number(best['cpu'])} times "
         "the CPU time."
     )
 
@@ -126,12 +129,12 @@ def _counted(count: int, noun: str) -> str:
     return f"{count} {noun}" + ("s" if count != 1 else "")
 
 
-def _span(values: pd.Series) -> str:
+def span(values: pd.Series, digits: int = 3) -> str:
     """The least and the largest of some numbers, once if they print alike."""
-    low, high = _number(values.min()), _number(values.max())
+    low, high = number(values.min(), digits), number(values.max(), digits)
     return low if low == high else f"{low} to {high}"
 
 
-def _number(value: float) -> str:
-    """Three digits, without an exponent."""
-    return f"{float(f'{value:.3g}'):,.10g}"
+def number(value: float, digits: int = 3) -> str:
+    """Some digits, without an exponent."""
+    return f"{float(f'{value:.{digits}g}'):,.10g}"

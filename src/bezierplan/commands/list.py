@@ -5,6 +5,7 @@ from argparse import ArgumentParser
 from bezierplan.commands import add_studies
 from bezierplan.planners import planner_module, planner_settings
 from bezierplan.study import reading
+from bezierplan.study.artefacts import in_printed_order
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import SCALES
 
@@ -32,7 +33,7 @@ def lines(study: Study) -> list[str]:
     """A study's title, artefacts, methods, workspaces and experiments, one per line."""
     found = [f"{study.key}: {study.title}"]
     for kind, artefacts in (("table", study.tables), ("figure", study.figures)):
-        found += [f"  {kind:12}{study.key}_{name:12} {content.title}" for name, content in artefacts.items()]
+        found += [f"  {kind:12}{study.key}_{name:12} {artefacts[name].title}" for name in in_printed_order(artefacts)]
     for name, method in study.methods.items():
         variant = f", a variant of {method.variant_of}" if method.variant_of else ""
         found.append(f"  {'method':12}{name:20} {study.planner(name)}{variant}")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from bezierplan.analysis import summary
+from bezierplan.analysis import headline, summary
 from bezierplan.commands import forecast, replay
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
@@ -67,8 +67,9 @@ def write() -> None:
 
 
 def table(kept: Path) -> str:
-    """The README's table, from the numbers and claims in a folder, and below it the scale, from the summary there."""
-    counts = summary.outcome(pd.read_csv(kept / "numbers.csv"), pd.read_csv(kept / "claims.csv"))
+    """The README's headline, from the tables in a folder, and below it the scale, from the summary there."""
+    titles = {key: study.title for key, study in reading.load(reading.read_config({})).items()}
+    found = headline.headline(*(pd.read_csv(kept / name) for name in ("numbers.csv", "claims.csv", WORTH)), titles)
     heading = (kept / "summary.md").read_text(encoding="utf-8").splitlines()[0]
     scale = heading.removeprefix(summary.HEADING)
-    return f"{summary.markdown(counts)}\n\nScale `{scale}`: {SCALES[scale]}"
+    return f"{headline.markdown(found)}\n\nScale `{scale}`: {SCALES[scale]}"

@@ -4,18 +4,20 @@ from argparse import ArgumentParser
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import results
 from bezierplan.commands import add_studies
 from bezierplan.commands.digest import read_rows, row_text
 from bezierplan.figures import animation, sheet
+from bezierplan.geometry import checker, curves
 from bezierplan.running import rides
 from bezierplan.study import reading
 from bezierplan.study.definition import Study
+from bezierplan.study.experiments import SCALES, Experiment
 from bezierplan.study.replays import replay
-
-SHOWN = ("objective", "length", "bound", "claimed_feasible", "feasible", "collision_at", "collision_depth", "clearance", "evaluations")
+from bezierplan.workspaces.problem import Problem
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
@@ -26,8 +28,8 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     studies = reading.load(reading.read_config({"studies": given.studies} if given.studies else {}))
     found = replay(given.run, studies)
     run = found.runs.iloc[0]
-    for column in SHOWN:
-        print(f"{column:18}{run[column]}")
+    for name, text in described(run, found.problems[run["problem"]], studies[run["study"]].experiments[run["experiment"]]):
+        print(f"{name:18}{text}")
     for file, stored in stored_runs(given.run, Path("results")).items():
         print(f"{'stored in':18}{file}: {'equal' if equal(run, stored) else 'NOT EQUAL'}")
     picture = Path("results/replay") / f"{given.run}.svg"
@@ -36,6 +38,35 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     if found.worlds:
         animate(found, picture.with_suffix(".gif"))
         print(f"{'animation':18}{picture.with_suffix('.gif')}")
+
+
+def described(run: pd.Series, problem: Problem, experiment: Experiment) -> list[tuple[str, str]]:
+    """Names and values to print of a run, with units and four digits; what a run does not have is left out."""
+    unit = problem.workspace.unit
+    lines = [("objective", f"{run['objective']:.4g}")] if np.isfinite(run["objective"]) else []
+    if np.isfinite(run["length"]):
+        excess = f", {100 * (run['length'] / run['bound'] - 1):.4g} % above the shortest path" if 0 < run["bound"] < np.inf else ""
+        lines.append(("length", f"{run['length']:.4g} {unit}{excess}"))
+        lines.append(("clearance", f"{0 if abs(run['clearance']) <= checker.TOLERANCE else run['clearance']:.4g} {unit}"))
+    lines.append(("feasible", _verdict(run, unit)))
+    lines.append(("planner's check", "feasible" if run["claimed_feasible"] else "not feasible"))
+    lines.append(("evaluations", f"{run['evaluations']:,}; stopped by: {run['stop']}"))
+    most = max(experiment.repeats[scale] for scale in SCALES)
+    if run["repeat"] >= most:
+        lines.append(("note", f"no table has this repeat: this experiment has {most} at most, from 0 to {most - 1}"))
+    return lines
+
+
+def _verdict(run: pd.Series, unit: str) -> str:
+    """The certified checker's verdict on a run."""
+    if run["feasible"]:
+        return "yes"
+    if not np.isfinite(run["collision_at"]):
+        return "no: no path from start to target"
+    if "steps" in run:  # of a drive: when, not where
+        return f"no: first collision at step {run['collision_at']:.4g}, at most {run['collision_depth']:.4g} {unit} deep"
+    x, y = curves.point_at(results.path_of(run), run["collision_at"])
+    return f"no: enters an obstacle at {x:.4g},{y:.4g}, at most {run['collision_depth']:.4g} {unit} deep"
 
 
 def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:

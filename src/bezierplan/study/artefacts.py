@@ -1,5 +1,7 @@
 """Models of `artefacts.yaml`: tables and figures, and how names are printed."""
 
+import re
+from collections.abc import Iterable
 from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import ConfigDict, Field, PlainValidator, TypeAdapter, ValidationError, model_validator
@@ -253,3 +255,14 @@ class ConfigFile(Model):
     settings: dict[Name, dict[Name, Annotated[Any, mapping_or(Settings, Setting)]]] = Field(
         {}, description="study → settings that take the place of those of the same name in its `experiments.yaml`"
     )
+
+
+def in_printed_order(names: Iterable[str]) -> list[str]:
+    """Names of tables and figures with the numbered ones first, tables before figures, each by its number; the others as they were.
+
+    >>> in_printed_order(["work", "figure11", "figure2", "table6", "table4"])
+    ['table4', 'table6', 'figure2', 'figure11', 'work']
+    """
+    numbered = {name: found for name in names if (found := re.fullmatch(r"(table|figure)(\d+)", name))}
+    first = sorted(numbered, key=lambda name: (numbered[name][1] != "table", int(numbered[name][2])))
+    return [*first, *(name for name in names if name not in numbered)]

@@ -4,8 +4,11 @@ from pathlib import Path
 from typing import Any
 
 from bezierplan.figures import page
+from bezierplan.places import TREE
 from bezierplan.running.digest import content_digest, versioned_digest
+from bezierplan.schema import checked
 from bezierplan.study import jobs, targets
+from bezierplan.study.artefacts import in_printed_order
 from bezierplan.study.targets import Studies
 
 _END = b"</html>"
@@ -76,12 +79,12 @@ def _artefacts(given: Studies, scale: str) -> dict[str, list[str]]:
     """By study, the names of the tables and figures of a scale, also of a table that is as at `full` if the summary counts it."""
     if scale == "smoke":
         made = jobs.smoke(given)[0]
-        return {key: [name for study, name in made if study == key] for key in given}
+        return {key: in_printed_order([name for study, name in made if study == key]) for key in given}
     counted = set(targets.summary_inputs(given, scale)["comparisons"]) if _summary(scale) in targets.files_of_scale(given, scale) else set()
     return {
         key: [
             name
-            for name in [*study.tables, *study.figures]
+            for name in in_printed_order([*study.tables, *study.figures])
             if name in targets.artefacts_of(study, scale) or counted.intersection(targets.files_of(given, scale, key, name))
         ]
         for key, study in given.items()
@@ -130,13 +133,33 @@ def _study(given: Studies, scale: str, key: str, made: list[str], tried: dict[st
     described = {name: {"title": spec.title, "caption": jobs.caption(study, name, scale)} for name, spec in _specs(study, made).items()}
     return {
         "title": study.title,
+        "paper": _paper(key),
         "labels": study.labels,
+        "checks": {claim.id: claim.plain()["checks"] for claim in study.claims} if judged else {},
+        "repeats": {each: _repeats(study, each) for each in (scale, "extended")},
         "tables": {name: described[name] | {"spec": study.tables[name].plain()} for name in made if name in study.tables},
         "figures": {name: described[name] for name in made if name in study.figures},
         "assumptions": [each.plain() for each in study.assumptions],
         "files": files | (tried if judged else {}),
         "experiments": _experiments(given, scale, key, made, root),
     }
+
+
+def _repeats(study: Any, scale: str) -> list[int]:
+    """The least and the largest number of runs of a method under a condition."""
+    counts = [experiment.repeats[scale] for experiment in study.experiments.values()]
+    return [min(counts), max(counts)] if counts else []
+
+
+def _paper(key: str) -> dict[str, Any] | None:
+    """The paper of a study, as CITATION.cff cites it: its entry's notes begin with the study's name. None for any other study."""
+    file = TREE / "CITATION.cff"
+    cited = checked.read(file)["references"] if file.is_file() else []
+    entry = next((each for each in cited if each.get("notes", "").split(":")[0].strip() == key), None)
+    if entry is None:
+        return None
+    where = ", ".join(str(entry[name]) for name in ("journal", "year") if name in entry)
+    return {"title": entry["title"], "where": where, "doi": entry.get("doi")}
 
 
 def _specs(study: Any, names: list[str]) -> dict[str, Any]:

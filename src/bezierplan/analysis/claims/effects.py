@@ -264,7 +264,7 @@ def by_draws(check: dict, comparison: Comparison, name: str) -> Finding:
     held = np.mean(claimed(check, effects, margin))
     return finding._replace(
         mark="+" if held >= SURE else "-" if held <= 1 - SURE else "?",
-        reason=f"holds in {held:.3f} of draws of {comparison.paper_units}",
+        reason=f"holds in {100 * held:.3g} % of experiments of {comparison.paper_units} runs drawn from ours",
     )
 
 

@@ -19,9 +19,7 @@ procedure). If all have to hold, every mark on its own must be + to support the 
 | verdict | all have to hold | any may hold |
 | --- | --- | --- |
 | supported | every mark + on its own | at least one + |
-| mostly | + in three quarters or more of the decided ones (+, -, 0), but not all; if there is no - and no 0, of all | |
-| in part | + in more than a quarter and less than three quarters of them | |
-| seldom | + in a quarter of them or less | |
+| partly | + in some but not all (`holds` says in how many); if there is no - and no 0, in at least three quarters | |
 | contradicted | no +, and a - | every mark - on its own |
 | no effect | every mark 0 | no + and no ?, not all - |
 | undecided | otherwise: a ? prevents a verdict, or more than half of the marks are ? | a ? prevents a verdict |

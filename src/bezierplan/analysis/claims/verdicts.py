@@ -26,9 +26,9 @@ import numpy as np
 
 from bezierplan.analysis.claims.effects import ALPHA, Finding
 
-VERDICTS = ("supported", "mostly", "in part", "seldom", "contradicted", "no effect", "undecided", "untestable")
-# Least share of + among decided comparisons for `mostly` (1 minus it is the most for `seldom`); least share of all that must be decided.
-MOSTLY, DECIDED = 0.75, 0.5
+VERDICTS = ("supported", "partly", "contradicted", "no effect", "undecided", "untestable")
+# Least share of all comparisons that must be decided; if no decided one speaks against the claim, the least share that must hold.
+DECIDED, HOLDING = 0.5, 0.75
 # Up to this many names are listed, otherwise only counted. Up to this many mixed groups are described one by one.
 MOST_LISTED, MOST_MIXED = 4, 3
 # Number of factors by which comparisons are split.
@@ -111,12 +111,9 @@ def _as_one(alone: set[str], together: set[str]) -> str:
 
 def _partly(marks: Sequence[str]) -> str:
     decided = [mark for mark in marks if mark != "?"]
-    if len(decided) < DECIDED * len(marks):
-        return "undecided"
-    if set(decided) == {"+"}:  # whatever the others are
-        return "mostly" if len(decided) >= MOSTLY * len(marks) else "undecided"
-    share = decided.count("+") / len(decided)
-    return "mostly" if share >= MOSTLY else "seldom" if share <= 1 - MOSTLY else "in part"
+    # Where all that is decided holds, the open comparisons may all hold as well: `partly` says that some do not.
+    least = HOLDING if set(decided) == {"+"} else DECIDED
+    return "partly" if len(decided) >= least * len(marks) else "undecided"
 
 
 # Words.

@@ -1,18 +1,15 @@
-"""The answer in a few short sentences, computed from the content of the page: which papers reproduce, how far, what fails, how surely."""
+"""What follows the headline in a few short sentences, computed from the content of the page: what fails in each paper, and how surely."""
 
 from collections import Counter
 
-from bezierplan.analysis.claims.verdicts import DECIDED, MOSTLY
-from bezierplan.figures.page.content import Claim, Number, Part, Study
+from bezierplan.figures.page.content import Claim, Number, Part, Study, Worth
 
 Sentence = list[Part]
 
 # What the verdict on a claim says in short; any other verdict leaves the claim undecided.
 IN_SHORT = {
     "supported": "hold",
-    "mostly": "hold in part",
-    "in part": "hold in part",
-    "seldom": "hold in part",
+    "partly": "hold in part",
     "contradicted": "fail",
     "no effect": "fail",
 }
@@ -22,15 +19,40 @@ _LIKELY = 0.8
 
 
 def answer(studies: dict[str, Study]) -> list[Sentence]:
-    """Sentences: all numbers and all claims, one of each study, then how certain this is. Without numbers and claims, one that says so."""
-    counted = [number for study in studies.values() for number in _counted(study)]
+    """Sentences: one of each study, then how certain this is. Without numbers and claims, one that says so."""
     claims = [claim for study in studies.values() for claim in _sentences(study)]
-    if not counted and not claims:
+    if not claims and not any(_counted(study) for study in studies.values()):
         runs = sum(shown.count for study in studies.values() for shown in study.shown if not shown.problem) or "no"
         return [[Part(text=f"A subset that shows how the page works: {runs} runs, too few to judge numbers or claims.")]]
     of_studies = [_of_study(key, study) for key, study in studies.items() if study.claims or _counted(study)]
-    sentences = [_numbers(counted), _claims(claims), *of_studies, _replication(claims), _readings(claims), _audit(studies)]
+    sentences = [*of_studies, _replication(claims), _readings(claims), _audit(studies)]
     return [sentence for sentence in sentences if sentence]
+
+
+def about_scale(scale: str, repeats: dict[str, list[list[int]]]) -> list[str]:
+    """How many runs the results of a scale rest on, and how this differs from the README's numbers.
+
+    repeats: scale -> of each study, the least and the largest number of runs of a method under a condition.
+    """
+    runs = {name: _span([number for pair in pairs for number in pair]) for name, pairs in repeats.items()}
+    first = {
+        "smoke": f"Scale smoke is a small subset, of {runs[scale]} runs per method and condition, which shows that everything works.",
+        "full": f"Scale full has as many runs as the papers report: {runs[scale]} per method and condition.",
+        "extended": f"Scale extended has {runs[scale]} runs per method and condition, so its verdicts are about methods.",
+    }[scale]
+    if scale == "extended":
+        return [first, "The README's numbers are of this scale."]
+    return [first, f"The README's numbers rest on scale extended ({runs['extended']} runs; make extended), so they can differ from these."]
+
+
+def _span(numbers: list[int]) -> str:
+    return f"{min(numbers):,}" if min(numbers) == max(numbers) else f"{min(numbers):,} to {max(numbers):,}"
+
+
+def reliable(studies: dict[str, Study]) -> list[tuple[str, Worth]]:
+    """Methods that are feasible as often as the baseline, each with the name of its study, the shortest paths first."""
+    found = [(key, row) for key, study in studies.items() for row in study.worth if row.feasible >= row.feasible_baseline]
+    return sorted(found, key=lambda each: each[1].length or float("inf"))
 
 
 def failing(studies: dict[str, Study]) -> list[tuple[str, Claim]]:
@@ -57,63 +79,26 @@ def _sentences(study: Study) -> list[Claim]:
     return [claim for claim in study.claims if not claim.finding]
 
 
-def _numbers(counted: list[Number]) -> Sentence:
-    if not counted:
-        return []
-    good, bad, weak = _degrees(counted)
-
-    def share(part: int) -> str:
-        return f"{part} ({100 * part / len(counted):.0f}\u00a0%)"
-
-    said = f"{share(good)} {_verb(good, 'is', 'are')} reproduced, {share(bad)} {_verb(bad, 'is', 'are')} not"
-    rest = f"; tests of the rest ({weak}) are too weak to tell" if weak else ""
-    return [Part(text=f"Of {len(counted)} published numbers, {said}{rest}.")]
-
-
-def _degrees(counted: list[Number]) -> tuple[int, int, int]:
-    """How many numbers are reproduced or identified, how many are not, and how many agree in a test that could hardly have failed."""
-    found = Counter(number.verdict for number in counted)
-    good, bad = found["identified"] + found["reproduced"], found["not reproduced"]
-    return good, bad, len(counted) - good - bad
-
-
-def _claims(claims: list[Claim]) -> Sentence:
-    if not claims:
-        return []
-    found = Counter(map(_in_short, claims))
-    singular = {"hold": "holds", "hold in part": "holds in part", "fail": "fails", _OWN: "fails by our criterion alone"}
-    singular |= {"undecided": "is undecided"}
-    plural = {word: word for word in singular} | {"undecided": "are undecided"}
-    parts = [f"{found[word]} {_verb(found[word], singular[word], plural[word])}" for word in singular if found[word]]
-    return [Part(text=f"Of {len(claims)} claims of the papers, tested at the 95\u00a0% level, {_joined(parts)}.")]
-
-
 def _of_study(key: str, study: Study) -> Sentence:
-    """How far a study reproduces, and which of its claims fail."""
-    counted, claims = _counted(study), _sentences(study)
+    """How many numbers of a study agree, how many of its claims are supported, and which fail."""
+    counted, claims = Counter(number.verdict for number in _counted(study)), _sentences(study)
     parts, failed = [Part(text=key, address=study.address)], [claim for claim in claims if _fails(claim)]
+    said = []
     if counted:
-        good, bad, weak = _degrees(counted)
-        parts.append(Part(text=f" {_degree(good, bad, weak)}" + ("; " if claims else "")))
+        agree, disagree = counted["identified"] + counted["agrees"], counted["disagrees"]
+        numbers = (
+            f"{agree} of {counted.total()} numbers {_verb(agree, 'agrees', 'agree')}, {disagree} {_verb(disagree, 'disagrees', 'disagree')}"
+        )
+        said.append(numbers)
     if claims:
         supported = sum(claim.verdict == "supported" for claim in claims)
-        parts.append(Part(text=f"{'' if counted else ': '}{supported} of {len(claims)} claims hold, " + ("" if failed else "none")))
-        parts += _listed([(claim.id, claim.address) for claim in failed])
-        parts.append(Part(text=" fail" if len(failed) > 1 else " fails"))
+        said.append(
+            f"{supported} of {_count(len(claims), 'claim')} {_verb(supported, 'is', 'are')} supported, {'' if failed else 'none fails'}"
+        )
+    parts.append(Part(text=": " + "; ".join(said)))
+    if failed:
+        parts += [*_listed([(claim.id, claim.address) for claim in failed]), Part(text=_verb(len(failed), " fails", " fail"))]
     return [*parts, Part(text=".")]
-
-
-def _degree(good: int, bad: int, weak: int) -> str:
-    """How far numbers reproduce, in words; the same shares as in verdicts on claims."""
-    decisive, count = good + bad, good + bad + weak
-    if decisive < DECIDED * count:
-        return f"has too few decisive numbers to tell ({decisive} of {count})"
-    share = good / decisive
-    if share in (0, 1):
-        degree = "reproduces" if share else "does not reproduce"
-    else:
-        degree = "mostly reproduces" if share >= MOSTLY else "hardly reproduces" if share <= 1 - MOSTLY else "reproduces in part"
-    return f"{degree} ({good} of {decisive} decisive numbers)"
 
 
 def _replication(claims: list[Claim]) -> Sentence:
@@ -121,8 +106,9 @@ def _replication(claims: list[Claim]) -> Sentence:
     if not known:
         return []
     likely = sum(share >= _LIKELY for share in known)
-    again = f"{likely} would show again in at least {100 * _LIKELY:g}\u00a0% of experiments of the paper's size"
-    return [Part(text=f"Of {len(known)} supported claims that can be resampled, {again}.")]
+    all_or_some = f"All {likely}" if likely == len(known) > 1 else f"{likely} of {len(known)}"
+    again = f"would show again in at least {100 * _LIKELY:g}\u00a0% of experiments of the paper's size"
+    return [Part(text=f"{all_or_some} supported claims that can be resampled {again}.")]
 
 
 def _readings(claims: list[Claim]) -> Sentence:
@@ -130,8 +116,8 @@ def _readings(claims: list[Claim]) -> Sentence:
     if not several:
         return []
     same = sum(all(reading.verdict == claim.verdict for reading in claim.readings) for claim in several)
-    text = f"Of {len(several)} {_verb(len(several), 'claim', 'claims')} that can be read in more than one way, {same}"
-    return [Part(text=f"{text} {_verb(same, 'keeps its', 'keep their')} verdict in every reading.")]
+    text = f"{same} of {_count(len(several), 'claim')} that can be interpreted in more than one way"
+    return [Part(text=f"{text} {_verb(same, 'keeps its', 'keep their')} verdict in every interpretation.")]
 
 
 def _audit(studies: dict[str, Study]) -> Sentence:
@@ -141,7 +127,7 @@ def _audit(studies: dict[str, Study]) -> Sentence:
         return []
     bad = sum(not row.consistent for row in checked)
     where = [(key, f"{study.address}/audit") for key, study in studies.items() if any(row.consistent is False for row in study.audit)]
-    text = f"The papers' own numbers contradict each other or an exact bound in {bad} of {len(checked)} checks"
+    text = f"The papers' own numbers contradict each other or an exact bound in {bad} of {_count(len(checked), 'check')}"
     return [Part(text=text + (": " if where else "")), *_listed(where), Part(text=".")]
 
 
@@ -158,5 +144,5 @@ def _verb(count: int, one: str, many: str) -> str:
     return one if count == 1 else many
 
 
-def _joined(words: list[str]) -> str:
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
+def _count(count: int, noun: str) -> str:
+    return f"{count} {noun}" if count == 1 else f"{count} {noun}s"

@@ -1,26 +1,23 @@
 """The page as text: its content in templates, with style, scripts and the table library in the same file."""
 
-import re
 from collections import Counter
 from importlib import resources
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from bezierplan.analysis import worth
 from bezierplan.analysis.metrics import METRICS
-from bezierplan.figures.page import HERE, answer, content, pictures, search
+from bezierplan.figures.page import HERE, addresses, answer, content, glossary, pictures, search
 from bezierplan.figures.page.gather import printed_key
 
 # Verdict -> the class that colours it and its symbol; another verdict gets the last one.
 LOOKS = {
     "identified": ("good", "◉"),
-    "reproduced": ("good", "●"),
-    "not told apart": ("open", "◐"),
-    "cannot fail": ("open", "○"),
-    "not reproduced": ("bad", "✕"),
+    "agrees": ("good", "●"),
+    "disagrees": ("bad", "✕"),
+    "inconclusive": ("open", "○"),
     "supported": ("good", "●"),
-    "mostly": ("good", "◕"),
-    "in part": ("part", "◑"),
-    "seldom": ("part", "◔"),
+    "partly": ("part", "◑"),
     "contradicted": ("bad", "✕"),
     "no effect": ("bad", "="),
     "undecided": ("open", "?"),
@@ -40,7 +37,14 @@ def html(page: content.Page, folder: Path) -> str:
     environment = jinja2.Environment(
         loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True, undefined=jinja2.StrictUndefined, keep_trailing_newline=True
     )
-    environment.filters |= {"look": look, "short": short, "heading": heading, "json_text": _json_text, "printed_key": printed_key}
+    environment.filters |= {
+        "look": look,
+        "short": short,
+        "heading": addresses.heading,
+        "settings": settings,
+        "json_text": _json_text,
+        "printed_key": printed_key,
+    }
     environment.globals |= {
         "forests": pictures.forests,
         "grid": grid,
@@ -50,6 +54,10 @@ def html(page: content.Page, folder: Path) -> str:
         "evidence": evidence,
         "failing": answer.failing,
         "meaning": meaning,
+        "deviation": deviation,
+        "words": glossary.WORDS,
+        "baseline": worth.BASELINE,
+        "reliable": answer.reliable,
         "marks": MARKS,
         "picture": lambda figure: Markup(pictures.data_uri(folder / figure.svg)),
         "size": lambda figure: pictures.size(folder / figure.svg),
@@ -73,12 +81,6 @@ def _json_text(value: Any) -> Any:
 def look(verdict: str) -> tuple[str, str]:
     """The class and the symbol of a verdict."""
     return LOOKS.get(verdict, _OTHER)
-
-
-def heading(name: str) -> str:
-    """The name of a table or figure as printed: `table3` as Table 3, `figure_gallery` as Figure gallery."""
-    words = re.sub(r"(?<=[a-z])(?=[0-9])", " ", name.replace("_", " "))
-    return words[:1].upper() + words[1:]
 
 
 def short(value: content.Cell, digits: int = 4) -> str:
@@ -144,10 +146,25 @@ def _decimals(value: float | None) -> int:
     return 0 if value is None else min(4, len(f"{value:.6g}".partition(".")[2]))
 
 
+def settings(item: content.Table | content.Figure) -> str:
+    """The methods, settings and repeats of a table or figure: its caption without the title; empty for a drawing without runs."""
+    return item.caption.removeprefix(f"{item.title}.").strip()
+
+
+def deviation(number: content.Number) -> str:
+    """How far ours lies from the published number, in per cent of it; empty if that is 0 or one of them is unknown."""
+    if not number.published or number.ours is None:
+        return ""
+    per_run = number.n_published / number.n if number.statistic == "count" and number.n_published and number.n else 1
+    percent = 100 * (number.ours * per_run / number.published - 1)
+    return f"{percent:+.0f}\u00a0%" if abs(percent) >= 10 else f"{percent:+.1f}\u00a0%"
+
+
 def tip(number: content.Number) -> str:
     """What a cell says on hover or focus."""
     low, high = number.interval
-    parts = [f"{number.verdict or 'not judged'}: {number.row}, {number.column}"]
+    why = f" ({number.why})" if number.why else ""
+    parts = [f"{number.verdict or 'not judged'}{why}: {number.row}, {number.column}"]
     if number.published is not None:
         size = "" if number.n_published is None else f" (n {number.n_published:g})"
         parts.append(f"published {number.published:g}{size}")

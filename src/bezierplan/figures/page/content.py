@@ -30,7 +30,7 @@ class Part(Record):
 
 
 class Number(Record):
-    """A cell of a table: a published number beside the reproduced one."""
+    """A cell of a table: a published number beside ours."""
 
     address: Address
     keys: dict[str, Cell] = Field(description="column of the runs table -> value, as in the csv file")
@@ -45,7 +45,8 @@ class Number(Record):
     n: float | None = Field(description="number of our runs that count")
     interval: Interval = Field(description="95 % bootstrap interval of ours")
     predicted: Interval = Field(description="95 % prediction interval of an experiment of the published size")
-    verdict: str = Field(description="identified, reproduced, not told apart, cannot fail or not reproduced; empty if not judged")
+    verdict: str = Field(description="identified, agrees, disagrees or inconclusive; empty if not judged")
+    why: str = Field("", description="why it is inconclusive")
     primary: bool = Field(description="whether the row is the paper's reading")
     counted: bool = Field(description="whether it counts in the outcome")
     share_feasible: float | None = Field(description="share of all runs whose path the certified checker accepts")
@@ -91,6 +92,7 @@ class Comparison(Record):
     effect: float | None
     interval: Interval = Field(description="95 % interval of the effect")
     margin: float | None = Field(description="the smallest effect that matters")
+    reference: float = Field(0.0, description="the effect on whose other side the claim fails: 0, or the share that it needs")
     effect_published: float | None = Field(description="the effect in the printed numbers")
     p: float | None
     n: float | None = Field(description="number of replicates")
@@ -134,6 +136,7 @@ class Claim(Record):
     size: str = Field(description="our effect compared with the printed one")
     shown_in: list[Address] = Field(description="the tables and figures that show it")
     comparisons: list[Comparison]
+    why: str = Field("", description="the decisive comparison in a plain sentence")
     decisive: int | None = Field(None, description="index in `comparisons` of the one that determines the verdict")
     variant: str = Field(description="the primary values")
     readings: list[Reading]
@@ -216,11 +219,20 @@ class Shown(Record):
     failed: list[str] = Field(description="runs without a feasible path, the first few")
 
 
+class Paper(Record):
+    """A paper as it is cited."""
+
+    title: str
+    where: str = Field(description="journal and year, as far as known")
+    doi: str | None
+
+
 class Study(Record):
     """A paper, or a study of a reader's own."""
 
     address: Address
     title: str
+    paper: Paper | None = Field(None, description="null for a study that is no paper")
     outcome: dict[str, int] = Field(description="how many numbers and claims there are, by verdict")
     claims: list[Claim]
     tables: list[Table]
@@ -288,12 +300,23 @@ class Verified(Record):
     versions: dict[str, str] = Field(description="library that computes -> its version")
 
 
+class Headline(Record):
+    """The outcome of all studies: a few sentences, and a table with a row for each study."""
+
+    sentences: list[str]
+    columns: list[str] = Field(description="headings")
+    rows: dict[str, list[str]] = Field(description="study -> its cells, one for each column")
+
+
 class Page(Record):
     """All results of a scale."""
 
     format: int = FORMAT
     scale: str
-    answer: list[list[Part]] = Field(description="sentences, each in parts")
+    about_scale: list[str] = Field([], description="sentences: how many runs there are, and what the README's numbers rest on")
+    made_by: str = Field("bezierplan", description="version and commit")
+    headline: Headline | None = Field(None, description="the outcome; null at a scale that judges nothing")
+    answer: list[list[Part]] = Field(description="further sentences, each in parts")
     verified: Verified | None = Field(None, description="the check of the runs that the page shows")
     studies: dict[str, Study]
     workspaces: dict[str, dict[str, Any]] = Field(description="kind, unit, bounds and shapes, by the first problem in each")

@@ -1,15 +1,14 @@
 """The content of the page, from the csv files of a scale. Columns are read by name, and those that a file lacks stay empty."""
 
-from collections.abc import Set
 from pathlib import Path
 from statistics import median
 from typing import Any
 
 import pandas as pd
 
-from bezierplan.analysis import sensitivity, summary
+from bezierplan.analysis import headline, sensitivity
 from bezierplan.figures import style
-from bezierplan.figures.page import content, other
+from bezierplan.figures.page import content, other, why
 from bezierplan.figures.page.addresses import address, of_cells
 from bezierplan.schema.model import one_or_list
 
@@ -75,7 +74,7 @@ def studies(
     claims, comparisons of claims, audit, alternatives and readings, as far as there are any). numbers, claims, measured: those of all
     studies (`analysis.summary`, `analysis.worth`), if the scale has them.
     """
-    outcome = summary.outcome(numbers, claims).to_dict("index") if numbers is not None and claims is not None else {}
+    outcome = headline.outcome(numbers, claims).to_dict("index") if numbers is not None and claims is not None else {}
     return {key: _study(key, own, folder, numbers, measured, outcome.get(key, {})) for key, own in job.items()}
 
 
@@ -91,8 +90,9 @@ def _study(
     return content.Study(
         address=address(key),
         title=job["title"],
+        paper=content.Paper(**job["paper"]) if job["paper"] else None,
         outcome={name: count for name, count in outcome.items() if isinstance(count, int)},
-        claims=_claims(key, judged, files.get("checks"), choices, job["labels"], job["tables"].keys() | job["figures"].keys()),
+        claims=_claims(key, judged, files.get("checks"), choices, job),
         tables=tables,
         figures=[_figure(key, name, figure) for name, figure in job["figures"].items()],
         audit=[_audited(row) for _, row in files["audit"].iterrows()] if "audit" in files else [],
@@ -151,6 +151,7 @@ def _numbers(table: str, compared: pd.DataFrame, spec: dict, numbers: pd.DataFra
                 interval=_interval(row, "low95_ours", "high95_ours"),
                 predicted=_interval(row, "low95_predicted", "high95_predicted"),
                 verdict=_text(row, "verdict"),
+                why=_text(row, "why"),
                 primary=primary,
                 counted=counted,
                 share_feasible=_number(row, "share_feasible"),
@@ -186,15 +187,16 @@ def _heading(metric: str, statistic: str, spec: dict, labels: dict[str, str]) ->
 
 
 def _claims(
-    study: str, judged: pd.DataFrame, checks: pd.DataFrame | None, choices: list[content.Choice], labels: dict[str, str], there: Set[str]
+    study: str, judged: pd.DataFrame, checks: pd.DataFrame | None, choices: list[content.Choice], job: dict[str, Any]
 ) -> list[content.Claim]:
-    """Claims; there: the tables and figures on the page, to which claims lead."""
-    claims = []
+    """Claims of a study; job: what the page knows of it, with the checks of its claims."""
+    claims, labels, there = [], job["labels"], job["tables"].keys() | job["figures"].keys()
     for identity, rows in judged.groupby("id", sort=False):
         row = rows[rows["primary"].astype(bool)].iloc[0]
         variant = _text(row, "variant")
         own = checks[(checks["id"] == identity) & (checks["variant"].fillna("") == variant)] if checks is not None else pd.DataFrame()
-        comparisons = [_comparison(each, labels) for _, each in own.iterrows()]
+        written = job["checks"].get(identity, [])
+        comparisons = [_comparison(each, labels, written) for _, each in own.iterrows()]
         claims.append(
             content.Claim(
                 address=address(study, identity),
@@ -212,7 +214,8 @@ def _claims(
                 size=_text(row, "size"),
                 shown_in=[address(study, name) for name in _text(row, "artefact").replace(",", " ").split() if name in there],
                 comparisons=comparisons,
-                decisive=_decisive(row, comparisons),
+                decisive=(decisive := _decisive(row, comparisons)),
+                why=_why(own.iloc[decisive], written, labels, row) if decisive is not None else "",
                 variant=_labelled(variant, labels),
                 readings=[_reading(each, labels) for _, each in rows[~rows["primary"].astype(bool)].iterrows()],
                 choices=[choice for choice in choices if choice.claim == identity],
@@ -228,10 +231,20 @@ def _decisive(row: pd.Series, comparisons: list[content.Comparison]) -> int | No
     return next((n for n, each in enumerate(comparisons) if each.deciding and (each.effect, each.interval, each.p) == wanted), None)
 
 
-def _comparison(row: pd.Series, labels: dict[str, str]) -> content.Comparison:
+def _why(decisive: pd.Series, checks: list[dict], labels: dict[str, str], claim: pd.Series) -> str:
+    """The sentence that says why (`why`), from the decisive comparison; empty for a check that the study has no more."""
+    number = int(decisive["check"])
+    if number > len(checks):
+        return ""
+    words = (_labelled(_text(decisive, name), labels) for name in ("comparison", "condition"))
+    return why.why(decisive, checks[number - 1], *words, own_criterion=_flag(claim, "own_criterion"))
+
+
+def _comparison(row: pd.Series, labels: dict[str, str], checks: list[dict]) -> content.Comparison:
     words = [_labelled(_text(row, "comparison"), labels), _labelled(_text(row, "condition"), labels)]
     return content.Comparison(
-        check=int(row["check"]),
+        check=(number := int(row["check"])),
+        reference=why.reference(checks[number - 1]) if number <= len(checks) else 0.0,
         deciding=_flag(row, "primary"),
         test=_text(row, "test"),
         metric=_text(row, "metric"),

@@ -2,6 +2,7 @@
 
 import json
 import multiprocessing
+import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from concurrent.futures import ProcessPoolExecutor
@@ -11,6 +12,9 @@ from typing import Any
 
 import pandas as pd
 
+import bezierplan
+from bezierplan import places
+from bezierplan.analysis import headline
 from bezierplan.figures.page import answer, build, content, gather, runs
 from bezierplan.running.watchdog import end_with_parent
 
@@ -41,7 +45,40 @@ def page(job: dict[str, Any], folder: Path, summary: list[str] | None, processes
     shared = {"workspaces": workspaces, "problems": problems}
     checked = content.Verified(**json.loads(Path(verified).read_text())) if verified else None
     said = answer.answer(studies)
-    return content.Page(scale=job["scale"], answer=said, verified=checked, studies=studies, runs=kept, **_once(**shared))
+    first = _headline(tables, {key: own["title"] for key, own in job["studies"].items()})
+    about = {"about_scale": answer.about_scale(job["scale"], _repeats(job["studies"])), "made_by": _made_by()}
+    return content.Page(
+        scale=job["scale"], **about, headline=first, answer=said, verified=checked, studies=studies, runs=kept, **_once(**shared)
+    )
+
+
+def _headline(tables: list[pd.DataFrame | None], titles: dict[str, str]) -> content.Headline | None:
+    """The headline (`analysis.headline`) of numbers, claims and methods beside the baseline; None without them."""
+    if any(table is None for table in tables):
+        return None
+    found = headline.headline(*tables, titles)
+    shown = found.table.loc[:, (found.table != "").any()]
+    rows = {str(study): list(map(str, row)) for study, row in zip(shown.index, shown.to_numpy(), strict=True)}
+    return content.Headline(sentences=found.sentences, columns=[headline.COLUMNS[name] for name in shown], rows=rows)
+
+
+def _repeats(studies: dict[str, dict[str, Any]]) -> dict[str, list[list[int]]]:
+    """Scale -> of each study, the least and the largest number of runs of a method under a condition."""
+    scales = {scale for study in studies.values() for scale in study["repeats"]}
+    return {scale: [study["repeats"][scale] for study in studies.values() if study["repeats"][scale]] or [[0, 0]] for scale in scales}
+
+
+def _made_by() -> str:
+    """The version of this package, and of a clone the commit with its date."""
+    version = f"bezierplan {bezierplan.__version__}"
+    if not (places.TREE / ".git").exists():
+        return version
+    command = ["git", "-C", str(places.TREE), "log", "-1", "--format=%h of %cs"]
+    try:
+        found = subprocess.run(command, capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError):  # such as no git, or another user's clone
+        return version
+    return f"{version}, commit {found.stdout.strip()}"
 
 
 @contextmanager

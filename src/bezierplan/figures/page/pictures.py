@@ -132,7 +132,7 @@ def _strips(comparisons: Sequence[Comparison]) -> list[Strip]:
     effects = [effect for each in comparisons for effect in (each.effect, each.effect_published) if effect is not None]
     most = 3 * max(map(abs, effects), default=0.0) or 1.0
     ends = [end for each in comparisons for end in each.interval if end is not None]
-    reach = [0.0, *effects, *(min(max(end, -most), most) for end in ends)]
+    reach = [*(each.reference for each in comparisons), *effects, *(min(max(end, -most), most) for end in ends)]
     low, high = min(reach), max(reach)
     pad = 0.06 * (high - low) or 1.0
     low, high = low - pad, high + pad
@@ -143,7 +143,7 @@ def _strips(comparisons: Sequence[Comparison]) -> list[Strip]:
     return [
         Strip(
             each,
-            place(0.0),
+            place(each.reference),
             place(each.effect),
             place(each.interval[0]),
             place(each.interval[1]),

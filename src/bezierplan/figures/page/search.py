@@ -3,8 +3,10 @@
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from bezierplan.figures.page.addresses import address, heading
 from bezierplan.figures.page.answer import IN_SHORT
 from bezierplan.figures.page.content import Number, Page, Shown, Study
+from bezierplan.figures.page.glossary import WORDS
 
 
 class Entry(NamedTuple):
@@ -17,9 +19,27 @@ class Entry(NamedTuple):
     later: bool = False
 
 
+SECTIONS = (
+    Entry(
+        "section",
+        "page-use",
+        "What should I use?",
+        "instead recommended recommendation best planner method alternative baseline plan command",
+    ),
+    Entry("section", "page-paths", "Path viewer: look at a run, and replay it", "rerun repeat again reproduce drive path command"),
+    Entry("section", "page-words", "What the words mean", "glossary legend verdict meaning definition"),
+    Entry("section", "page-about", "The data of this page", "json csv download schema readme cite citation version commit doi"),
+)
+
+
 def entries(page: Page) -> list[Entry]:
     """All entries, in the order of the page."""
-    return [entry for key, study in page.studies.items() for entry in _of_study(key, study)]
+    of_studies = [entry for key, study in page.studies.items() for entry in _of_study(key, study)]
+    words = [
+        Entry("word", address("page-word", word), f"{word}: {meaning}", "what means meaning definition") for word, meaning in WORDS.items()
+    ]
+    use = [SECTIONS[0]] if any(study.worth for study in page.studies.values()) else []
+    return [*use, *SECTIONS[1:], *words, *of_studies]
 
 
 def _of_study(key: str, study: Study) -> Iterator[Entry]:
@@ -30,13 +50,13 @@ def _of_study(key: str, study: Study) -> Iterator[Entry]:
         more = f"{key} claims {said} {said.replace('hold', 'holds').replace('fail', 'fails')} {compared}"
         yield Entry(f"claim, {claim.verdict}", claim.address, f"{claim.id} {claim.statement}", more)
     for table in study.tables:
-        yield Entry("table", table.address, f"{_words(table.name)}: {table.title}", key)
+        yield Entry("table", table.address, f"{heading(table.name)}: {table.title}", key)
         yield from (_of_number(number, table.name, f"{key} {table.title}") for number in table.numbers if number.published is not None)
     for row in study.worth:
-        text = f"{study.labels.get(row.method, _words(row.method))} beside the exact shortest path with rounded corners"
+        text = f"{study.labels.get(row.method, _words(row.method))} compared with the exact shortest path with rounded corners"
         yield Entry("worth", row.address, text, f"{key} {row.method}", True)
     for figure in study.figures:
-        yield Entry("figure", figure.address, f"{_words(figure.name)}: {figure.title}", key)
+        yield Entry("figure", figure.address, f"{heading(figure.name)}: {figure.title}", key)
     for choice in study.assumptions:
         yield Entry("open choice", choice.address, f"{choice.id} {choice.detail}", f"{key} {choice.setting}")
     for shown in study.shown:

@@ -96,6 +96,16 @@ addEventListener("scroll", () => {
   else tip.hidden = true;
 }, { passive: true });
 
+// Commands that can be copied
+
+for (const button of document.querySelectorAll(".copy")) {
+  button.hidden = !navigator.clipboard;
+  button.addEventListener("click", async () => {
+    await navigator.clipboard.writeText(find(button.dataset.copies).textContent);
+    button.textContent = "Copied";
+  });
+}
+
 // Filters of claims by verdict
 
 for (const filter of document.querySelectorAll(".filter")) {
@@ -114,18 +124,18 @@ for (const filter of document.querySelectorAll(".filter")) {
 // Search: entries in which most of the words begin a word of theirs; of these, first the ones whose shown text has the words themselves.
 
 let index;
-const EMPTY = new Set("a an and are by did do does for how in is it its of on or s the to was were what which with".split(" "));
+const EMPTY = new Set("a an and are by can did do does for how i in is it its me my of on or s should the to was were what which with".split(" "));
 const wordsOf = (text) => text.toLowerCase().split(/[^\p{L}\p{N}-]+/u).filter(Boolean);
 const query = find("page-query"), hits = find("page-hits"), found = find("page-found");
 
 function search() {
   const words = wordsOf(query.value).filter((word) => !EMPTY.has(word));
   index ??= JSON.parse(find("page-index").textContent).map(([kind, address, text, more, later]) => (
-    { kind, address, text, later, all: ` ${wordsOf(`${kind} ${address} ${text} ${more}`).join(" ")}` }));
-  const scored = index.map((each) => [words.filter((word) => each.all.includes(` ${word}`)).length, each]);
+    { kind, address, text, later, all: ` ${wordsOf(`${kind} ${address} ${text} ${more}`).join(" ")} `, own: ` ${wordsOf(text).join(" ")} ` }));
+  const scored = index.map((each) => [words.filter((word) => each.all.includes(/^\d+$/.test(word) ? ` ${word} ` : ` ${word}`)).length, each]);
   const most = Math.max(...scored.map(([score]) => score));
   const matching = most ? scored.filter(([score]) => score === most).map(([, each]) => each) : [];
-  const rank = (each) => (each.later ? 2 : 0) + (words.every((word) => wordsOf(each.text).includes(word)) ? 0 : 1);
+  const rank = (each) => (each.own.startsWith(` ${words.join(" ")} `) ? -3 : 0) + (each.later ? 2 : 0) + (words.every((word) => wordsOf(each.text).includes(word)) ? 0 : 1);
   const best = matching.map((each) => [rank(each), each]).sort((one, other) => one[0] - other[0]).slice(0, 30);
   hits.replaceChildren(...best.map(([, each]) => {
     const link = Object.assign(document.createElement("a"), { href: `#${encodeURI(each.address)}`, textContent: each.text });

@@ -76,6 +76,15 @@ function wayUntil({ path, driven, steps }, time) {
   return [...path.slice(0, n + 2), x + part * (u - x), y + part * (v - y)];
 }
 
+// A star of five points.
+function star(x, y, radius) {
+  const corners = Array.from({ length: 10 }, (_, n) => {
+    const angle = Math.PI * (n / 5 - 0.5), reach = n % 2 ? 0.45 * radius : radius;
+    return `${x + reach * Math.cos(angle)} ${y + reach * Math.sin(angle)}`;
+  });
+  return `M${corners.join("L")}Z`;
+}
+
 function drawMap(problem, run, time = Infinity) {
   const map = document.getElementById("viewer-map"), workspace = workspaceAt(problem, Math.min(time, run.steps ?? 0));
   const [left, right, bottom, top] = workspace.bounds, way = wayUntil(run, time);
@@ -90,7 +99,7 @@ function drawMap(problem, run, time = Infinity) {
     parts.push(draw("circle", { class: "point", cx: run.control[n], cy: -run.control[n + 1], r: 0.6 * mark }));
   }
   parts.push(draw("rect", { class: "end", x: x - mark, y: -y - mark, width: 2 * mark, height: 2 * mark }));
-  parts.push(draw("path", { class: "end", d: `M${u} ${-v - 1.3 * mark}l${1.3 * mark} ${2.2 * mark}h${-2.6 * mark}z` }));
+  parts.push(draw("path", { class: "end", d: star(u, -v, 1.7 * mark) }));
   if (run.steps !== null) parts.push(draw("circle", { class: "robot", cx: way.at(-2), cy: -way.at(-1), r: mark }));
   if (run.collision && (run.collision_step ?? 0) <= time) {
     const [p, q] = run.collision, arm = 1.2 * mark;
@@ -148,16 +157,19 @@ function showFacts(id, run, problem) {
   const facts = [
     ["Verdict", run.feasible ? "feasible by the certified check" : `not feasible: it ${run.collision ? "collides" : "does not arrive"}`],
     drive ? ["Drive", `${run.claimed ? "arrives" : "stops"} after ${number(run.steps)} steps` +
-      (run.collision ? `; first collision at step ${number(run.collision_step)}` : "")] : ["Planner's opinion", run.claimed ? "feasible" : "not feasible"],
+      (run.collision ? `; first collision at step ${number(run.collision_step)}` : "")] : ["Planner's own check", run.claimed ? "feasible" : "not feasible"],
     ["Length", run.length === null ? "no path" : `${number(run.length)} ${unit}${gap}`],
     ["Exact shortest", problem.bound === null ? "no free path" : `${number(problem.bound)} ${unit}`],
     run.feasible ? ["Clearance", `${number(run.clearance)} ${unit}`] : ["Collision depth", `${number(run.depth)} ${unit}`],
     ["Curve", run.curve.replaceAll("_", " ") || "none"],
-    ["Evaluations", `${run.evaluations}; stopped by ${run.stop.replaceAll("_", " ")}`],
+    ["Evaluations", `${run.evaluations.toLocaleString("en")}; stopped by: ${run.stop.replaceAll("_", " ")}`],
   ];
   document.getElementById("viewer-facts").replaceChildren(...facts.flatMap(([name, text]) => [
     Object.assign(document.createElement("dt"), { textContent: name }), Object.assign(document.createElement("dd"), { textContent: text }),
   ]));
+  document.getElementById("viewer-hit").hidden = !run.collision;
+  document.getElementById("viewer-history-caption").textContent = drive
+    ? "The way so far and the plan, replan by replan" : "Best objective, generation by generation";
   document.getElementById("viewer-command").textContent = `python -m bezierplan replay ${id}`;
   document.getElementById("viewer-link").href = `#${encodeURI(id)}`;
 }
@@ -187,7 +199,8 @@ function narrow(wanted) {
   const [shown] = left;
   const named = ["best", "median", "worst"].filter((which) => shown[which]).map((which) => [shown[which], which]);
   fill(form.run, [...named, ...shown.failed.map((id, n) => [id, `failed ${n + 1}`])], wanted.run);
-  document.getElementById("viewer-note").textContent = `${shown.feasible} of ${shown.count} runs are feasible.`;
+  document.getElementById("viewer-stage").hidden = false;
+  document.getElementById("viewer-note").textContent = `${shown.feasible} of ${shown.count} ${shown.count === 1 ? "run is" : "runs are"} feasible.`;
   const run = data.runs[form.run.value], problem = data.problems[run.problem];
   drawn = { problem, run };
   player.hidden = run.steps === null;
@@ -210,6 +223,8 @@ function openRun() {
     document.getElementById("page-paths").scrollIntoView({ behavior: "instant" });
   } else if (id.split("/").length === 5 && !document.getElementById(id)) {
     document.getElementById("viewer-note").textContent = `This page does not hold run ${id}; python -m bezierplan replay ${id} draws it.`;
+    document.getElementById("viewer-stage").hidden = true;
+    for (const select of form.querySelectorAll("select")) select.selectedIndex = -1;
     document.getElementById("page-paths").scrollIntoView({ behavior: "instant" });
   }
 }

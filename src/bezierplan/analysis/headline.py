@@ -1,0 +1,175 @@
+"""The outcome in a few sentences and one table with a row for each study: what README, page and summary show first."""
+
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+
+from bezierplan.analysis import comparison, worth
+from bezierplan.analysis.claims.verdicts import VERDICTS
+from bezierplan.analysis.markdown import table_text
+
+COLUMNS = {
+    "paper": "paper",
+    "numbers": "published numbers: agree or identified / disagree / inconclusive",
+    "deviation": "typical deviation",
+    "claims": "claims: supported / partly / contradicted or no effect / undecided",
+    "robust": "same verdict under every interpretation",
+    "feasible": "feasible runs (baseline)",
+    "length": "length over the baseline's",
+    "cpu": "CPU time over the baseline's",
+}
+"""Columns of the table -> their headings; the name of the study stands before them."""
+
+LEGEND = (
+    "*agree*: the published number lies in the range (95 %) of what an experiment of the paper's size would print, judging by our runs, "
+    "and the range excludes most of what the paper prints of other methods. *identified*: it is to the last digit the length of a path "
+    "that we can name. *disagree*: it lies outside. *inconclusive*: the range is too wide, or has no end on that side. *typical "
+    "deviation*: median of |ours - published| / |published|. *partly*: holds in some of the comparisons. The baseline is the exact "
+    "shortest path with rounded corners, which needs no search."
+)
+
+_NUMBERS = {
+    "identified": ("is identified", "are identified"),
+    "agrees": ("agrees", "agree"),
+    "disagrees": ("disagrees", "disagree"),
+    "inconclusive": ("is inconclusive", "are inconclusive"),
+}
+_CLAIMS = {
+    "supported": ("is supported", "are supported"),
+    "partly": ("is supported in part of its comparisons", "are supported in part of their comparisons"),
+    "contradicted": ("is contradicted", "are contradicted"),
+    "no effect": ("shows no effect", "show no effect"),
+    "undecided": ("is undecided", "are undecided"),
+    "untestable": ("is untestable", "are untestable"),
+}
+
+
+class Headline(NamedTuple):
+    """sentences: numbers, claims, and methods beside the baseline, as far as there are any. table: by study, text in `COLUMNS`."""
+
+    sentences: list[str]
+    table: pd.DataFrame
+
+
+def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
+    """One row per study: the published numbers that count, in total and by verdict of the test (`comparison`), and claims by verdict.
+
+    numbers: as from `numbers`. claims: as from `claims.judge`. Only primary readings and variants count.
+    """
+    judged = numbers[numbers["counted"]]
+    deciding = claims[claims["primary"] & ~claims["finding"].astype(bool)]
+    verdicts = pd.crosstab(deciding["study"], deciding["verdict"]).reindex(columns=VERDICTS, fill_value=0)
+    counts = pd.crosstab(judged["study"], judged["verdict"]).reindex(columns=comparison.VERDICTS, fill_value=0)
+    counts.insert(0, "numbers", counts.sum(axis=1))
+    table = counts.join(verdicts, how="outer").fillna(0).astype(int)
+    return table.join(_stable(deciding)) if "readings" in deciding else table
+
+
+def headline(numbers: pd.DataFrame, claims: pd.DataFrame, measured: pd.DataFrame, titles: dict[str, str]) -> Headline:
+    """The headline of some studies.
+
+    numbers: as from `summary.numbers`. claims: as from `claims.judge`. measured: as from `worth.measured`, of all studies. titles: of the
+    studies, by name.
+    """
+    counts = outcome(numbers, claims)
+    sentences = [
+        _sentence("published number", counts[list(comparison.VERDICTS)].sum(), _NUMBERS),
+        _sentence("claim", counts[list(VERDICTS)].sum(), _CLAIMS) + _by_our_criterion(claims),
+        beside_baseline(measured),
+    ]
+    counted = numbers[numbers["counted"].astype(bool)]
+    rows = {
+        study: {
+            "paper": titles[study].partition(":")[0],
+            "numbers": _of([row["identified"] + row["agrees"], row["disagrees"], row["inconclusive"]]),
+            "deviation": _percent(deviation(counted[counted["study"] == study])),
+            "claims": _of(_fewer(row)),
+            "robust": row.get("stable") if isinstance(row.get("stable"), str) else "",
+            **_measured(measured[measured["study"] == study]),
+        }
+        for study, row in counts.loc[sorted(counts.index, key=list(titles).index)].iterrows()
+    }
+    table = pd.DataFrame.from_dict(rows, orient="index", columns=list(COLUMNS)).rename_axis("study")
+    return Headline([sentence for sentence in sentences if sentence], table)
+
+
+def markdown(found: Headline) -> str:
+    """The headline as markdown: the sentences, the table, and what its words mean."""
+    shown = found.table.loc[:, (found.table != "").any()].rename(columns=COLUMNS)
+    return "\n\n".join([f"**{' '.join(found.sentences)}**", table_text(shown), LEGEND])
+
+
+def deviation(numbers: pd.DataFrame) -> float:
+    """The median of |ours - published| / |published|, NaN without numbers other than 0. Counts are taken for the paper's number of runs."""
+    published, ours = numbers["value_published"].to_numpy(dtype=float), numbers["value_ours"].to_numpy(dtype=float)
+    counts = (numbers["statistic"] == "count").to_numpy() & numbers["n_published"].notna().to_numpy()
+    size, asked = (numbers[name].to_numpy(dtype=float, na_value=np.nan) for name in ("n_published", "n_asked"))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ours = np.where(counts, ours / asked * size, ours)
+        relative = np.abs(ours - published) / np.abs(published)
+    finite = relative[np.isfinite(relative)]
+    return float(np.median(finite)) if len(finite) else float("nan")
+
+
+def beside_baseline(measured: pd.DataFrame) -> str:
+    """Whether a method that is feasible as often as the baseline gives a shorter path; empty without methods."""
+    if measured.empty:
+        return ""
+    reliable = measured[measured["feasible"] >= measured["feasible_baseline"]]
+    shorter = int((reliable["length"] < 1 - worth.EQUAL).sum())
+    if reliable.empty:
+        return f"No method is feasible as often as the baseline, {worth.BASELINE}."
+    if not shorter:
+        return f"No method that is feasible as often as the baseline, {worth.BASELINE}, gives a shorter path."
+    gives = "gives" if shorter == 1 else "give"
+    return f"Of {len(reliable)} methods feasible as often as the baseline, {worth.BASELINE}, {shorter} {gives} a shorter path."
+
+
+def _stable(claims: pd.DataFrame) -> pd.Series:
+    """How many of a study's claims have the same verdict under all readings, out of those on which alternatives were tried, as text."""
+    tried = claims[claims["readings"].fillna("") != ""]
+    agree = tried["readings"].str.split(" of ")
+    stable = (agree.str[0] == agree.str[1]).groupby(tried["study"]).agg(["sum", "size"])
+    return pd.Series({study: f"{same} of {total}" for study, same, total in stable.itertuples()}, name="stable", dtype=object)
+
+
+def _sentence(noun: str, counts: pd.Series, words: dict[str, tuple[str, str]]) -> str:
+    """How many things have each verdict, in words; empty without things."""
+    total = int(counts.sum())
+    parts = [f"{count} {words[verdict][count != 1]}" for verdict, count in counts.items() if count]
+    if not parts:
+        return ""
+    said = parts[0] if len(parts) == 1 else f"{', '.join(parts[:-1])} and {parts[-1]}"
+    return f"Of {total} {noun}{'' if total == 1 else 's'}, {said}."
+
+
+def _by_our_criterion(claims: pd.DataFrame) -> str:
+    """How many claims fail by a criterion of ours alone, in words; empty if none does."""
+    if "own_criterion" not in claims:
+        return ""
+    deciding = claims[claims["primary"] & ~claims["finding"].astype(bool) & claims["own_criterion"].astype(bool)]
+    count = int(deciding["verdict"].isin(["contradicted", "no effect"]).sum())
+    return f" {count} of them {'fails' if count == 1 else 'fail'} by our criterion alone, where the paper gives no number." if count else ""
+
+
+def _fewer(row: pd.Series) -> list[int]:
+    """Counts of claims in four kinds: supported, partly, contradicted or no effect, undecided or untestable."""
+    return [row["supported"], row["partly"], row["contradicted"] + row["no effect"], row["undecided"] + row["untestable"]]
+
+
+def _of(counts: list[int]) -> str:
+    return f"{' / '.join(str(count) for count in counts)} of {sum(counts)}" if sum(counts) else ""
+
+
+def _percent(share: float) -> str:
+    return "" if np.isnan(share) else f"{worth.number(100 * share, 2)} %"
+
+
+def _measured(own: pd.DataFrame) -> dict[str, str]:
+    """What the methods of a study are beside the baseline: the least and the largest of each column."""
+    if own.empty:
+        return dict.fromkeys(("feasible", "length", "cpu"), "")
+    feasible, baseline = worth.span(100 * own["feasible"], 2), worth.span(100 * own["feasible_baseline"], 3)
+    length = worth.span(own["length"], 3) if own["length"].notna().any() else ""
+    return {"feasible": f"{feasible} % ({baseline} %)", "length": length, "cpu": worth.span(own["cpu"], 2)}

@@ -1,0 +1,15 @@
+"""What the words of verdicts mean, as the page says it where they stand."""
+
+WORDS = {
+    "agrees": "The published number lies in the range (95 %) of what an experiment of the paper's size would print, judging by our runs, "
+    "and this range excludes most of what the paper prints of other methods. It need not be near ours.",
+    "identified": "The published number is to the last digit the length of a path that an enumeration finds.",
+    "disagrees": "The published number lies outside the range (95 %) of what an experiment of the paper's size would print.",
+    "inconclusive": "The published number lies in the range, but so would most others: the range is too wide, or has no end on that side.",
+    "supported": "Every comparison of the claim holds (p < 0.05, and a difference that matters).",
+    "partly": "Some comparisons of the claim hold, k of n.",
+    "contradicted": "No comparison of the claim holds, and in at least one the opposite does.",
+    "no effect": "In every comparison of the claim the difference is too small to matter.",
+    "undecided": "Too few runs, or too wide an interval, to tell.",
+    "untestable": "The paper does not say enough to test the claim.",
+}
