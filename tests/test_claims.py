@@ -98,7 +98,7 @@ def test_a_superlative_is_one_comparison_at_a_place_and_its_pairs_are_details():
     best = table({"a": sample("a"), "b": sample("b", 1), "c": sample("c", 2), "d": sample("d", 3)})
     third = table({"a": sample("a", 1), "b": sample("b"), "c": sample("c", 2), "d": sample("d", 3)}, workspace="other")
     claims, checks = judge({"checks": [check]}, best, third)
-    assert claims.iloc[0][["verdict", "holds"]].to_list() == ["in part", "1 of 2"]
+    assert claims.iloc[0][["verdict", "holds"]].to_list() == ["partly", "1 of 2"]
     assert "workspace" in claims.iloc[0]["where_it_holds"] or "in grid" in claims.iloc[0]["where_it_holds"]
     deciding = checks[checks["primary"]]
     assert deciding["comparison"].to_list() == ["all 3 together"] * 2
