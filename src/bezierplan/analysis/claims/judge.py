@@ -29,7 +29,7 @@ If all have to hold together, as one sentence (`holds: together`): supported if 
 family, or by a 0 beside a +; no effect with a 0 and neither; otherwise undecided.
 
 A sentence about seconds is judged on counted work if its check names one (`work`); the seconds are reported next to it, and the reason
-says where they disagree.
+says where they disagree. Without one, the seconds decide: between planners of different kinds, whose evaluations are different things.
 
 Columns of claims.csv, one row per claim and variant:
 
