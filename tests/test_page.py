@@ -263,6 +263,31 @@ def test_row_holds_all_columns_of_its_keys_and_other_readings_come_last():
     ]
 
 
+def test_deviation_is_in_per_cent_of_the_published_number_and_of_counts_for_as_many_runs():
+    given = number("a/length", "agrees", published=200.0, ours=198.0)
+    assert build.deviation(given) == "-1.0\u00a0%"
+    assert build.deviation(given.model_copy(update={"ours": 298.0})) == "+49\u00a0%"
+    assert build.deviation(given.model_copy(update={"published": 0.0})) == ""
+    count = {"statistic": "count", "published": 5.0, "n_published": 100.0, "ours": 220.0, "n": 4000.0}
+    assert build.deviation(given.model_copy(update=count)) == "+10\u00a0%"
+
+
+def test_the_scale_is_said_first_with_what_the_readme_rests_on():
+    repeats = {"full": [[10, 30], [100, 100]], "extended": [[250, 4000]]}
+    assert answer.about_scale("full", repeats) == [
+        "Scale full has as many runs as the papers report: 10 to 100 per method and condition.",
+        "The README's numbers rest on scale extended (250 to 4,000 runs; make extended), so they can differ from these.",
+    ]
+    assert answer.about_scale("extended", repeats)[1] == "The README's numbers are of this scale."
+
+
+def test_the_page_says_what_to_use_with_a_command_on_a_map_that_exists():
+    text = build.html(page(), Path())
+    assert 'id="page-use"' in text
+    (map_file,) = re.findall(r"bezierplan plan (\S+) --start", text)
+    assert (Path(__file__).parents[1] / map_file).is_file()
+
+
 def test_tip_gives_interval_n_share_and_bound():
     words = build.tip(number("a/length", "agrees"))
     for each in (

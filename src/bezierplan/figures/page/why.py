@@ -11,6 +11,9 @@ import pandas as pd
 from bezierplan.analysis.metrics import METRICS
 
 EVENTS = {"below": "below", "above": "above", "at_most": "at most", "at_least": "at least", "equals": ""}
+_TIMES = 2.0
+"""Relative effects above this are told as multiples, not in per cent."""
+
 _NEEDS = {"all": "in every run", "none": "in no run", "some": "in at least one run"}
 
 
@@ -40,20 +43,30 @@ def _between(row: pd.Series, check: dict[str, Any], name: str) -> str:
     if not found or pd.isna(row["effect"]):
         return _effect(row, check, name)
     group, direction, other = found.groups()
-    side = "lower than" if row["effect"] < 0 else "higher than" if row["effect"] > 0 else "as large as"
-    amount = f"{_amount(abs(row['effect']), row, check)} {side}" if row["effect"] else side
-    return (
-        f"{_quantity(row)} of {group} is {amount} that of {other}{_interval(row, check)}; the claim says {direction}{_margin(row, check)}"
-    )
+    found = f"in {_measured(row)}, {group} is {_apart(row, check)} {other}{_interval(row, check)}"
+    return f"{found}; the claim says {direction}{_margin(row, check)}"
+
+
+def _apart(row: pd.Series, check: dict[str, Any]) -> str:
+    """How a group compares with another: `3 cell lower than`, `25,000 times`."""
+    effect = row["effect"]
+    if not effect:
+        return "equal to"
+    if check.get("scale") == "relative" and effect > _TIMES:
+        return f"{_printed(1 + effect)} times"
+    return f"{_amount(abs(effect), row, check)} {'lower' if effect < 0 else 'higher'} than"
 
 
 def _equal(row: pd.Series, check: dict[str, Any], name: str) -> str:
-    """Of groups that should be alike."""
-    if pd.isna(row["effect"]):
-        return _effect(row, check, name)
+    """Of groups that should be alike, or apart by a stated amount."""
     group, _, other = name.partition(" as ")
-    apart = f"{_quantity(row)} of {group} and of {other} differ by {_amount(abs(row['effect']), row, check)}{_interval(row, check)}"
-    return f"{apart}; the claim says that they are alike{_margin(row, check)}"
+    if pd.isna(row["effect"]) or not other:
+        return _effect(row, check, name)
+    target = check.get("target")
+    says = "that they are alike" if not target else f"by how much: {_amount(abs(target), row, check)} {'lower' if target < 0 else 'higher'}"
+    return (
+        f"in {_quantity(row)}, {group} is {_apart(row, check)} {other}{_interval(row, check)}; the claim says {says}{_margin(row, check)}"
+    )
 
 
 def _differ(row: pd.Series, check: dict[str, Any], name: str) -> str:
@@ -78,24 +91,33 @@ def _trend(row: pd.Series, check: dict[str, Any], name: str) -> str:
 
 def _share(row: pd.Series, check: dict[str, Any], name: str) -> str:
     """Of a share of runs in which an event happens."""
-    event = check.get("event") or {}
-    happens = "; ".join(f"{_quantity(row)} is {EVENTS[key]} {value:g}{_unit(row)}".replace("  ", " ") for key, value in event.items())
-    happens = happens or f"what counts ({_quantity(row)}) happens"
-    needed = _NEEDS.get(check["threshold"]) if isinstance(check["threshold"], str) else None
-    needed = needed or f"in {EVENTS[check['direction']]} {100 * check['threshold']:g} %"
     if pd.isna(row["effect"]):
         return _effect(row, check, name)
+    happens = _event(row, check)
     if "pick" in check:
         picked = f"the run with the lowest {check['pick']['lowest'].replace('_', ' ')}"
         return f"in {picked}, {happens if row['effect'] else f'it is not so that {happens}'}; the claim needs it there"
+    needed = _NEEDS.get(check["threshold"]) if isinstance(check["threshold"], str) else None
+    needed = needed or f"in {EVENTS[check['direction']]} {100 * check['threshold']:g} %"
     low, high = 100 * row["low95"], 100 * row["high95"]
     interval = "" if pd.isna(low) or pd.isna(high) else f" (95 % interval {low:.3g} to {high:.3g} %)"
     return f"{happens} in {100 * row['effect']:.3g} % of the runs{interval}; the claim needs it {needed}"
 
 
+def _event(row: pd.Series, check: dict[str, Any]) -> str:
+    """What happens in a run that counts."""
+    meaning = _quantity(row)
+    for key, value in (check.get("event") or {}).items():
+        unit = "" if str(row["unit"]) in meaning else _unit(row)
+        return " ".join(f"{meaning} is {EVENTS[key]} {value:g}{unit}".split())
+    return (
+        meaning.removeprefix("whether ") if meaning.startswith("whether ") else f"the path is {row['metric'].replace('_', ' ')} ({meaning})"
+    )
+
+
 def _function(row: pd.Series, check: dict[str, Any], name: str) -> str:
     """Of what a function of the study's own finds."""
-    value = "no value" if pd.isna(row["effect"]) else f"{row['effect']:.3g}{_unit(row)}{_interval(row, check)}"
+    value = "no value" if pd.isna(row["effect"]) else f"{_printed(row['effect'])}{_unit(row)}{_interval(row, check)}"
     return f"{check['effect']}: {value}"
 
 
@@ -125,11 +147,17 @@ _TEMPLATES = {
 
 
 def _quantity(row: pd.Series) -> str:
-    """What is measured, with its statistic: `mean of: exact arc length`."""
+    """What is measured, with its statistic: `exact arc length (mean)`."""
     metric = "" if pd.isna(row["metric"]) else str(row["metric"])
     meaning = METRICS[metric].meaning if metric in METRICS else metric.replace("_", " ")
     statistic = "" if pd.isna(row["statistic"]) or row["statistic"] == "rank" else f" ({row['statistic']})"
     return f"{meaning}{statistic}"
+
+
+def _measured(row: pd.Series) -> str:
+    """What is compared: of an event, the share of runs in which it happens."""
+    quantity = _quantity(row)
+    return f"the share of runs in which {quantity.removeprefix('whether ')}" if quantity.startswith("whether ") else quantity
 
 
 def _unit(row: pd.Series) -> str:
@@ -138,15 +166,23 @@ def _unit(row: pd.Series) -> str:
 
 def _amount(value: float, row: pd.Series, check: dict[str, Any]) -> str:
     """An effect with its unit; a relative one in per cent."""
-    return f"{100 * value:.3g} %" if check.get("scale") == "relative" else f"{value:.3g}{_unit(row)}"
+    return f"{_printed(100 * value)} %" if check.get("scale") == "relative" else f"{_printed(value)}{_unit(row)}"
+
+
+def _printed(value: float) -> str:
+    """Three digits, without an exponent."""
+    return f"{float(f'{value:.3g}'):,.10g}"
 
 
 def _interval(row: pd.Series, check: dict[str, Any]) -> str:
     low, high = row["low95"], row["high95"]
     if pd.isna(low) or pd.isna(high):
         return ""
-    factor = 100 if check.get("scale") == "relative" else 1
-    return f" (difference, 95 % interval {factor * low:.3g} to {factor * high:.3g})"
+    relative = check.get("scale") == "relative"
+    if relative and row["effect"] > _TIMES and check["test"] in ("lower", "ordered", "equal_within"):
+        return f" (95 % interval {_printed(1 + low)} to {_printed(1 + high)} times)"
+    ends = " to ".join(_printed(100 * end if relative else end) for end in (low, high))
+    return f" (95 % interval {ends}{' %' if relative else ''})"
 
 
 def _margin(row: pd.Series, check: dict[str, Any]) -> str:
