@@ -39,6 +39,10 @@ def reference(check: dict[str, Any]) -> float:
 
 def _between(row: pd.Series, check: dict[str, Any], name: str) -> str:
     """Of groups that should be lower, or higher, than others."""
+    together = re.fullmatch(r"all (\d+) together", name)
+    if together and not pd.isna(row["effect"]):
+        found = f"of {together[1]} comparisons in {_measured(row)}, the decisive one is {_apart(row, check).removesuffix(' than')}"
+        return f"{found}{_interval(row, check)}; the claim says {check['direction']} in all of them{_margin(row, check)}"
     found = re.fullmatch(r"(.+) (lower|higher) than (.+)", name)
     if not found or pd.isna(row["effect"]):
         return _effect(row, check, name)
