@@ -179,15 +179,15 @@ LINES = {
         ["room.txt", *ENDS, "--rule", "centre"],
         "only for polygons for a planner that needs cells; room.txt is",
     ),
-    "a radius of nan": (["room.txt", *ENDS, "--robot-radius", "nan"], "--robot-radius: nan; expected a number of at least 0"),
-    "a radius below 0": (["room.txt", *ENDS, "--robot-radius", "-1"], "--robot-radius: -1; expected a number of at least 0"),
+    "a radius of nan": (["room.txt", *ENDS, "--robot-radius", "nan"], "--robot-radius: nan; expected 0 or a number of at least 1e-06"),
+    "a radius below 0": (["room.txt", *ENDS, "--robot-radius", "-1"], "--robot-radius: -1; expected 0 or a number of at least 1e-06"),
     "pixels below 0": (["room.yaml", *ENDS, "--most-pixels", "-5"], "--most-pixels: -5; expected a whole number of at least 1"),
     "pixels of a text": (["room.txt", *ENDS, "--most-pixels", "5"], "--most-pixels: only for a ROS map; room.txt is cells of a text"),
     "a scenario of a text": (["room.txt", "--scenario", "room.scen:1"], "--scenario: only for a MovingAI grid; room.txt is cells"),
     "a scenario of 0": (["room.map", "--scenario", "room.scen:0"], "expected FILE:NUMBER of a .scen file, numbered from 1"),
     "an endless scenario": (["room.map", "--scenario", f"room.scen:{'9' * 5000}"], "expected FILE:NUMBER of a .scen file"),
-    "an endless radius": (["room.txt", *ENDS, "--settings", "{turning_radius: .inf}"], "inf; expected a finite number at least 0"),
-    "an offset of nan": (["room.txt", *ENDS, "--settings", "{offset: .nan}"], "offset: nan; expected a finite number at least 0"),
+    "an endless radius": (["room.txt", *ENDS, "--settings", "{turning_radius: .inf}"], "inf; expected a finite number from 0 to 100000"),
+    "an offset of nan": (["room.txt", *ENDS, "--settings", "{offset: .nan}"], "offset: nan; expected a finite number from 0 to 100000"),
     "a start twice": (["room.txt", "--start", "1,1", *ENDS], "--start: given twice; expected once"),
     "a target twice": (["room.txt", *ENDS, "--target=1,1"], "--target: given twice; expected once"),
     "a start below 0": (["room.txt", "--start", "-9.9,-9.5", "--target", "3.5,2.5"], "start: (-9.9, -9.5): outside the workspace"),
@@ -231,11 +231,11 @@ def test_what_editors_and_windows_write_is_read(folder, capsys):
     (folder / "a.yaml").write_bytes(b"\xef\xbb\xbf" + ROS.replace("room.png", "C:\\maps\\room.png").encode() + b"negate: no\n")
     ends = ["--start", "0.5,2.5", "--target", "0.9,2.5"]
     for name in ("a.TXT", "a.map", "a.geojson", "a.yaml"):
-        assert "feasible      yes" in planned(capsys, name, *ends)
+        assert "feasible        yes" in planned(capsys, name, *ends)
 
 
 def test_coordinates_may_begin_with_a_minus(folder, capsys):
-    assert "feasible      yes" in planned(capsys, "room.yaml", "--start", "-0.9,2.5", "--target", "-.5,2.6")
+    assert "feasible        yes" in planned(capsys, "room.yaml", "--start", "-0.9,2.5", "--target", "-.5,2.6")
 
 
 def test_a_full_disk_is_told(folder, capsys):

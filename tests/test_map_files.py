@@ -83,10 +83,12 @@ def test_negated_colours(tmp_path):
 def test_a_robots_radius_makes_obstacles_grow(tmp_path):
     wide = np.full((9, 9), 254, dtype=np.uint8)
     wide[4, 4] = 0
-    grid = ros_map(tmp_path, pixels=wide, robot_radius=1.1)
-    row, column = np.nonzero(grid.occupied)
-    assert grid.occupied.sum() == 13
-    assert np.hypot(row - 4, column - 4).max() == 2.0
+    grown = ros_map(tmp_path, pixels=wide, robot_radius=0.6).occupied
+    # Of cells of 0.5 m, those with less than 0.6 m between their square and that of the obstacle, or the border.
+    row, column = np.indices(grown.shape)
+    apart = np.hypot(np.maximum(np.abs(row - 4) - 1, 0), np.maximum(np.abs(column - 4) - 1, 0)) * 0.5
+    inside = np.minimum(np.minimum(row, 8 - row), np.minimum(column, 8 - column)) * 0.5
+    assert np.array_equal(grown, (apart < 0.6) | (inside < 0.6))
 
 
 ROS_FAULTS = {
@@ -214,9 +216,9 @@ def test_a_scenario_with_another_optimal_length_is_told(tmp_path, off):
         problems.build_all(job, tmp_path)
 
 
-def test_a_robots_radius_leaves_cells_free_whose_centres_are_as_far(tmp_path):
-    wide = np.full((9, 9), 254, dtype=np.uint8)
-    wide[4, 4] = 0
-    # The centres of the cells beside an occupied one are 0.5 m away.
-    assert ros_map(tmp_path, pixels=wide, robot_radius=0.5).occupied.sum() == 1
-    assert ros_map(tmp_path, pixels=wide, robot_radius=0.5 + 1e-9).occupied.sum() == 5
+def test_a_robots_radius_leaves_cells_free_that_are_as_far(tmp_path):
+    wide = np.full((11, 11), 254, dtype=np.uint8)
+    wide[5, 5] = 0
+    # The eight cells around an occupied one touch it; those beyond are 0.5 m away from it, as are those beside the border from that.
+    assert ros_map(tmp_path, pixels=wide, robot_radius=0.5).occupied.sum() == 9 + 40
+    assert ros_map(tmp_path, pixels=wide, robot_radius=0.5 + 1e-6).occupied.sum() == 9 + 12 + 40 + 32

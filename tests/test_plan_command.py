@@ -6,6 +6,7 @@ import shlex
 
 import numpy as np
 import pytest
+import yaml
 from fields import BENCHMARK_MAPS
 from PIL import Image
 
@@ -22,7 +23,7 @@ SHORTEST = 29.565803670
 def planned(capsys, *words):
     main(["plan", *map(str, words)])
     lines = capsys.readouterr().out.splitlines()
-    return {line[:14].strip().replace("shortest path", "shortest"): line[14:] for line in lines}
+    return {line[:16].strip().replace("shortest path", "shortest"): line[16:] for line in lines}
 
 
 def refused(capsys, *words):
@@ -45,14 +46,14 @@ def test_without_a_planner_it_is_the_rounded_shortest_path(capsys):
     assert found["CPU time"].endswith(" s")
 
 
-def test_help_has_two_examples_that_run(capsys, monkeypatch, tmp_path):
+def test_help_has_examples_that_run(capsys, monkeypatch, tmp_path):
     with pytest.raises(SystemExit) as found:
         main(["plan", "--help"])
     assert not found.value.code
     shown = capsys.readouterr().out
     assert EXAMPLES.strip() in shown
     commands = re.findall(r"python -m bezierplan (plan (?:.|\n)*?)\n(?:\n|$)", EXAMPLES)
-    assert len(commands) == 2
+    assert len(commands) == 3
     for command in commands:
         words = shlex.split(command.replace("\\\n", " "))
         out = tmp_path / words[words.index("--out") + 1]
@@ -65,13 +66,18 @@ def test_help_has_two_examples_that_run(capsys, monkeypatch, tmp_path):
 def test_files_that_are_written(capsys, tmp_path):
     planned(capsys, GAPS, *ENDS, "--out", tmp_path / "path.csv")
     rows = np.loadtxt(tmp_path / "path.csv", delimiter=",", skiprows=1)
-    assert rows[0, :2].tolist() == [2.0, 10.0]
-    assert rows[-1, :2] == pytest.approx([18.0, 10.0])
-    assert np.abs(rows[:, 2]).max() == pytest.approx(2.5, rel=1e-3)
+    assert rows[0, :3].tolist() == [0.0, 2.0, 10.0]
+    assert rows[-1, 1:3] == pytest.approx([18.0, 10.0])
+    assert np.ptp(np.diff(rows[:, 0])) < 1e-6
+    assert np.abs(rows[:, 4]).max() == pytest.approx(2.5, rel=1e-3)
     planned(capsys, GAPS, *ENDS, "--out", tmp_path / "path.geojson")
     line = json.loads((tmp_path / "path.geojson").read_text())
     assert line["geometry"]["coordinates"][0] == [2.0, 10.0]
-    assert line["properties"] == {"feasible": True}
+    assert line["properties"]["feasible"] is True
+    planned(capsys, GAPS, *ENDS, "--out", tmp_path / "path.yaml", "--step", "5")
+    poses = yaml.safe_load((tmp_path / "path.yaml").read_text())["poses"]
+    assert len(poses) == 7
+    assert poses[-1]["pose"]["position"] == {"x": 18.0, "y": 10.0, "z": 0.0}
     planned(capsys, GAPS, *ENDS, "--out", tmp_path / "path.svg")
     assert "</svg>" in (tmp_path / "path.svg").read_text()
 
@@ -117,7 +123,7 @@ FAULTS = {
         "serves workspaces of kind circles, polygons, and a map is grid",
     ),
     "setting": ([GAPS, *ENDS, "--settings", "{radius: 1}"], "--settings: radius: unknown"),
-    "value": ([GAPS, *ENDS, "--settings", "{turning_radius: -1}"], "--settings: turning_radius: -1; expected a number at least 0"),
+    "value": ([GAPS, *ENDS, "--settings", "{turning_radius: -1}"], "--settings: turning_radius: -1; expected a number from 0 to 100000"),
     "settings": ([GAPS, *ENDS, "--settings", "fast"], "--settings: fast: expected '{name: value, ...}'"),
     "out": ([GAPS, *ENDS, "--out", "path.pdf"], "--out: path.pdf; expected a file that ends in .svg, .png"),
     "like": ([GAPS, *ENDS, "--like", "smooth"], "--like: smooth; expected STUDY/METHOD"),
@@ -126,7 +132,7 @@ FAULTS = {
     "folder": ([GAPS, *ENDS, "--out", "nowhere/path.svg"], "--out: nowhere/path.svg: no folder nowhere; expected one that exists"),
     "seed": ([GAPS, *ENDS, "--seed", "-1"], "--seed: -1; expected a whole number of at least 0"),
     "scenario and ends": ([GAPS, *ENDS, "--scenario", "a.scen:1"], "--scenario: a.scen:1: has a start and a target of its own"),
-    "radius": (["a.yaml", *ENDS, "--robot-radius", "-1"], "--robot-radius: -1; expected a number of at least 0"),
+    "radius": (["a.yaml", *ENDS, "--robot-radius", "-1"], "--robot-radius: -1; expected 0 or a number of at least 1e-06"),
     "scenario": ([GAPS, "--scenario", "a.scen:1"], "--scenario: only for a MovingAI grid; .*gaps.geojson is polygons"),
 }
 

@@ -6,7 +6,7 @@ The command line and the documentation use the same functions.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path as File
@@ -44,6 +44,7 @@ __all__ = [
 ]
 
 Method = str | Callable[..., Any] | ModuleType
+Via = Sequence[tuple[float, float]]
 
 SHARE = 0.02
 """The turning radius of `plan` without a method, as a share of the map's longer side."""
@@ -67,13 +68,17 @@ class Judged:
     depth : float
         How deeply it enters, in the map's unit; 0 if it is feasible.
     clearance : float
-        Least distance to an obstacle or the border, in the map's unit; 0 if it is not feasible.
+        Least distance to an obstacle or the border of the map itself, in the map's unit; 0 if the path enters one.
+    robot_radius : float
+        The clearance that a feasible path keeps, in the map's unit.
     curvature : float
         Largest absolute curvature of samples, in 1/unit; corners have none.
     corners : bool
         Whether the direction of travel jumps somewhere.
     shortest : float
-        Length of the exact shortest path; infinite if there is none.
+        Length of the exact shortest path, through the way points; infinite if there is none.
+    via : tuple of tuple of float
+        Way points (x, y) between start and target.
     """
 
     problem: Problem = field(repr=False)
@@ -86,6 +91,8 @@ class Judged:
     curvature: float
     corners: bool
     shortest: float
+    robot_radius: float
+    via: tuple[tuple[float, float], ...]
 
     @property
     def gap(self) -> float:
@@ -118,15 +125,23 @@ class Judged:
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw map, path and exact shortest path on matplotlib's `axes`, or on new ones, which are returned."""
         from bezierplan.figures import drawn_path
-        from bezierplan.geometry import shortest_paths
+        from bezierplan.running import legs
+        from bezierplan.workspaces import robot
 
         if axes is None:
             import matplotlib.pyplot as plt
 
             axes = plt.figure(layout="constrained").add_subplot()
-        bound = shortest_paths.shortest_path(self.problem)
-        drawn_path.draw(axes, self.problem, self.path, bound.points, self.collision)
+        bound = legs.shortest(legs.legs(self.problem, self.via))
+        own = self.problem._replace(workspace=robot.original(self.problem.workspace))
+        drawn_path.draw(axes, own, self.path, bound.points, self.collision)
         return axes
+
+    def to_picture(self, file: str | File) -> None:
+        """Draw the same with a legend into a file whose suffix matplotlib knows, such as .svg or .png."""
+        from bezierplan.figures import drawn_path
+
+        drawn_path.save(File(file), self.plot)
 
     def to_csv(self, file: str | File, *, step: float | None = None) -> None:
         """Write distance, x, y, heading and curvature along the path; `step` as in `sample`, by default a thousandth of the length."""
@@ -173,6 +188,9 @@ class Answer(Judged):
         Best objective after each generation, (generations + 1,).
     stop : str
         Why it ended.
+    turning_radius : float
+        Radius of the tightest turn, where the planner is `rounded_shortest_path`: 0 where a corner is left, infinite without turns; nan of
+        other planners.
     """
 
     method: str
@@ -182,6 +200,7 @@ class Answer(Judged):
     evaluations: int
     history: np.ndarray = field(repr=False)
     stop: str
+    turning_radius: float
 
 
 @dataclass(frozen=True)
@@ -215,7 +234,7 @@ def read_map(
     rule : {"overlap", "centre"}, optional
         Which cells polygons occupy; overlap by default.
     robot_radius : float, optional
-        By how much the obstacles of a ROS map grow, in metres.
+        Radius of the robot, in the map's unit: obstacles grow by it and the border shrinks. Verdicts tell the clearance to the map itself.
     unit : str, optional
         Name of the unit of length; by default m, of grids cell.
     most_pixels : int, optional
@@ -224,17 +243,18 @@ def read_map(
     Returns
     -------
     Grid or Polygons
+        With a `robot_radius`, a grid has the grown obstacles as polygons in its field `drawn`.
 
     Raises
     ------
     ValueError
         Names file, place and what is expected.
     """
-    from bezierplan.workspaces import files, map_files
+    from bezierplan.workspaces import map_files
 
     source = File(file)
-    given = {"cell": cell, "rule": rule, "robot_radius": robot_radius, "unit": unit, "most_pixels": most_pixels}
-    return files.load(map_files.described(source, **given), source.parent)
+    description = map_files.described(source, cell=cell, rule=rule, unit=unit, most_pixels=most_pixels, cells=cell is not None)
+    return map_files.read(source, description, robot_radius)
 
 
 def shortest_path(problem: Problem) -> Shortest:
@@ -279,20 +299,31 @@ def check(problem: Problem, path: Path) -> Judged:
     >>> judged.feasible, round(judged.length, 3), round(judged.clearance, 3)
     (True, 4.03, 0.5)
     """
-    return Judged(**_verdict(_placed(problem), path))
+    placed = _placed(problem)
+    return Judged(**verdict(placed, path, shortest_path(placed).length))
 
 
-def _verdict(problem: Problem, path: Path | None) -> dict[str, Any]:
+def verdict(problem: Problem, path: Path | None, shortest: float, via: Via = ()) -> dict[str, Any]:
+    """The fields of `Judged` for a path, or for none.
+
+    shortest: length of the exact shortest path. Raises ValueError if the path is feasible and yet shorter than that, or closer to the map's
+    own obstacles than the robot's radius, so that the checker or the bound is wrong.
+    """
     from bezierplan.analysis.measures import CURVATURE_SAMPLES
-    from bezierplan.geometry import checker, curves, shortest_paths
+    from bezierplan.geometry import checker, curves
     from bezierplan.geometry.region import region
+    from bezierplan.workspaces import robot
 
-    shortest = shortest_paths.shortest_path(problem).length
+    grown = robot.grown_of(problem.workspace)
+    asked = {"robot_radius": grown.radius if grown else 0.0, "via": tuple(via), "shortest": shortest}
     if path is None:
         nothing = dict.fromkeys(("length", "depth", "clearance", "curvature"), math.nan)
-        return {"problem": problem, "path": None, **nothing, "feasible": False, "collision": None, "corners": False, "shortest": shortest}
+        return {"problem": problem, "path": None, **nothing, "feasible": False, "collision": None, "corners": False, **asked}
     pieces = curves.bezier_pieces(path)
     verdict = checker.check(pieces, region(problem.workspace))
+    clearance = checker.check(pieces, region(grown.original)).clearance if grown else verdict.clearance
+    if grown and verdict.feasible and clearance < grown.radius - robot.TOLERANCE:
+        raise ValueError(f"its path is feasible, but {clearance:.12g} from an obstacle, less than the robot's radius: the checker is wrong")
     kappa, _ = curves.curvature(path, max(CURVATURE_SAMPLES, 20 * len(pieces) + 1))
     collision = None if verdict.feasible else tuple(curves.point_at(path, verdict.collision_at).tolist())
     return {
@@ -302,14 +333,23 @@ def _verdict(problem: Problem, path: Path | None) -> dict[str, Any]:
         "feasible": verdict.feasible,
         "collision": collision,
         "depth": verdict.depth,
-        "clearance": verdict.clearance,
+        "clearance": clearance,
         "curvature": float(np.nan_to_num(np.abs(kappa)).max()),
         "corners": not math.isfinite(curves.curvature_jump(path)),
-        "shortest": shortest,
+        **asked,
     }
 
 
-def plan(problem: Problem, method: Method | None = None, *, seed: int = 0, **settings: Any) -> Answer:
+def plan(
+    problem: Problem,
+    method: Method | None = None,
+    *,
+    seed: int = 0,
+    robot_radius: float = 0.0,
+    via: Via = (),
+    strict: bool = False,
+    **settings: Any,
+) -> Answer:
     """Plan one path and judge it by exact geometry.
 
     Parameters
@@ -321,6 +361,13 @@ def plan(problem: Problem, method: Method | None = None, *, seed: int = 0, **set
         shortest path with rounded corners.
     seed : int
         Of the random numbers.
+    robot_radius : float
+        Radius of the robot, in the map's unit: obstacles grow by it and the border shrinks. 0 if the map was read with one.
+    via : sequence of tuple of float
+        Way points (x, y), in their order: the path joins paths from one to the next, with a corner at each. For the planners
+        `rounded_shortest_path` and `shortest_path`.
+    strict : bool
+        Whether a turning radius that cannot be kept everywhere is an error. For `rounded_shortest_path`.
     **settings
         Settings in place of the method's own.
 
@@ -332,7 +379,7 @@ def plan(problem: Problem, method: Method | None = None, *, seed: int = 0, **set
     ------
     ValueError
         Names the argument or the setting and what is expected: an unknown method, a wrong setting, a start in an obstacle, a map that the
-        planner does not serve.
+        planner does not serve, a turning radius that cannot be kept where `strict` asks for it.
     TypeError
         For a problem that is no `Problem`, or a method that is none of the above.
 
@@ -344,27 +391,44 @@ def plan(problem: Problem, method: Method | None = None, *, seed: int = 0, **set
     >>> answer = plan(problem, turning_radius=0.5)
     >>> answer.feasible, round(answer.length, 3), round(answer.gap, 4)
     (True, 8.416, 0.0016)
+    >>> wide = plan(problem, robot_radius=0.5)
+    >>> wide.feasible, round(wide.length, 3), round(wide.clearance, 6)
+    (True, 9.156, 0.5)
     """
+    from bezierplan.planners import rounded_shortest_path
     from bezierplan.running import answer as door
+    from bezierplan.running import legs
     from bezierplan.running.columns import TAKEN
     from bezierplan.running.loans import lend
 
-    problem = _placed(problem)
     if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
         raise ValueError(f"seed: {seed!r}; expected a whole number of at least 0")
+    _check_problem(problem)
     name, module, preset = _method(method, problem)
     chosen = preset | settings
+    problem = _placed(_grown(problem, robot_radius), getattr(module, "workspaces", None))
     _check_settings(name, module, chosen, problem)
-    loan = lend({problem.name: problem})[problem.name]
-    answered = module.plan(loan.problem, np.random.default_rng(seed), **chosen)
-    try:
-        found = door.accepted(answered, problem, {*TAKEN, *chosen})
-    except door.Unfit as fault:
-        raise ValueError(f"the answer of planner {name}: {fault}") from None
-    if fault := loan.thorough_fault():
-        raise ValueError(f"planner {name}: {fault}")
+    rounded = module is rounded_shortest_path
+    legs.check_planner(module.__name__ if isinstance(module, ModuleType) else name, via, strict)
+    parts = legs.legs(problem, via)
+    called = rounded_shortest_path.gentlest if rounded else module.plan
+    answers = []
+    for part in parts:
+        loan = lend({part.name: part})[part.name]
+        answered = called(loan.problem, np.random.default_rng(seed), **chosen)
+        try:
+            answers.append(door.accepted(answered, part, {*TAKEN, *chosen}))
+        except door.Unfit as fault:
+            raise ValueError(f"the answer of planner {name}: {fault}") from None
+        if fault := loan.thorough_fault():
+            raise ValueError(f"planner {name}: {fault}")
+    found = legs.joined(answers)
+    kept = found.extra.get("least_radius", math.nan) if rounded else math.nan
+    if strict:
+        legs.check_kept(chosen["turning_radius"], kept, problem.workspace.unit)
     return Answer(
-        **_verdict(problem, found.path),
+        **verdict(problem, found.path, legs.shortest(parts).length, via),
+        turning_radius=kept,
         method=name,
         settings=chosen,
         claimed_feasible=found.claimed_feasible,
@@ -375,13 +439,28 @@ def plan(problem: Problem, method: Method | None = None, *, seed: int = 0, **set
     )
 
 
-def _placed(problem: Problem) -> Problem:
-    """A problem whose start and target are known to be free. Raises TypeError and ValueError."""
-    from bezierplan.running import problems
-
+def _check_problem(problem: Problem) -> None:
     if not isinstance(problem, Problem):
         raise TypeError(f"problem: is a {type(problem).__name__}; expected a Problem")
-    return problems.build(problem.name, {"start": problem.start, "target": problem.target}, problem.workspace)
+
+
+def _grown(problem: Problem, radius: float) -> Problem:
+    from bezierplan.workspaces import robot
+
+    return problem._replace(workspace=robot.grow(problem.workspace, radius))
+
+
+def _placed(problem: Problem, served: Collection[str] | None = None) -> Problem:
+    """A problem whose start and target are known to be free, in the workspace that suits a planner of some kinds, None for all.
+
+    Raises TypeError and ValueError.
+    """
+    from bezierplan.running import problems
+    from bezierplan.workspaces import robot
+
+    _check_problem(problem)
+    workspace = robot.suited(problem.workspace, served)
+    return problems.build(problem.name, {"start": problem.start, "target": problem.target}, workspace)
 
 
 class _Function:
@@ -534,7 +613,8 @@ def replay(run: str) -> Answer:
         raise ValueError(f"run: {run}: is a drive; expected a run in a world that stands still, or `bezierplan replay`")
     names = planner_settings(planner_module(row["planner"]))
     return Answer(
-        **_verdict(made.problems[row["problem"]], path_of(row)),
+        **verdict(made.problems[row["problem"]], path_of(row), shortest_path(made.problems[row["problem"]]).length),
+        turning_radius=float(row.get("least_radius", math.nan)),
         method=f"{study}/{method}",
         settings={name: row[name] for name in names},
         claimed_feasible=bool(row["claimed_feasible"]),

@@ -45,7 +45,7 @@ Ends = dict[str, list[float]]
 def _own_map(file: Path, start: str | None, target: str | None) -> tuple[list[Path], dict, Ends]:
     """The files of a map, its workspace as a study describes it, and the ends of the paths. Raises ValueError for a faulty map."""
     ends = {"start": list(point("--start", start)), "target": list(point("--target", target))}
-    workspace = described(file, needs_cells=True)
+    workspace = described(file, cells=True)
     files.load(workspace, file.parent)
     return files.sources(workspace, file.parent), workspace, ends
 

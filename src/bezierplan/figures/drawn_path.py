@@ -11,6 +11,7 @@ from bezierplan.figures.panels import paths, workspace
 from bezierplan.workspaces.problem import Path, Problem
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path as File
 
     from matplotlib.axes import Axes
@@ -27,14 +28,14 @@ def draw(axes: Axes, problem: Problem, path: Path | None, shortest: np.ndarray, 
     paths.draw_parts(axes, paths.table(drawn), narrow=False, clip=True)
 
 
-def save(file: File, problem: Problem, path: Path | None, shortest: np.ndarray, collision: tuple[float, float] | None) -> None:
-    """The same as a picture with a legend, of the kind that the file's suffix names."""
+def save(file: File, drawn: Callable[[Axes], object]) -> None:
+    """What a function draws on axes as a picture with a legend, of the kind that the file's suffix names."""
     import matplotlib as mpl
     from matplotlib.figure import Figure
 
     with mpl.rc_context(style.SETTINGS):
         figure = Figure(figsize=(style.NARROW, style.NARROW), layout="constrained")
         axes = figure.add_subplot()
-        draw(axes, problem, path, shortest, collision)
+        drawn(axes)
         figure.legend(*axes.get_legend_handles_labels(), loc="outside lower center", ncols=3)
         figure.savefig(file, dpi=300)

@@ -14,11 +14,14 @@ import numpy as np
 
 from bezierplan.geometry import curves, shortest_paths
 from bezierplan.geometry.checker import first_collision
-from bezierplan.geometry.region import from_origin, region
+from bezierplan.geometry.region import Region, from_origin, region
 from bezierplan.kernels import compiled
 from bezierplan.planners import About, Plan, Range
 from bezierplan.planners.parts.settings import UNITS, with_settings
+from bezierplan.workspaces import robot
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.limits import LARGEST
+from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Path, Problem
 
 extra = ("turns", "tight_turns", "least_radius")
@@ -34,6 +37,13 @@ _SMALLEST = 0.01
 
 # An arc of at most this angle is one cubic piece, which deviates outwards from its circle by at most 4e-6 of the radius.
 _PIECE_ANGLE = math.pi / 4
+
+# Wishes that are tried where the turning radius is not kept, for each halving, and the relative difference that decides no further.
+_STEPS_PER_OCTAVE = 4
+_SAME_RADIUS = 1e-4
+
+# The smallest wish that is tried, as a share of the map's circumference.
+_SMALLEST_WISH = 1e-5
 
 # A point of the shortest path this close to a circle, in units, lies on it.
 _ON_CIRCLE = 1e-3
@@ -56,8 +66,10 @@ class Turns(NamedTuple):
 class Settings(NamedTuple):
     """How round the path is. Where there is no room, both are smaller; the extra columns report by how much."""
 
-    turning_radius: Annotated[float, Range(0), About("smallest radius that the path should have; 0 leaves the corners", unit=UNITS)]
-    offset: Annotated[float, Range(0), About("distance to keep from the corners around which the path turns", unit=UNITS)]
+    turning_radius: Annotated[
+        float, Range(0, LARGEST), About("smallest radius that the path should have; 0 leaves the corners", unit=UNITS)
+    ]
+    offset: Annotated[float, Range(0, LARGEST), About("distance to keep from the corners around which the path turns", unit=UNITS)]
 
 
 @with_settings(Settings)
@@ -78,12 +90,52 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         those with a smaller radius than the turning radius; least_radius, the smallest radius of a turn, in units: 0 where a corner is
         left, infinite if there are no turns.
     """
+    return _answer(problem, shortest_paths.shortest_path(problem), region(problem.workspace), settings)
+
+
+@with_settings(Settings)
+def gentlest(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
+    """The same, but where the turning radius cannot be kept, another wish is taken if its tightest turn is wider: the largest that is kept.
+
+    So a larger wish gives no tighter turn than a smaller one. Wishes shrink on a fixed scale until one is kept, and then the largest
+    between it and the one before is found by halving.
+    """
     bound = shortest_paths.shortest_path(problem)
+    blocked = region(problem.workspace)
+    first = _answer(problem, bound, blocked, settings)
+    if math.isinf(bound.length) or first.extra["tight_turns"] == 0:
+        return first
+    x_low, x_high, y_low, y_high = problem.workspace.bounds
+    around = 2 * (x_high - x_low + y_high - y_low)
+    failed, tries, kept = min(settings.turning_radius, around), first.evaluations, None
+    number = math.ceil(math.log2(failed) * _STEPS_PER_OCTAVE) - 1
+    while kept is None or failed - kept[0] > _SAME_RADIUS * failed:
+        wish = 2 ** (number / _STEPS_PER_OCTAVE) if kept is None else 0.5 * (kept[0] + failed)
+        if wish < _SMALLEST_WISH * around:
+            return first._replace(evaluations=tries)
+        number -= 1
+        found = _answer(problem, bound, blocked, settings._replace(turning_radius=wish))
+        tries += found.evaluations
+        if found.extra["tight_turns"]:
+            failed = wish
+        else:
+            kept = wish, found
+    best = kept[1]._replace(extra=kept[1].extra | {"tight_turns": kept[1].extra["turns"]})
+    if best.extra["least_radius"] <= first.extra["least_radius"] * (1 + _SAME_RADIUS):
+        best = first
+    return best._replace(evaluations=tries)
+
+
+def _answer(problem: Problem, bound: shortest_paths.Bound, blocked: Region, settings: Settings) -> Plan:
+    """The shortest path, rounded."""
     if math.isinf(bound.length):
         nothing = {"turns": 0, "tight_turns": 0, "least_radius": math.nan}
         return Plan(None, math.inf, claimed_feasible=False, evaluations=1, history=np.array([math.inf]), stop="no way", extra=nothing)
     turns = turns_of(bound.points, problem.workspace)
-    points, radii, tries = _rounded(problem, turns, settings.turning_radius, settings.offset)
+    points, radii, tries, free = _rounded(problem, turns, blocked, settings)
+    if not free:  # around corners of a grown obstacle there may be less room than for a circle
+        points, radii, further, _ = _rounded(problem, turns_of(bound.points, None), blocked, settings)
+        tries += further
     path = Path("cubic_chain", points)
     length = curves.length(path)
     return Plan(
@@ -102,21 +154,32 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 
 def turns_of(points: np.ndarray, workspace: object) -> Turns:
-    """The turns of a shortest path, a polyline (n, 2). Around circular obstacles the vertices of an arc are one turn."""
+    """The turns of a shortest path, a polyline (n, 2). Around circles and round corners the vertices of an arc are one turn."""
     heading = _unit(np.diff(points, axis=0))
     bend = heading[:-1, 0] * heading[1:, 1] - heading[:-1, 1] * heading[1:, 0]
     bends = np.flatnonzero((np.abs(bend) > _STRAIGHT) | ((heading[:-1] * heading[1:]).sum(axis=1) < 0))
     corner, radius = points[bends + 1], np.zeros(len(bends))
     first = np.ones(len(bends), dtype=bool)
-    if isinstance(workspace, Circles) and len(bends) and len(workspace.radii):
-        depth = np.hypot(*(corner[:, None] - workspace.centres).transpose(2, 0, 1)) - workspace.radii
+    centres, radii, near = _discs(workspace)
+    if len(bends) and len(radii):
+        depth = np.hypot(*(corner[:, None] - centres).transpose(2, 0, 1)) - radii
         nearest = np.abs(depth).argmin(axis=1)
-        round_circle = np.abs(depth)[np.arange(len(bends)), nearest] < _ON_CIRCLE
-        corner = np.where(round_circle[:, None], workspace.centres[nearest], corner)
-        radius = np.where(round_circle, workspace.radii[nearest], 0.0)
+        round_circle = np.abs(depth)[np.arange(len(bends)), nearest] < near
+        corner = np.where(round_circle[:, None], centres[nearest], corner)
+        radius = np.where(round_circle, radii[nearest], 0.0)
         first[1:] = ~(round_circle[1:] & round_circle[:-1] & (nearest[1:] == nearest[:-1]))
     begin, end = _runs(first)
     return Turns(corner[begin], radius[begin], heading[bends[begin]], heading[bends[end] + 1], np.sign(bend[bends[begin]]))
+
+
+def _discs(workspace: object) -> tuple[np.ndarray, np.ndarray, float]:
+    """Centres (n, 2) and radii (n,) of what a shortest path can be round at, and how close to it, in units, its vertices lie."""
+    if isinstance(workspace, Circles):
+        return workspace.centres, workspace.radii, _ON_CIRCLE
+    if isinstance(workspace, Polygons) and workspace.grown:
+        around = workspace.grown.radius * (1 + robot.ARC_EXCESS)  # outside the tangents at a corner
+        return workspace.grown.centres, np.full(len(workspace.grown.centres), around), robot.ARC_EXCESS * around + robot.TOLERANCE
+    return np.empty((0, 2)), np.empty(0), 0.0
 
 
 def _runs(begins: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -129,20 +192,19 @@ def _unit(vectors: np.ndarray) -> np.ndarray:
     return vectors / np.maximum(np.hypot(*vectors.T), np.finfo(float).tiny)[:, None]
 
 
-def _rounded(problem: Problem, turns: Turns, turning_radius: float, offset: float) -> tuple[np.ndarray, np.ndarray, int]:
-    """Control points of the rounded path, radius (n,) of each turn, and the number of paths tried.
+def _rounded(problem: Problem, turns: Turns, blocked: Region, settings: Settings) -> tuple[np.ndarray, np.ndarray, int, bool]:
+    """Control points of the rounded path, radius (n,) of each turn, the number of paths tried, and whether the path is free.
 
     Where two circles of the same sense get in each other's way, they become one turn and are pulled inwards in the same direction. Where
     that does not help, circles are pulled inwards less, and only then shrink.
     """
     count = len(turns.side)
-    blocked = region(problem.workspace)
     # Share of the desired radius, share of the way inwards up to the corner's clearance, and whether a turn begins at a corner.
     share, pulled, begins = np.ones(count), np.ones(count), np.ones(count, dtype=bool)
     tries = 0
     while True:
         tries += 1
-        radii, centres = _circles(turns, begins, share, pulled, turning_radius, offset)
+        radii, centres = _circles(turns, begins, share, pulled, settings)
         legs, sweeps, bent_back, crowded = _string(problem, turns, centres, radii)
         if bent_back.any() and _join(begins, bent_back, turns):
             continue
@@ -158,7 +220,7 @@ def _rounded(problem: Problem, turns: Turns, turning_radius: float, offset: floa
         bad = np.zeros(count + 2, dtype=bool)  # with start and target around the turns
         bad[owner[hit].ravel()] = True
         if not bad[1:-1].any() or not share[bad[1:-1]].any():
-            return points, radii, tries
+            return points, radii, tries, not bad.any()
         _shrink(share, bad[1:-1], begins)
 
 
@@ -188,12 +250,10 @@ def _beside(marked: np.ndarray) -> np.ndarray:
     return wide[:-2] | wide[1:-1] | wide[2:]
 
 
-def _circles(
-    turns: Turns, begins: np.ndarray, share: np.ndarray, pulled: np.ndarray, turning_radius: float, offset: float
-) -> tuple[np.ndarray, np.ndarray]:
+def _circles(turns: Turns, begins: np.ndarray, share: np.ndarray, pulled: np.ndarray, settings: Settings) -> tuple[np.ndarray, np.ndarray]:
     """Radii (n,) and centres (n, 2) of the circles around which the path runs; the corners lie inside them, at the depth of the offset."""
-    margin = turns.radius + share * offset
-    radii = np.maximum(margin, share * turning_radius)
+    margin = turns.radius + share * settings.offset
+    radii = np.maximum(margin, share * settings.turning_radius)
     first, last = _runs(begins)
     inward = _unit(turns.after[last] - turns.before[first])[np.cumsum(begins) - 1]
     return radii, turns.corner + (pulled * (radii - margin))[:, None] * inward

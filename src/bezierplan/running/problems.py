@@ -11,9 +11,12 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from bezierplan.geometry import cell_length
+from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import blocks, region
-from bezierplan.workspaces import files, lattice, random_blocks
+from bezierplan.workspaces import files, lattice, random_blocks, robot
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem, Workspace
 
@@ -43,13 +46,21 @@ def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, floa
             raise ValueError(f"{key}: {error}") from None
     else:
         raise ValueError(f"{key}: {value}: only a grid has cell numbers; expected {end}: [x, y]")
-    x_low, x_high, y_low, y_high = workspace.bounds
+    grown, home = robot.grown_of(workspace), robot.original(workspace)
+    x_low, x_high, y_low, y_high = home.bounds
     if not (x_low <= point[0] <= x_high and y_low <= point[1] <= y_high):
         raise ValueError(
             f"{key}: {value}: outside the workspace; expected x from {x_low:g} to {x_high:g} and y from {y_low:g} to {y_high:g}"
         )
-    if blocks(region(workspace), point):
+    if blocks(region(home), point):
         raise ValueError(f"{key}: {value}: in an obstacle; expected a free place of the workspace")
+    if grown and blocks(region(workspace), point):
+        distance = check(np.array([[point, point]]), region(home)).clearance
+        least = grown.radius if distance < grown.radius else (1 + robot.ARC_EXCESS) * grown.radius
+        cells = ", by whole cells" if isinstance(workspace, Grid) and not workspace.drawn else ""
+        raise ValueError(
+            f"{key}: {value}: {distance:.6g} from an obstacle or the border; expected at least the robot's radius, {least:.6g}{cells}"
+        )
     if isinstance(workspace, Grid) and workspace.drawn and workspace.occupied[workspace.cell_of(*point)]:
         raise ValueError(f"{key}: {value}: in an occupied cell; expected a free one, or a smaller cell")
     return point

@@ -5,19 +5,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from bezierplan.workspaces.arrays import read_only
+from bezierplan.workspaces.grown import Grown
 
 
 @dataclass(frozen=True)
 class Circles:
     """bounds: lowest and highest x, lowest and highest y, in units. centres: (n, 2) in units. radii: (n,) in units. unit: its name.
 
-    The arrays are read-only.
+    grown: what they were before they grew by a robot's radius, if they did. The arrays are read-only.
     """
 
     bounds: tuple[float, float, float, float]
     centres: np.ndarray
     radii: np.ndarray
     unit: str
+    grown: Grown | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "centres", read_only(self.centres, float))

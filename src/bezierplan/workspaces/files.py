@@ -7,8 +7,10 @@ from pathlib import Path
 import numpy as np
 
 from bezierplan.workspaces import grid, moving_ai, random_field
+from bezierplan.workspaces.arrays import read_only
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.grown import Grown
 from bezierplan.workspaces.polygons import Polygons
 
 Workspace = Grid | Circles | Polygons
@@ -59,6 +61,7 @@ def to_json(workspace: Workspace) -> str:
             content["origin"] = workspace.origin
         if workspace.heights is not None:
             content["heights"] = workspace.heights.tolist()
+        content |= _grown_content(workspace.grown)
     elif isinstance(workspace, Circles):
         content = _circles_content(workspace)
     else:
@@ -68,12 +71,25 @@ def to_json(workspace: Workspace) -> str:
 
 def _polygons_content(polygons: Polygons) -> dict:
     obstacles = [[ring.tolist() for ring in rings] for rings in polygons.obstacles]
-    return {"kind": "polygons", "bounds": polygons.bounds, "obstacles": obstacles}
+    return {"kind": "polygons", "bounds": polygons.bounds, "obstacles": obstacles} | _grown_content(polygons.grown)
 
 
 def _circles_content(circles: Circles) -> dict:
     table = np.column_stack([circles.centres, circles.radii]).tolist()
-    return {"kind": "circles", "bounds": circles.bounds, "circles": table}
+    return {"kind": "circles", "bounds": circles.bounds, "circles": table} | _grown_content(circles.grown)
+
+
+def _grown_content(grown: Grown | None) -> dict:
+    if grown is None:
+        return {}
+    return {"grown": {"radius": grown.radius, "original": to_json(grown.original), "centres": grown.centres.tolist()}}
+
+
+def _grown(content: dict) -> Grown | None:
+    if "grown" not in content:
+        return None
+    known = content["grown"]
+    return Grown(known["radius"], from_json(known["original"]), read_only(np.array(known["centres"], dtype=float).reshape(-1, 2), float))
 
 
 def from_json(text: str) -> Workspace:
@@ -81,16 +97,18 @@ def from_json(text: str) -> Workspace:
     content = json.loads(text)
     unit = content["unit"]
     if content["kind"] == "grid":
-        flat = replace(grid.from_lines(content["rows"], content["cell"], unit), origin=tuple(content.get("origin", (0.0, 0.0))))
+        flat = replace(
+            grid.from_lines(content["rows"], content["cell"], unit), origin=tuple(content.get("origin", (0.0, 0.0))), grown=_grown(content)
+        )
         return replace(flat, heights=np.array(content["heights"])) if "heights" in content else flat
     bounds = tuple(content["bounds"])
     if content["kind"] in ("polygons", "raster"):
         obstacles = tuple(tuple(np.array(ring) for ring in rings) for rings in content["obstacles"])
-        polygons = Polygons(bounds, obstacles, unit)
+        polygons = Polygons(bounds, obstacles, unit, _grown(content))
         if content["kind"] == "polygons":
             return polygons
         cells = grid.from_lines(content["rows"], content["cell"], unit)
         return replace(cells, origin=tuple(content["origin"]), drawn=polygons)
     table = np.array(content["circles"], dtype=float).reshape(-1, 3)
-    circles = Circles(bounds, table[:, :2], table[:, 2], unit)
+    circles = Circles(bounds, table[:, :2], table[:, 2], unit, _grown(content))
     return random_field.from_circles(circles) if content["kind"] == "random_field" else circles

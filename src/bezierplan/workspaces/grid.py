@@ -12,6 +12,7 @@ import numpy as np
 from bezierplan.workspaces import text_file
 from bezierplan.workspaces.arrays import read_only
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grown import Grown
 from bezierplan.workspaces.limits import check_numbers
 from bezierplan.workspaces.polygons import Polygons
 
@@ -30,7 +31,8 @@ class Grid:
     occupied: bool (rows, columns), row 0 at the bottom. cell: side of a cell, in units. unit: name of the unit of length. origin: x, y of
     the lower left corner, in units. drawn: the shapes from which the cells were drawn, if any: circles, which only pictures show, or
     polygons, which are then the obstacles of the certified check and of the exact bounds (`raster`). heights: (rows, columns) height of the
-    ground in each cell, in units, where it is not flat; only some planners use them. The arrays are read-only.
+    ground in each cell, in units, where it is not flat; only some planners use them. grown: what the grid was before its occupied cells
+    grew by a robot's radius, if they did. The arrays are read-only.
     """
 
     occupied: np.ndarray
@@ -39,6 +41,7 @@ class Grid:
     origin: tuple[float, float] = (0.0, 0.0)
     drawn: Circles | Polygons | None = None
     heights: np.ndarray | None = None
+    grown: Grown | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "occupied", read_only(self.occupied, bool))

@@ -58,3 +58,18 @@ def from_polygons(polygons: Polygons, cell: float, rule: Rule) -> Grid:
             logger.warning("obstacle %d occupies no cell of side %g", number, cell)
         occupied[near] |= met
     return Grid(occupied, cell, polygons.unit, (left - 0.5 * cell, bottom - 0.5 * cell), polygons)
+
+
+def overlapped(polygons: Polygons, grid: Grid) -> np.ndarray:
+    """Which cells of a grid overlap an obstacle or the outside of the border of polygons: bool (rows, columns)."""
+    import shapely
+
+    left, right, bottom, top = polygons.bounds
+    free = shapely.box(left, bottom, right, top).difference(
+        shapely.union_all([shapely.Polygon(outer, holes) for outer, *holes in polygons.obstacles])
+    )
+    rows, columns = grid.occupied.shape
+    x, y = np.meshgrid(np.arange(columns), np.arange(rows))
+    low, high = grid.in_units(np.stack([x, y], axis=-1) + _SAME_LINE), grid.in_units(np.stack([x, y], axis=-1) + 1 - _SAME_LINE)
+    shapely.prepare(free)
+    return ~shapely.covers(free, shapely.box(low[..., 0], low[..., 1], high[..., 0], high[..., 1]))

@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from bezierplan.schema import checked
+from bezierplan.workspaces import robot
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.limits import check_numbers, check_thickness
 from bezierplan.workspaces.text_file import read_text
@@ -34,8 +35,8 @@ SMALLEST_YAW = 1e-6
 def read(file: Path, folder: Path, unit: str, robot_radius: float = 0.0, most_pixels: int = MOST_PIXELS) -> Grid:
     """The grid of a map_server YAML file, one cell per pixel.
 
-    folder: where the image must lie, also through links. robot_radius: in units; cells whose centre is closer than that to the centre of an
-    occupied cell also count as occupied.
+    folder: where the image must lie, also through links. robot_radius: in units; cells that come closer than that to an occupied cell
+    or to the border also count as occupied.
 
     Raises ValueError, naming the key and what is expected.
     """
@@ -43,13 +44,10 @@ def read(file: Path, folder: Path, unit: str, robot_radius: float = 0.0, most_pi
     resolution = content["resolution"]
     check_thickness(resolution, "resolution:")
     occupied = _occupied(image_of(file, folder, content), content, most_pixels)
-    if robot_radius > 0 and occupied.any():
-        from scipy.ndimage import distance_transform_edt
-
-        occupied |= distance_transform_edt(~occupied) * resolution < robot_radius
     grid = Grid(occupied, float(resolution), unit, (float(content["origin"][0]), float(content["origin"][1])))
     check_numbers(np.array(grid.bounds), "origin, resolution: the border")
-    return grid
+    robot.check_radius(robot_radius)
+    return robot.by_cells(grid, robot_radius) if robot_radius > 0 else grid
 
 
 def image_of(file: Path, folder: Path, content: dict[str, Any] | None = None) -> Path:

@@ -17,7 +17,9 @@ class Options(Workspace):
     made: ClassVar[str] = "grid"
 
     file: File = Field(description="the YAML file of a map_server map in the study's folder")
-    robot_radius: NotNegative = Field(0, description="by how much obstacles grow, a number of at least 0")
+    robot_radius: NotNegative = Field(
+        0, description="a robot's radius: cells that come closer to an obstacle or the border are occupied, a number of at least 0"
+    )
     most_pixels: Annotated[int, value(lambda given: type(given) is int and given >= 1, "")] = Field(
         None, description="the most pixels of an image, a whole number of at least 1"
     )

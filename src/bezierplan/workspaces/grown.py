@@ -1,0 +1,18 @@
+"""What a map that has grown by a robot's radius remembers, so that a path of the robot's centre is also judged on the map itself."""
+
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from bezierplan.workspaces.files import Workspace
+
+
+class Grown(NamedTuple):
+    """radius: by how much obstacles grew and the border shrank, in units. original: the map before. centres: (n, 2) the corners of its
+    obstacles around which the grown ones are round, in units.
+    """
+
+    radius: float
+    original: "Workspace"
+    centres: np.ndarray

@@ -1,0 +1,222 @@
+"""Maps for a robot with a width: obstacles grow by its radius and the border shrinks by it, so that the robot's centre moves like a point.
+
+Circles grow exactly. The sides of polygons and cells move outwards by exactly the radius, and at a corner two of them are joined by
+tangents around the arc of the radius, which lie outside it by at most `ARC_EXCESS` of the radius. So every path of the centre that is free
+on the grown map keeps the radius, and none that keeps it by that share more is lost. Maps of cells with many corners grow by whole cells.
+"""
+
+import math
+from collections.abc import Collection
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bezierplan.workspaces import raster
+from bezierplan.workspaces.arrays import read_only
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.files import Workspace
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.grown import Grown
+from bezierplan.workspaces.limits import SMALLEST_FEATURE
+from bezierplan.workspaces.polygons import Polygons
+
+if TYPE_CHECKING:
+    import shapely
+
+ARC_EXCESS = 1e-4
+"""How far the tangents at a corner lie outside the arc at most, as a share of the radius; they are longer by two thirds of that."""
+
+SLACK = 1e-9
+"""By how much less than the radius polygons grow, in units, so that a slot exactly as wide as the robot stays open."""
+
+TOLERANCE = 1e-8
+"""By how much the clearance of a free path may fall short of the radius, in units: `SLACK`, and what the certified checker tolerates."""
+
+MOST_CORNERS = 1_000
+"""Most corners of the boundary of cells that grow as polygons: with more, the exact shortest path would take minutes."""
+
+# Points of a boundary this close together, in units, are one.
+_SAME_POINT = 1e-10
+
+# A corner that turns by less than this, in radians, needs no arc.
+_STRAIGHT = 1e-9
+
+
+def grow(workspace: Workspace, radius: float) -> Workspace:
+    """The map for the centre of a robot of a radius, in units, with its original as `grown`.
+
+    Of cells it is a grid with the grown polygons as `drawn`, in which the cells that these overlap are occupied.
+
+    Raises ValueError for a radius that is no number, 0 < radius < `SMALLEST_FEATURE`, or so large that nothing is free; and for a map that
+    has grown before.
+    """
+    check_radius(radius)
+    if radius == 0:
+        return workspace
+    if before := grown_of(workspace):
+        raise ValueError(f"robot_radius: {radius:g}: the map has grown by {before.radius:g} before; expected it once")
+    if isinstance(workspace, Circles):
+        bounds = _shrunk(workspace.bounds, radius)
+        grown = Grown(radius, workspace, workspace.centres)
+        return replace(workspace, bounds=bounds, radii=workspace.radii + radius, grown=grown)
+    if isinstance(workspace, Polygons):
+        return _polygons(workspace, _union_of_polygons(workspace), workspace.bounds, radius)
+    if isinstance(workspace.drawn, Polygons):
+        polygons = _polygons(workspace, _union_of_polygons(workspace.drawn), workspace.drawn.bounds, radius)
+        return raster.from_polygons(polygons, workspace.cell, "overlap")
+    shape = _union_of_cells(workspace)
+    if shape is None:
+        return by_cells(workspace, radius)
+    polygons = _polygons(workspace, shape, workspace.bounds, radius)
+    return replace(workspace, occupied=raster.overlapped(polygons, workspace), drawn=polygons)
+
+
+def suited(workspace: Workspace, served: Collection[str] | None) -> Workspace:
+    """A grown map for a planner that serves some kinds of workspace, None for all: the polygons themselves, unless it needs cells."""
+    if isinstance(workspace, Grid) and isinstance(workspace.drawn, Polygons) and workspace.drawn.grown:
+        return workspace.drawn if served is None or "polygons" in served else workspace
+    return workspace
+
+
+def check_radius(radius: float) -> None:
+    """Raise ValueError unless a robot can have this radius."""
+    if not (0 <= radius < math.inf) or 0 < radius < SMALLEST_FEATURE:
+        raise ValueError(f"robot_radius: {radius:g}; expected 0 or a number of at least {SMALLEST_FEATURE:g}")
+
+
+def grown_of(workspace: Workspace) -> Grown | None:
+    """By how much a map has grown and from which; None for a map as it was given."""
+    if isinstance(workspace, Grid) and isinstance(workspace.drawn, Polygons):
+        return workspace.drawn.grown
+    return workspace.grown
+
+
+def original(workspace: Workspace) -> Workspace:
+    """The map before it grew."""
+    grown = grown_of(workspace)
+    return grown.original if grown else workspace
+
+
+def _shrunk(bounds: tuple[float, float, float, float], radius: float) -> tuple[float, float, float, float]:
+    left, right, bottom, top = bounds
+    if min(right - left, top - bottom) < 2 * radius + SMALLEST_FEATURE:
+        raise _nothing_free(radius)
+    return left + radius, right - radius, bottom + radius, top - radius
+
+
+def _nothing_free(radius: float) -> ValueError:
+    return ValueError(
+        f"robot_radius: {radius:g}: no place of the map is that far from its obstacles and its border; expected a smaller one"
+    )
+
+
+def _polygons(workspace: Workspace, shape: "shapely.Geometry", bounds: tuple[float, float, float, float], radius: float) -> Polygons:
+    """Polygons around everything closer to a shape than the radius."""
+    import shapely
+
+    reach = radius - SLACK
+    limits = _shrunk(bounds, reach)
+    outline, centres = _outline(shape, reach)
+    inside = shapely.box(limits[0], limits[2], limits[1], limits[3])
+    if inside.difference(outline).area == 0:
+        raise _nothing_free(radius)
+    parts = [part for part in shapely.get_parts(outline) if part.intersects(inside)]
+    rings = tuple(tuple(np.array(ring.coords)[:-1] for ring in (part.exterior, *part.interiors)) for part in parts)
+    return Polygons(limits, rings, workspace.unit, Grown(radius, workspace, read_only(centres, float)))
+
+
+def _clean(union: "shapely.Geometry") -> "shapely.Geometry":
+    """A union without what rounding leaves between shapes that share a side: holes without room for a point, and points that repeat."""
+    import shapely
+
+    parts = []
+    for part in shapely.get_parts(union):
+        holes = [hole for hole in part.interiors if shapely.Polygon(hole).area > TOLERANCE * hole.length]
+        parts.append(shapely.Polygon(part.exterior, holes))
+    return shapely.remove_repeated_points(shapely.MultiPolygon(parts), _SAME_POINT)
+
+
+def _outline(shape: "shapely.Geometry", reach: float) -> tuple["shapely.Geometry", np.ndarray]:
+    """A shape and what is closer to it, and its convex corners (n, 2).
+
+    It is the union of the shape, of a rectangle outside each side, and of a sector at each convex corner, which begins and ends at the
+    rectangles' own corners. A buffer of GEOS would simplify the shape by a hundredth of the distance first.
+    """
+    import shapely
+
+    corners, before, after = _corners(shape)
+    if not len(corners):
+        return shape, corners
+    along = _unit(after - corners)
+    out = np.column_stack([along[:, 1], -along[:, 0]])  # the shape lies to the left
+    sides = shapely.polygons(np.stack([corners, corners + reach * out, after + reach * out, after], axis=1))
+    arriving = _unit(corners - before)
+    first = np.column_stack([arriving[:, 1], -arriving[:, 0]])
+    turn = np.arctan2(_cross(arriving, along), (arriving * along).sum(axis=1))
+    convex = np.flatnonzero(turn > _STRAIGHT)
+    sectors = [shapely.Polygon(_sector(corners[k], reach, first[k], out[k], turn[k])) for k in convex]
+    return _clean(shapely.union_all([shape, *sides, *sectors])), corners[convex]
+
+
+def _sector(corner: np.ndarray, reach: float, first: np.ndarray, last: np.ndarray, turn: float) -> np.ndarray:
+    """A corner, and the tangents (n, 2) around its arc, from one unit vector to another."""
+    parts = math.ceil(turn / (2 * math.acos(1 / (1 + ARC_EXCESS))))
+    half = 0.5 * turn / parts
+    angles = math.atan2(first[1], first[0]) + half * (2 * np.arange(parts) + 1)
+    around = np.column_stack([np.cos(angles), np.sin(angles)]) / math.cos(half)
+    return corner + reach * np.vstack([[0.0, 0.0], first, around, last])
+
+
+def _corners(shape: "shapely.Geometry") -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """The corners (n, 2) of a shape, which lies to the left of its boundary, and those before and after each."""
+    import shapely
+
+    rings = []
+    for part in shapely.get_parts(shape):
+        oriented = shapely.geometry.polygon.orient(part)
+        rings += [shapely.get_coordinates(ring)[:-1] for ring in (oriented.exterior, *oriented.interiors)]
+    around = [(ring, np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)) for ring in rings]
+    return tuple(np.concatenate([np.empty((0, 2)), *each]) for each in zip(*around)) if around else (np.empty((0, 2)),) * 3
+
+
+def _union_of_polygons(polygons: Polygons) -> "shapely.Geometry":
+    import shapely
+
+    return _clean(shapely.union_all([shapely.Polygon(outer, holes) for outer, *holes in polygons.obstacles]))
+
+
+def _union_of_cells(grid: Grid) -> "shapely.Geometry | None":
+    """The occupied cells as one shape; None if it has more than `MOST_CORNERS` corners."""
+    import shapely
+
+    cells = np.pad(grid.occupied, 1)
+    around = np.stack([cells[:-1, :-1], cells[:-1, 1:], cells[1:, :-1], cells[1:, 1:]]).sum(axis=0)
+    diagonal = (around == 2) & (cells[:-1, :-1] == cells[1:, 1:])
+    if ((around % 2 == 1) | diagonal).sum() > MOST_CORNERS:
+        return None
+    row, column = np.nonzero(np.diff(cells.astype(np.int8), axis=1)[1:-1] == 1)
+    _, end = np.nonzero(np.diff(cells.astype(np.int8), axis=1)[1:-1] == -1)
+    whole = shapely.simplify(shapely.union_all(shapely.box(column, row, end, row + 1)), 0)  # whole numbers: exact
+    return shapely.transform(whole, grid.in_units)
+
+
+def by_cells(grid: Grid, radius: float) -> Grid:
+    """A grid in which every cell that comes closer than the radius to an occupied one or to the border is occupied as well."""
+    from scipy.ndimage import binary_dilation, distance_transform_edt
+
+    walled = np.pad(grid.occupied, 1, constant_values=True)
+    # Two squares are as far apart as their centres would be if one of them were a cell nearer in both directions.
+    touching = binary_dilation(walled, np.ones((3, 3), dtype=bool))
+    occupied = walled | (distance_transform_edt(~touching) * grid.cell < radius - SLACK)
+    if occupied.all():
+        raise _nothing_free(radius)
+    return replace(grid, occupied=occupied[1:-1, 1:-1], grown=Grown(radius, grid, np.empty((0, 2))))
+
+
+def _unit(vectors: np.ndarray) -> np.ndarray:
+    return vectors / np.hypot(vectors[:, 0], vectors[:, 1])[:, None]
+
+
+def _cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    return a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]
