@@ -33,8 +33,8 @@ SENTENCES = {
         {"statistic": "rank"},
         {"direction": "lower"},
         "all 3 together",
-        "Case 1: of 3 comparisons in exact arc length, the decisive one is 3 cell higher (95 % interval 1 to 5); the claim says lower in all "
-        "of them; " + OURS.format("0.5 cell"),
+        "Case 1: of 3 comparisons in exact arc length, the decisive one is 3 cell higher (95 % interval 1 to 5); the claim says lower in "
+        "all of them; " + OURS.format("0.5 cell"),
     ),
     "a stated difference": (
         {"test": "equal_within", "effect": -0.000331, "low95": math.nan, "margin": 0.01},
