@@ -268,8 +268,11 @@ def test_deviation_is_in_per_cent_of_the_published_number_and_of_counts_for_as_m
     assert build.deviation(given) == "-1.0\u00a0%"
     assert build.deviation(given.model_copy(update={"ours": 298.0})) == "+49\u00a0%"
     assert build.deviation(given.model_copy(update={"published": 0.0})) == ""
-    count = {"statistic": "count", "published": 5.0, "n_published": 100.0, "ours": 220.0, "n": 4000.0}
-    assert build.deviation(given.model_copy(update=count)) == "+10\u00a0%"
+    count = given.model_copy(
+        update={"statistic": "count", "published": 5.0, "n_published": 100.0, "ours": 220.0, "scaled": 5.5, "n": 4000.0}
+    )
+    assert build.deviation(count) == "+10\u00a0%"
+    assert (count.beside, given.beside) == (5.5, 198.0)
 
 
 def test_the_scale_is_said_first_with_what_the_readme_rests_on():

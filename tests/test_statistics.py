@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from bezierplan.analysis import statistics
-from bezierplan.analysis.statistics import LEAST_RUNS, STATISTICS, interval, predicted, prediction, resampled, statistic
+from bezierplan.analysis.statistics import LEAST_RUNS, STATISTICS, interval, predicted, prediction, resampled, scaled, statistic
 from bezierplan.workspaces.seeds import generator
 
 samples = st.lists(st.floats(-1e6, 1e6), min_size=1, max_size=30).map(np.array)
@@ -270,6 +270,29 @@ def test_predicted_mean_has_the_error_of_both_samples():
     drawn = predicted("mean", values, 20, generator("both"))
     assert drawn.shape == (statistics.DRAWS,)
     assert drawn.std() == pytest.approx(values.std() * math.sqrt(1 / 20 + 1 / 50), rel=0.08)
+
+
+def test_counts_and_extremes_are_scaled_to_the_size_of_the_experiment():
+    events = np.array([1.0, 0.0] * 20)
+    assert scaled("count", events, 40, 10) == 5.0
+    assert scaled("count", events, 80, 10) == 2.5, "runs without a value are runs as well"
+    values = np.arange(1.0, 1001.0)
+    # The median of the least of n uniform values is 1 - 2 ** (-1 / n).
+    assert scaled("min", values, 1000, 10) == pytest.approx(1000 * (1 - 2**-0.1), abs=2)
+    assert scaled("max", values, 1000, 10) == pytest.approx(1000 * 2**-0.1, abs=2)
+
+
+@pytest.mark.parametrize("name", ["mean", "median", "std", "share"])
+def test_other_statistics_are_not_scaled(name):
+    values = np.arange(1.0, 12.0)
+    assert scaled(name, values, 11, 3) == statistic(name, values)
+
+
+def test_what_our_values_do_not_determine_is_not_scaled():
+    values = np.arange(1.0, 6.0)
+    assert scaled("min", values, 5, 100) == 1.0
+    assert scaled("min", values, 5, None) == 1.0
+    assert math.isnan(scaled("count", np.empty(0), 5, 3))
 
 
 def test_prediction_interval_is_what_the_quantile_accepts():

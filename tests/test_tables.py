@@ -200,7 +200,7 @@ def test_rows_do_not_depend_on_the_others():
 
 def test_columns_of_the_comparison():
     assert ",".join(compare(results()).columns) == (
-        "problem,method,metric,statistic,unit,n_published,value_published,n_ours,n_asked,value_ours,best,mean,median,"
+        "problem,method,metric,statistic,unit,n_published,value_published,n_ours,n_asked,value_ours,value_ours_scaled,best,mean,median,"
         "quartile1,quartile3,"
         "low95_ours,high95_ours,low95_predicted,high95_predicted,quantile_published,in_range,can_fail,power,verdict,why,identified,possible,"
         "share_claimed,share_feasible,bound,gap"
@@ -261,10 +261,11 @@ def test_shares_bound_and_gap():
 LEAST = SPEC | {"values": [{"metric": "length", "statistic": "min", "label": "length", "decimals": 2}]}
 
 
-def least(plain, fast=11.0, n=20):
+def least(plain, fast=11.0, n=20, other=11.0):
     """The row of the least length of `plain` on the problem `long`, whose bound is 9, beside published ones."""
-    printed = {"problem": "long", "method": ["plain", "fast"], "metric": "length", "statistic": "min", "n": n, "unit": "m"}
-    table = comparison.compare(results(), LEAST, pd.DataFrame(printed | {"value": [plain, fast]}), {}, [], "study/table1")
+    printed = {"problem": "long", "method": ["plain", "fast", "other"], "metric": "length", "statistic": "min", "n": n, "unit": "m"}
+    given = pd.DataFrame(printed | {"value": [plain, fast, other]}).dropna()
+    table = comparison.compare(results(), LEAST, given, {}, [], "study/table1")
     return row(table, "long", "plain", "length")
 
 
@@ -283,10 +284,17 @@ def test_published_minimum_between_the_bound_and_ours_cannot_fail():
 
 def test_what_would_accept_another_method_too_is_inconclusive():
     ours = results().runs.query("feasible and problem == 'long' and method == 'plain'")["length"]
-    apart, alike = (compare(results(), plain=f"{ours.median()}"), least(float(ours.min()) + 0.05, fast=float(ours.min()) + 0.06))
+    near = float(ours.min())
+    alike = least(near + 0.05, fast=near + 0.06, other=near + 0.07)
     assert (alike["in_range"], alike["power"], alike["verdict"]) == (True, 0.0, "inconclusive")
-    found = row(apart, "long", "plain", "length")
-    assert (found["power"], found["verdict"]) == (float(found["low95_predicted"] > 10 or found["high95_predicted"] < 10), "inconclusive")
+    assert least(near + 0.05, fast=near + 0.06, other=1000.0)["power"] == 0.5
+
+
+def test_a_single_other_method_is_no_yardstick_of_power():
+    ours = results().runs.query("feasible and problem == 'long' and method == 'plain'")["length"]
+    near = float(ours.min())
+    only, none = (least(near + 0.05, fast=fast, other=math.nan) for fast in (near + 0.06, 1000.0))
+    assert only["power"] == none["power"]
 
 
 def test_without_another_method_a_tenth_is_what_matters():
@@ -370,7 +378,7 @@ def test_a_comparison_shows_published_numbers_with_what_chance_gives(tmp_path):
     second = pd.DataFrame([("plain", 3, "length", "mean", 10, 4.5, 10, 4.0, 3.0, 5.0)], columns=["method", "obstacles", *columns])
     rows = pd.concat([first, first.assign(workspace="other"), first.assign(value_published=None), first.assign(metric="rank")])
     for name, table in (("table3", rows), ("table6", second)):
-        table.assign(quantile_published=0.25, in_range=True, verdict="agrees", why="").to_csv(
+        table.assign(value_ours_scaled=2.5, quantile_published=0.25, in_range=True, verdict="agrees", why="").to_csv(
             tmp_path / f"{name}.comparison.csv", index=False
         )
     spec = {"kind": "comparison", "of": ["table3", "table6"], "metrics": ["length"], "where": {"workspace": "equal"}}

@@ -13,6 +13,7 @@ One row for each group of runs, metric and statistic; an empty cell means that t
 | n_ours | our runs that count: feasible ones for metrics of feasible paths, all for the others |
 | n_asked | runs among which these are: the others failed, or have no such value |
 | value_ours | the statistic of these runs |
+| value_ours_scaled | the same for n_published runs (`statistics.scaled`): counts and extremes depend on their number |
 | best, mean, median, quartile1, quartile3 | of the same runs; best is the lowest |
 | low95_ours, high95_ours | 95 % bootstrap interval of value_ours; empty below two runs, and for min, max and range |
 | low95_predicted, high95_predicted | 95 % prediction interval for the number printed by an experiment of n_published runs |
@@ -46,7 +47,10 @@ LEAST_POWER = 0.5
 """Share of the numbers that matter which an interval has to exclude before a number in it agrees."""
 
 MATTERS = 0.1
-"""Where the paper prints no other method's number in a place, numbers that differ from ours by this share are those that matter."""
+"""Where the paper prints too few numbers of other methods in a place, numbers that differ from ours by this share are those that matter."""
+
+LEAST_RIVALS = 2
+"""Numbers of other methods that a place needs to be those that matter: a power against a single one is all or nothing."""
 
 VERDICTS = ("identified", "agrees", "disagrees", "inconclusive")
 
@@ -55,6 +59,7 @@ NO_END, TOO_WIDE = "interval without an end on that side", "interval that contai
 
 _COLUMNS = [
     *("metric", "statistic", "unit", "n_published", "value_published", "n_ours", "n_asked", "value_ours"),
+    "value_ours_scaled",
     *("best", "mean", "median", "quartile1", "quartile3", "low95_ours", "high95_ours"),
     *("low95_predicted", "high95_predicted", "quantile_published", "in_range", "can_fail", "power", "verdict", "why"),
     *("identified", "possible", "share_claimed", "share_feasible", "bound", "gap"),
@@ -195,6 +200,7 @@ def _described(row: dict[str, Any], keys: list[str], name: str, rivals: np.ndarr
         "n_ours": len(numbers),
         "n_asked": int(row["asked"]),
         "value_ours": statistics.statistic(statistic, numbers),
+        "value_ours_scaled": statistics.scaled(statistic, numbers, int(row["asked"]), size),
         "best": statistics.statistic("min", numbers),
         **{each: statistics.statistic(each, numbers) for each in ("mean", "median", "quartile1", "quartile3")},
         "low95_ours": low,
@@ -221,14 +227,14 @@ def _judged(
         return judged | {"can_fail": None}
     ends = (predicted[0] - half, predicted[1] + half)
     can_fail = not in_range or statistics.can_fail(published, ours, predicted, limits)
-    power = statistics.power(rivals if len(rivals) else ours * np.array([1 - MATTERS, 1 + MATTERS]), ends)
-    why = "" if not in_range else NO_END if not can_fail else _without_power(len(rivals)) if power < LEAST_POWER else ""
+    power = statistics.power(rivals if len(rivals) >= LEAST_RIVALS else ours * np.array([1 - MATTERS, 1 + MATTERS]), ends)
+    why = "" if not in_range else NO_END if not can_fail else _without_power(len(rivals) >= LEAST_RIVALS) if power < LEAST_POWER else ""
     verdict = "disagrees" if not in_range else "inconclusive" if why else "agrees"
     return judged | {"can_fail": can_fail, "power": power, "verdict": verdict, "why": why}
 
 
-def _without_power(rivals: int) -> str:
-    """Why an interval that excludes too few of the numbers that matter is inconclusive. rivals: how many the paper prints."""
+def _without_power(rivals: bool) -> str:
+    """Why an interval that excludes too few of the numbers that matter is inconclusive. rivals: whether these are printed ones."""
     return TOO_WIDE if rivals else f"interval that contains numbers {MATTERS:.0%} off ours".replace("%", " %")
 
 

@@ -101,12 +101,9 @@ def markdown(found: Headline) -> str:
 
 
 def deviation(numbers: pd.DataFrame) -> float:
-    """The median of |ours - published| / |published|, NaN without numbers other than 0. Counts are taken for the paper's number of runs."""
-    published, ours = numbers["value_published"].to_numpy(dtype=float), numbers["value_ours"].to_numpy(dtype=float)
-    counts = (numbers["statistic"] == "count").to_numpy() & numbers["n_published"].notna().to_numpy()
-    size, asked = (numbers[name].to_numpy(dtype=float, na_value=np.nan) for name in ("n_published", "n_asked"))
+    """The median of |ours - published| / |published|, NaN without numbers other than 0. Ours are scaled to the paper's number of runs."""
+    published, ours = (numbers[name].to_numpy(dtype=float) for name in ("value_published", "value_ours_scaled"))
     with np.errstate(divide="ignore", invalid="ignore"):
-        ours = np.where(counts, ours / asked * size, ours)
         relative = np.abs(ours - published) / np.abs(published)
     finite = relative[np.isfinite(relative)]
     return float(np.median(finite)) if len(finite) else float("nan")

@@ -15,6 +15,7 @@ _SHOWN = {
     "value_published": "published",
     "n_ours": "our runs",
     "value_ours": "ours",
+    "value_ours_scaled": "ours at the paper's number of runs",
     "low95_predicted": "95 % prediction interval, from",
     "high95_predicted": "to",
     "quantile_published": "quantile of the published",

@@ -275,6 +275,23 @@ def _experiments(
     return drawn, drawn, TAIL if name in ("count", "share") else _expanded_tail(len(values))
 
 
+def scaled(name: str, values: np.ndarray, asked: int, size: int | None) -> float:
+    """A named statistic of our values (n,) as an experiment of `size` runs would print it, so that it stands beside a published one.
+
+    A count is taken in proportion; asked: runs among which it is one. The least and the largest value are the medians of those of such
+    experiments, where our values determine them; our own where they do not. The other statistics do not depend on the number of runs.
+    """
+    own = statistic(name, values)
+    if size is None or size == asked or not len(values):
+        return own
+    if name == "count":
+        return own * size / asked
+    if name not in ("min", "max"):
+        return own
+    least, most = (np.sort(ends)[DRAWS // 2] for ends in _extremes(name, values, size))
+    return float(0.5 * (least + most)) if math.isfinite(least) and math.isfinite(most) else own
+
+
 def _std_draws(values: np.ndarray, size: int) -> np.ndarray:
     """Standard deviations of `size` values, predicted from our values (n,), n at least 2: evenly spaced quantiles (DRAWS,).
 

@@ -155,8 +155,7 @@ def deviation(number: content.Number) -> str:
     """How far ours lies from the published number, in per cent of it; empty if that is 0 or one of them is unknown."""
     if not number.published or number.ours is None:
         return ""
-    per_run = number.n_published / number.n if number.statistic == "count" and number.n_published and number.n else 1
-    percent = 100 * (number.ours * per_run / number.published - 1)
+    percent = 100 * (number.beside / number.published - 1)
     return f"{percent:+.0f}\u00a0%" if abs(percent) >= 10 else f"{percent:+.1f}\u00a0%"
 
 
@@ -170,6 +169,8 @@ def tip(number: content.Number) -> str:
         parts.append(f"published {number.published:g}{size}")
     interval = "" if low is None else f", 95 % interval {low:.5g} to {short(high, 5)}"
     parts.append(f"ours {short(number.ours, 5)}{interval}, n {short(number.n)}")
+    if number.scaled not in (None, number.ours):
+        parts.append(f"of the paper's number of runs {short(number.scaled, 5)}")
     if number.predicted != (None, None):
         parts.append(f"an experiment of the paper's size: {' to '.join(short(end, 5) for end in number.predicted)}")
     if number.share_feasible is not None:

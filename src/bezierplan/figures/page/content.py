@@ -42,6 +42,9 @@ class Number(Record):
     published: float | None = Field(description="the published number; null if the paper prints none")
     n_published: float | None = Field(description="number of runs behind it, if stated")
     ours: float | None
+    scaled: float | None = Field(
+        None, description="ours as the published number of runs would print it: a count in proportion, a median extreme"
+    )
     n: float | None = Field(description="number of our runs that count")
     interval: Interval = Field(description="95 % bootstrap interval of ours")
     predicted: Interval = Field(description="95 % prediction interval of an experiment of the published size")
@@ -52,6 +55,11 @@ class Number(Record):
     share_feasible: float | None = Field(description="share of all runs whose path the certified checker accepts")
     bound: float | None = Field(description="exact shortest length of the problem, in the unit of length")
     gap: float | None = Field(description="median over the feasible runs of length / bound - 1")
+
+    @property
+    def beside(self) -> float | None:
+        """Our number that stands beside the published one."""
+        return self.ours if self.scaled is None else self.scaled
 
 
 class Table(Record):

@@ -147,6 +147,7 @@ def _numbers(table: str, compared: pd.DataFrame, spec: dict, numbers: pd.DataFra
                 published=_number(row, "value_published"),
                 n_published=_number(row, "n_published"),
                 ours=_number(row, "value_ours"),
+                scaled=_number(row, "value_ours_scaled"),
                 n=_number(row, "n_ours"),
                 interval=_interval(row, "low95_ours", "high95_ours"),
                 predicted=_interval(row, "low95_predicted", "high95_predicted"),
