@@ -11,7 +11,6 @@ import doctest
 import inspect
 import re
 import tempfile
-import typing
 from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
@@ -129,28 +128,18 @@ def call(name: str, users: dict[str, list[str]], studies: dict) -> str:
 
 
 def settings_table(name: str, module: Any, users: dict[str, list[str]], studies: dict) -> str:
-    """Each setting with its range and its value in each study."""
+    """Each setting with its meaning, range, unit and source, and its value in each study."""
     from bezierplan.planners import planner_settings
 
     accepted = planner_settings(module)
     if not accepted:
         return "It has none.\n"
-    heads = ["setting", "values", *(f"in {key}" for key in users)]
-    rows = [[f"`{setting}`", values_of(annotation), *(value_in(studies[key], users[key], setting) for key in users)]
-            for setting, annotation in accepted.items()]  # fmt: skip
+    heads = ["setting", "meaning", "values", *(f"in {key}" for key in users)]
+    rows = [
+        [f"`{name}`", declared.meaning, str(declared), *(value_in(studies[key], users[key], name) for key in users)]
+        for name, declared in accepted.items()
+    ]
     return table(heads, rows)
-
-
-def values_of(annotation: Any) -> str:
-    """The values that a setting can have, in words."""
-    inner = [part for part in typing.get_args(annotation) if part is not type(None)]
-    if type(None) in typing.get_args(annotation):
-        return values_of(inner[0]) + ", or none"
-    if typing.get_origin(annotation) is typing.Annotated:
-        return f"{values_of(inner[0])} {inner[1]}"
-    if typing.get_origin(annotation) is typing.Literal:
-        return ", ".join(f"`{choice}`" for choice in inner)
-    return {bool: "true or false", int: "a whole number", float: "a number"}[annotation]
 
 
 def value_in(study: Any, methods: list[str], setting: str) -> str:

@@ -208,22 +208,22 @@ def flipped(mutation, probability, times):
 
 def test_one_bit_of_any_gene_is_complemented():
     """Each of the 48 bits with the same chance, within four standard errors."""
-    found = flipped(binary_genetic._ONE_BIT, 1.0, 4800)
+    found = flipped(binary_genetic.Mutation.one_bit, 1.0, 4800)
     assert (found.sum(axis=(1, 2)) == 1).all()
     assert np.abs(found.sum(axis=0) - 100).max() < 4 * 10
-    assert flipped(binary_genetic._ONE_BIT, 0.25, 4000).sum() == pytest.approx(1000, abs=4 * math.sqrt(750))
+    assert flipped(binary_genetic.Mutation.one_bit, 0.25, 4000).sum() == pytest.approx(1000, abs=4 * math.sqrt(750))
 
 
 def test_one_bit_of_each_gene_is_complemented():
-    found = flipped(binary_genetic._EACH_GENE, 1.0, 800)
+    found = flipped(binary_genetic.Mutation.each_gene, 1.0, 800)
     assert (found.sum(axis=2) == 1).all()
     assert np.abs(found.sum(axis=0) - 100).max() < 4 * 10
-    share = flipped(binary_genetic._EACH_GENE, 0.25, 4000).sum(axis=(0, 2)) / 4000
+    share = flipped(binary_genetic.Mutation.each_gene, 0.25, 4000).sum(axis=(0, 2)) / 4000
     assert share == pytest.approx(np.full(GENES, 0.25), abs=4 * math.sqrt(0.25 * 0.75 / 4000))
 
 
 def test_each_bit_is_complemented_by_itself():
-    assert (flipped(binary_genetic._EACH_BIT, 1.0, 1) == 1).all()
-    share = flipped(binary_genetic._EACH_BIT, 0.25, 4000).mean(axis=0)
+    assert (flipped(binary_genetic.Mutation.each_bit, 1.0, 1) == 1).all()
+    share = flipped(binary_genetic.Mutation.each_bit, 0.25, 4000).mean(axis=0)
     assert np.abs(share - 0.25).max() < 4 * math.sqrt(0.25 * 0.75 / 4000)
-    assert (flipped(binary_genetic._EACH_BIT, 0.0, 1) == 0).all()
+    assert (flipped(binary_genetic.Mutation.each_bit, 0.0, 1) == 0).all()

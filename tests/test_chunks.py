@@ -27,7 +27,7 @@ def experiment(repeats, chunk, **others):
     )
 
 
-@pytest.mark.parametrize(("repeats", "chunk", "count"), [(10, 4, 3), (8, 4, 2), (1, 4, 1), (9, 3, 3), (100, 1, 100), (4, 5, 1)])
+@pytest.mark.parametrize(("repeats", "chunk", "count"), [(10, 4, 3), (8, 4, 2), (1, 1, 1), (9, 3, 3), (100, 1, 100), (4, 4, 1)])
 def test_chunks_hold_all_repeats_and_no_chunk_more(repeats, chunk, count):
     empty = {field.name: {} for field in fields(definition.Study)} | {"key": "s", "folder": Path(), "title": "A study", "claims": []}
     own = definition.Study(**empty | {"experiments": {"first": experiment(repeats, chunk)}})

@@ -71,7 +71,7 @@ def local():
     """Hashes of the runs made without a cluster, which `make test` makes before the tests."""
     assert (ROOT / RUN).is_file(), f"no {RUN}: run snakemake smoke first"
     found = digests(ROOT)
-    return {name: found[name] for name in ("song2016/routes/smooth", "song2016/routes/smooth_single")}
+    return {name: found[name] for name in ("song2016/routes/smooth", "song2016/routes/smooth_cubic", "song2016/routes/smooth_single")}
 
 
 def test_slurm_gives_the_same_bits(tree, local, tmp_path_factory):

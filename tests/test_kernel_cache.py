@@ -184,10 +184,8 @@ def test_kernels_are_compiled_where_none_can_be_kept(tmp_path):
     assert done.stdout == "42\n"
 
 
-def test_numba_without_its_compiler_is_told():
+def test_commands_work_without_compilation():
     environment = os.environ | {"NUMBA_DISABLE_JIT": "1"}
-    done = subprocess.run(
-        [sys.executable, "-m", "bezierplan", "check-planner", "prm"], env=environment, capture_output=True, text=True, check=False
-    )
-    assert done.returncode != 0
-    assert done.stderr == "NUMBA_DISABLE_JIT: bezierplan needs compiled code; expected an environment without it\n"
+    command = [sys.executable, "-m", "bezierplan", "check-planner", "straight_line"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stderr) == (0, "")

@@ -140,8 +140,9 @@ def test_genes_of_occupied_cells_are_never_set():
 
 
 def test_a_field_without_a_free_gene_is_told():
-    grid = Grid(np.ones((21, 21), dtype=bool), 1.0, "cell", (-0.5, -0.5))
-    grid.occupied[[0, -1], [0, -1]] = False
+    occupied = np.ones((21, 21), dtype=bool)
+    occupied[[0, -1], [0, -1]] = False
+    grid = Grid(occupied, 1.0, "cell", (-0.5, -0.5))
     with pytest.raises(ValueError, match="no free gene"):
         planner.field_of(grid, np.array([[0.5, 0.5], [20.5, 20.5]]), "coarse", "columns", "projection")
 
@@ -647,7 +648,8 @@ def test_points_are_joined_by_their_distance_over_free_cells():
 def test_first_population_from_roadmaps_holds_free_points_that_lead_through_the_maze():
     grid, maze_field = maze()
     task = Problem("maze", grid, (0.5, 0.5), (8.5, 8.5))
-    first, counts = planner._from_roadmaps(task, np.random.default_rng(1), maze_field, wanted=5, most=50, nodes=60, neighbours=8)
+    settings = rules(population=5, first_population="roadmaps", most_roadmaps=50, roadmap_nodes=60)
+    first, counts = planner._from_roadmaps(task, np.random.default_rng(1), maze_field, settings)
     assert len(first) == len(counts) > 0
     for ones, count in zip(first, counts):
         genes = ones[:count]
@@ -662,7 +664,8 @@ def test_first_population_from_roadmaps_holds_free_points_that_lead_through_the_
 def test_no_roadmap_gives_no_chromosome():
     grid, maze_field = maze()
     task = Problem("maze", grid, (0.5, 0.5), (8.5, 8.5))
-    first, counts = planner._from_roadmaps(task, np.random.default_rng(1), maze_field, wanted=5, most=0, nodes=60, neighbours=8)
+    settings = rules(population=5, first_population="roadmaps", most_roadmaps=0, roadmap_nodes=60)
+    first, counts = planner._from_roadmaps(task, np.random.default_rng(1), maze_field, settings)
     assert first.shape[0] == len(counts) == 0
 
 

@@ -7,7 +7,7 @@ import pytest
 import starts
 
 ROOT = Path(__file__).parents[1]
-HOSTILE = "x</script><script>window.RUN=1</script>"
+HOSTILE = "x</script> <script>window.RUN=1</script>"
 EXPERIMENTS = """
 title: A walk through a room
 methods: {line: {planner: straight_line}, around: {planner: shortest_path}}

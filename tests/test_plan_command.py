@@ -180,7 +180,7 @@ ANSWERS = {
     "nothing": ("", "None", "its answer: is a NoneType; expected a Plan"),
     "an error": ("{}[1]", "answer", "KeyError: 1"),
     "an error of two lines": ('raise ValueError("a\\nb")', "answer", "ValueError: a b"),
-    "an exit": ("raise SystemExit(0)", "answer", "SystemExit(0)"),
+    "an exit": ("raise SystemExit(0)", "answer", "sys.exit: 0"),
     "an empty map": ("problem.workspace.occupied[:] = False", "answer", "ValueError: assignment destination is read-only"),
     "another map": (
         'object.__setattr__(problem.workspace, "occupied", ~problem.workspace.occupied)',

@@ -15,6 +15,8 @@ TARGETS = {
     "smoke",
     "extended",
     "test",
+    "docs",
+    "wheel",
     "lint",
     "benchmark",
     "compare",

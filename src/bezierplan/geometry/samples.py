@@ -52,7 +52,7 @@ def along(path: Path, n: int | None = None, step: float | None = None) -> Sample
     --------
     >>> corner = Path("polyline", np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 1.0]]))
     >>> samples = along(corner, step=1.0)
-    >>> samples.x.tolist(), samples.y.tolist()
+    >>> samples.x.round(9).tolist(), samples.y.round(9).tolist()
     ([0.0, 1.0, 2.0, 3.0, 3.0], [0.0, 0.0, 0.0, 0.0, 1.0])
     """
     if (n is None) == (step is None):

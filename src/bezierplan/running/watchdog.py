@@ -46,8 +46,7 @@ def supervise(name: str, report: Callable[[str], None]) -> None:
     killed.
     """
     global _pipe
-    sys.stdout.flush()
-    sys.stderr.flush()
+    _flush()
     heard, ours = os.pipe()
     child = os.fork()
     if child:
@@ -132,6 +131,12 @@ def end_children(spared: frozenset[int] = frozenset()) -> None:
                 os.waitpid(child, 0)
 
 
+def _flush() -> None:
+    """Print what is still to be printed, which a fork would print once more. A process may have been started without streams."""
+    for stream in filter(None, (sys.stdout, sys.stderr)):
+        stream.flush()
+
+
 def verdict(name: str, judge: Callable[[], str], limit: float) -> str:
     """What a function says that is called in a process of its own, which cannot harm this one; or, beginning with `name`, how the process
     ended instead. limit: seconds that it may take. What it prints is lost. On Linux; elsewhere it is called in this process.
@@ -139,8 +144,7 @@ def verdict(name: str, judge: Callable[[], str], limit: float) -> str:
     if sys.platform != "linux":  # a fork of a process that has loaded libraries of macOS may crash
         return judge()
     heard, ours = os.pipe()
-    sys.stdout.flush()
-    sys.stderr.flush()
+    _flush()
     supervisor = os.fork()
     if supervisor == 0:
         _judge(name, judge, limit, lambda line: os.write(ours, line.encode()))
