@@ -145,7 +145,7 @@ def test_a_planner_in_a_file_passes_on_every_kind_of_workspace(tmp_path):
     file = written(tmp_path, WALK, ("grid", "circles", "polygons"))
     findings = list(contract.check_planner(file, {"evaluations": 20}))
     assert all(finding.passed for finding in findings)
-    assert {finding.problem.split(":")[0] for finding in findings} == {"grid", "circles", "polygons"}
+    assert {finding.problem.split(":")[0] for finding in findings} == {"grid", "circles", "polygons", "all problems"}
     assert contract.Finding("circles: open", "budget", True, "20 evaluations") in findings
 
 

@@ -11,7 +11,7 @@ import pytest
 
 from bezierplan.analysis import headline, metrics, statistics, summary
 from bezierplan.figures import sheet
-from bezierplan.running.digest import source_digest
+from bezierplan.running import digest
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading, targets
 
@@ -418,7 +418,7 @@ FAULTS = {
         "target_cell: 63, reference: 3}",
         "problems: across: reference: 3: expected",
     ),
-    "a tiny cell": (E, "cell: 1,", "cell: 1e-320,", "workspaces: room: cell: 1e-320: expected the side of a cell, a number of at least 1e-6"),
+    "a tiny cell": (E, "cell: 1,", "cell: 1e-320,", "room: cell: 1e-320: expected the side of a cell, a number of at least 1e-6"),
     "a unit of nothing": (E, "cell: 1, unit: m", "cell: 1, unit: '-'", "workspaces: room: unit: '-': expected"),
     "a unit of blanks": (E, "cell: 1, unit: m", "cell: 1, unit: ' '", "workspaces: room: unit: ' ': expected"),
     "a unit that is a group": (E, "cell: 1, unit: m", "cell: 1, unit: '\\1'", "workspaces: room: unit: '\\\\1': expected"),
@@ -714,11 +714,11 @@ def test_a_planner_with_dots_in_its_name(folder):
     file = folder / E
     file.write_text(file.read_text().replace("walk.py", "walk.v2.py"))
     study = reading.load([folder])
-    before = source_digest(str(folder / "walk.v2.py"))
+    before = digest.source_digest(str(folder / "walk.v2.py"))
     assert targets.run_params(study, "full", "walks", "first", "mine", "0")["job"]["planner"].endswith("walk.v2.py")
     (folder / "walk.v2.py").write_text((folder / "walk.v2.py").read_text().replace("pass", "return None"))
-    source_digest.cache_clear()
-    assert source_digest(str(folder / "walk.v2.py")) != before
+    digest._reached.cache_clear()
+    assert digest.source_digest(str(folder / "walk.v2.py")) != before
 
 
 def test_numbers_without_claims_are_audited(folder):

@@ -41,7 +41,7 @@ TOLD = {
     "says_nothing": ("None", "is a NoneType; expected a Plan"),
     "flat": ('answer._replace(path=Path("polyline", points.ravel()))', "path: points: expected an array of floats, (n, 2)"),
 }
-LOOPS = "run liars/roads/across/loops/0: planner {folder}/loops.py: not done within the time limit of 4 s; the job is ended"
+LOOPS = "run liars/roads/across/loops/0: planner {folder}/loops.py: not done within the time limit of 4 s; it is ended"
 
 # Who also lies to a robot that drives, and every run that is refused for a lie: experiment, problem and method, and whose lie it is.
 DRIVEN = ("ends_short", "says_nothing")
