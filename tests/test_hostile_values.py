@@ -718,6 +718,7 @@ def test_a_planner_with_dots_in_its_name(folder):
     assert targets.run_params(study, "full", "walks", "first", "mine", "0")["job"]["planner"].endswith("walk.v2.py")
     (folder / "walk.v2.py").write_text((folder / "walk.v2.py").read_text().replace("pass", "return None"))
     digest._reached.cache_clear()
+    digest._syntax.cache_clear()
     assert digest.source_digest(str(folder / "walk.v2.py")) != before
 
 

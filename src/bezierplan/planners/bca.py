@@ -58,30 +58,30 @@ class Settings(NamedTuple):
         as_printed          1 / L of a feasible path, w1 L + w2 F of the others (eq. 12)
     """
 
-    curve: Annotated[CurveKind, About("one Bezier curve, or a chain of quadratic pieces", f"{PAPER}, eqs. 1, 6")]
+    curve: Annotated[CurveKind, About("one Bezier curve, or a chain of quadratic pieces", PAPER + ", eqs. 1, 6")]
     control_points: Annotated[int, Range(0, 60), About("free control points, beside start and target")]
     samples: Annotated[int, Range(2), About("points of the curve tested and measured, uniform in the parameter, both ends included")]
     initial: Annotated[
         Initial,
         About("genes are free cells drawn uniformly; also sorted by x + y; or redrawn until the curve is free"),
     ]
-    population: Annotated[int, Range(2), About("chromosomes of a generation", f"{PAPER}, Section 4")]
-    generations: Annotated[int, Range(0), About("generations after the first", f"{PAPER}, Section 4")]
-    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents, cut between two genes", f"{PAPER}, Section 4")]
-    mutation_probability: Annotated[float, Range(0, 1), About("of a chromosome, or (per_gene) of each gene", f"{PAPER}, Section 4")]
+    population: Annotated[int, Range(2), About("chromosomes of a generation", PAPER + ", Section 4")]
+    generations: Annotated[int, Range(0), About("generations after the first", PAPER + ", Section 4")]
+    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents, cut between two genes", PAPER + ", Section 4")]
+    mutation_probability: Annotated[float, Range(0, 1), About("of a chromosome, or (per_gene) of each gene", PAPER + ", Section 4")]
     mutation: Annotated[
         Mutation,
         About("a gene's bit is flipped such that it stays a free cell, it becomes a random free cell, or a bit of each is flipped"),
     ]
     elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a chromosome")]
-    fitness: Annotated[Fitness, About("form of the cost, whose reciprocal is the fitness", f"{PAPER}, eqs. 12 to 14")]
+    fitness: Annotated[Fitness, About("form of the cost, whose reciprocal is the fitness", PAPER + ", eqs. 12 to 14")]
     fitness_feasible: Annotated[
         FitnessFeasible,
         About("feasible in the last two forms: free of collisions, or also clear by safety_distance"),
     ]
-    length_weight: Annotated[float, Range(0), About("w1", f"{PAPER}, eq. 12")]
-    safety_weight: Annotated[float, Range(0), About("w2", f"{PAPER}, eq. 12")]
-    safety_distance: Annotated[float, Range(0), About("distance to keep from obstacles", f"{PAPER}, eq. 14", UNITS)]
+    length_weight: Annotated[float, Range(0), About("w1", PAPER + ", eq. 12")]
+    safety_weight: Annotated[float, Range(0), About("w2", PAPER + ", eq. 12")]
+    safety_distance: Annotated[float, Range(0), About("distance to keep from obstacles", PAPER + ", eq. 14", UNITS)]
     collision_factor: Annotated[float, Range(0), About("length added for samples in collision, as a multiple of their share")]
     collision_surcharge: Annotated[float, Range(0), About("added to a path with a collision", unit=UNITS)]
 

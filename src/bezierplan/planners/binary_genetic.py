@@ -37,18 +37,18 @@ PenaltyFor = IntEnum("PenaltyFor", "each_sample path", start=0)
 class Settings(NamedTuple):
     """Settings of the search (song2016, Sections III and IV)."""
 
-    curve: Annotated[Curve, About("kind of curve", f"{PAPER}, Section III")]
-    genes: Annotated[int, Range(0, 60), About("free control points, beside start and target", f"{PAPER}, Section IV")]
+    curve: Annotated[Curve, About("kind of curve", PAPER + ", Section III")]
+    genes: Annotated[int, Range(0, 60), About("free control points, beside start and target", PAPER + ", Section IV")]
     samples: Annotated[int, Range(2), About("points of the curve tested and measured, both ends included")]
     spacing: Annotated[Spacing, About("samples are uniform in the parameter, or (polylines) along the path")]
-    population: Annotated[int, Range(2), About("chromosomes of a generation", f"{PAPER}, Section IV")]
-    generations: Annotated[int, Range(0), About("generations after the first", f"{PAPER}, Section IV")]
-    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents", f"{PAPER}, Section IV")]
+    population: Annotated[int, Range(2), About("chromosomes of a generation", PAPER + ", Section IV")]
+    generations: Annotated[int, Range(0), About("generations after the first", PAPER + ", Section IV")]
+    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents", PAPER + ", Section IV")]
     cut: Annotated[Cut, About("the crossover point lies before any bit, or only between genes")]
-    mutation_probability: Annotated[float, Range(0, 1), About("of a chromosome, a gene or a bit", f"{PAPER}, Section IV")]
-    mutation: Annotated[Mutation, About("a bit of a chromosome is complemented, one of each gene, or each", f"{PAPER}, Section III-E")]
+    mutation_probability: Annotated[float, Range(0, 1), About("of a chromosome, a gene or a bit", PAPER + ", Section IV")]
+    mutation: Annotated[Mutation, About("a bit of a chromosome is complemented, one of each gene, or each", PAPER + ", Section III-E")]
     elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a chromosome")]
-    penalty: Annotated[float, Range(0), About("added for occupied samples", f"{PAPER}, Section IV", UNITS)]
+    penalty: Annotated[float, Range(0), About("added for occupied samples", PAPER + ", Section IV", UNITS)]
     penalty_for: Annotated[PenaltyFor, About("each sample in an occupied cell, or once a path with any")]
     occupied_point_penalty: Annotated[float, Range(0), About("added for each control point in an occupied cell", unit=UNITS)]
 

@@ -80,27 +80,27 @@ class Settings(NamedTuple):
     """Settings of a swarm (tharwat2018, Table 2 and Sections 3 to 5)."""
 
     curve: Annotated[
-        Curve, About("kind of curve; a ferguson curve's control points alternate between tangents and points", f"{PAPER}, eqs. 1, 2")
+        Curve, About("kind of curve; a ferguson curve's control points alternate between tangents and points", PAPER + ", eqs. 1, 2")
     ]
-    control_points: Annotated[int, Range(0, 60), About("free control points, beside start and target", f"{PAPER}, Section 5.1")]
+    control_points: Annotated[int, Range(0, 60), About("free control points, beside start and target", PAPER + ", Section 5.1")]
     samples: Annotated[int, Range(2), About("points of the curve tested and measured, uniform in the parameter, both ends included")]
     penalty: Annotated[
         Penalty,
         About(
             "fitness of length L and violation V: L (1 + beta V), L + beta V, or (death) beta if V > 0",
-            f"{PAPER}, eq. 22, which leaves it open",
+            PAPER + ", eq. 22, which leaves it open",
         ),
     ]
     beta: Annotated[float, Range(0), About("weight of the violation, or fitness of a dead path")]
-    d_min: Annotated[float, Range(0), About("added to every radius", f"{PAPER}, eq. 21", unit=UNITS)]
-    particles: Annotated[int, Range(1), About("particles of the swarm", f"{PAPER}, Table 2")]
-    iterations: Annotated[int, Range(0), About("most iterations", f"{PAPER}, Table 2")]
+    d_min: Annotated[float, Range(0), About("added to every radius", PAPER + ", eq. 21", unit=UNITS)]
+    particles: Annotated[int, Range(1), About("particles of the swarm", PAPER + ", Table 2")]
+    iterations: Annotated[int, Range(0), About("most iterations", PAPER + ", Table 2")]
     stall_limit: Annotated[
-        int, Range(0), About("iterations without improvement that end the search, 0 for none", f"{PAPER}, Section 4.2.1")
+        int, Range(0), About("iterations without improvement that end the search, 0 for none", PAPER + ", Section 4.2.1")
     ]
-    straight_line_particle: Annotated[bool, About("whether the first particle starts as the straight line", f"{PAPER}, Section 3.2")]
-    c1: Annotated[float, Range(0), About("C1, the cognition learning factor", f"{PAPER}, Table 2")]
-    c2: Annotated[float, Range(0), About("C2, the social learning factor", f"{PAPER}, Table 2")]
+    straight_line_particle: Annotated[bool, About("whether the first particle starts as the straight line", PAPER + ", Section 3.2")]
+    c1: Annotated[float, Range(0), About("C1, the cognition learning factor", PAPER + ", Table 2")]
+    c2: Annotated[float, Range(0), About("C2, the social learning factor", PAPER + ", Table 2")]
     inertia: Annotated[float, Range(0), About("w of the first iteration")]
     inertia_damping: Annotated[float, Range(0, 1), About("factor of w from one iteration to the next")]
     velocity_limit: Annotated[float, Range(0, math.inf), About("largest step, as a share of the field's side; infinite for no limit")]
@@ -109,18 +109,18 @@ class Settings(NamedTuple):
     ]
     random_numbers: Annotated[RandomNumbers, About("what gets its own r1 and r2")]
     update: Annotated[
-        Update, About("the swarm's best path is replaced as soon as a better one is found, or once all have moved", f"{PAPER}, Algorithm 1")
+        Update, About("the swarm's best path is replaced as soon as a better one is found, or once all have moved", PAPER + ", Algorithm 1")
     ]
-    chaotic_term: Annotated[ChaoticTerm, About("term whose random number the chaotic sequence replaces", f"{PAPER}, eqs. 17, 18")]
-    chaotic_map: Annotated[chaotic_maps.Map, About("map of the chaotic sequence", f"{PAPER}, eqs. 9 to 16")]
-    chaotic_start_rule: Annotated[StartRule, About("how the chaotic sequence starts", f"{PAPER}, Figure 3")]
+    chaotic_term: Annotated[ChaoticTerm, About("term whose random number the chaotic sequence replaces", PAPER + ", eqs. 17, 18")]
+    chaotic_map: Annotated[chaotic_maps.Map, About("map of the chaotic sequence", PAPER + ", eqs. 9 to 16")]
+    chaotic_start_rule: Annotated[StartRule, About("how the chaotic sequence starts", PAPER + ", Figure 3")]
     chaotic_start: Annotated[float, Range(0, 1), About("first number under the rule fixed; of the map constant every number")]
-    zeta_for: Annotated[ZetaFor, About("what gets its own number of the sequence", f"{PAPER}, eqs. 17, 18")]
-    singer_mu: Annotated[float, Range(0.9, 1.08), About("mu", f"{PAPER}, eq. 10")]
-    singer_x4: Annotated[float, Range(13, 14), About("coefficient of x^4, usually 13.302875", f"{PAPER}, eq. 10")]
-    sine_a: Annotated[float, Range(0, 4), About("a", f"{PAPER}, eq. 14")]
-    piecewise_p: Annotated[float, Range(0.01, 0.49), About("P", f"{PAPER}, eq. 15")]
-    sinusoidal_a: Annotated[float, Range(0, 4), About("a", f"{PAPER}, eq. 16")]
+    zeta_for: Annotated[ZetaFor, About("what gets its own number of the sequence", PAPER + ", eqs. 17, 18")]
+    singer_mu: Annotated[float, Range(0.9, 1.08), About("mu", PAPER + ", eq. 10")]
+    singer_x4: Annotated[float, Range(13, 14), About("coefficient of x^4, usually 13.302875", PAPER + ", eq. 10")]
+    sine_a: Annotated[float, Range(0, 4), About("a", PAPER + ", eq. 14")]
+    piecewise_p: Annotated[float, Range(0.01, 0.49), About("P", PAPER + ", eq. 15")]
+    sinusoidal_a: Annotated[float, Range(0, 4), About("a", PAPER + ", eq. 16")]
     count_collisions: Annotated[
         bool, About("if false, paths too long to be an improvement are not tested: no result changes, but collisions_a, _b and _f are nan")
     ]

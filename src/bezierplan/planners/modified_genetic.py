@@ -56,26 +56,26 @@ _SHIFT_REACH = 0.1
 class Settings(NamedTuple):
     """Settings of the search (elhoseny2017, Sections 3 and 4)."""
 
-    population: Annotated[int, Range(2), About("chromosomes of a generation", f"{PAPER}, Section 4.2.2")]
-    iterations: Annotated[int, Range(1), About("iterations", f"{PAPER}, Section 4.2.2")]
-    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents", f"{PAPER}, Section 4.2")]
+    population: Annotated[int, Range(2), About("chromosomes of a generation", PAPER + ", Section 4.2.2")]
+    iterations: Annotated[int, Range(1), About("iterations", PAPER + ", Section 4.2.2")]
+    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents", PAPER + ", Section 4.2")]
     mutation: Annotated[
         Mutation,
         About(
             "each gene changes, one of a chromosome, or always one (one_flip); or it loses, gains or has shifted a control point (shift)"
         ),
     ]
-    mutation_rate: Annotated[float, Range(0, 1), About("probability that a gene or chromosome mutates", f"{PAPER}, Section 4.2")]
+    mutation_rate: Annotated[float, Range(0, 1), About("probability that a gene or chromosome mutates", PAPER + ", Section 4.2")]
     diversity: Annotated[
         Diversity,
         About(
             "none; more offspring while the mean Q of the pool exceeds eta; only children whose mean Q is at most 1 - eta (relaxing); "
             "or none equal to another chromosome (unique)",
-            f"{PAPER}, Section 3.3, Algorithm 2",
+            PAPER + ", Section 3.3, Algorithm 2",
         ),
     ]
-    eta: Annotated[float, Range(-1, 1), About("limit of the Q statistic", f"{PAPER}, Section 4.2.2")]
-    eta_decay: Annotated[float, Range(0, 1), About("factor of eta from one iteration to the next", f"{PAPER}, Section 3.3")]
+    eta: Annotated[float, Range(-1, 1), About("limit of the Q statistic", PAPER + ", Section 4.2.2")]
+    eta_decay: Annotated[float, Range(0, 1), About("factor of eta from one iteration to the next", PAPER + ", Section 3.3")]
     most_batches: Annotated[int, Range(0), About("most extra batches of offspring in an iteration")]
     gene_lattice: Annotated[GeneLattice, About("genes are 21 x 21 points, or every cell")]
     gene_order: Annotated[GeneOrder, About("genes are numbered column by column from the left, or row by row from the bottom")]
@@ -85,30 +85,30 @@ class Settings(NamedTuple):
     ]
     first_population: Annotated[
         FirstPopulation,
-        About("random chromosomes, or before them the inner nodes of paths through roadmaps", f"{PAPER}, Section 3.2.1, the random one"),
+        About("random chromosomes, or before them the inner nodes of paths through roadmaps", PAPER + ", Section 3.2.1, the random one"),
     ]
     most_roadmaps: Annotated[int, Range(0), About("most roadmaps for the first population")]
     roadmap_nodes: Annotated[int, Range(1, 2000), About("random nodes of a roadmap")]
     roadmap_neighbours: Annotated[int, Range(1), About("nearest nodes that a node of a roadmap may be linked with")]
     first_points: Annotated[int, Range(1), About("most control points of a random chromosome")]
     first_draws: Annotated[int, Range(1), About("draws for each member of the first population")]
-    replacements: Annotated[int, Range(0), About("draws for an invalid child", f"{PAPER}, Section 3.2.2")]
-    least_distance: Annotated[float, Range(0), About("least distance of two control points", f"{PAPER}, Figure 4", unit="cells")]
+    replacements: Annotated[int, Range(0), About("draws for an invalid child", PAPER + ", Section 3.2.2")]
+    least_distance: Annotated[float, Range(0), About("least distance of two control points", PAPER + ", Figure 4", unit="cells")]
     curve: Annotated[
-        CurveKind, About("one Bezier curve, or quadratic pieces that meet half-way between the control points", f"{PAPER}, eq. 2")
+        CurveKind, About("one Bezier curve, or quadratic pieces that meet half-way between the control points", PAPER + ", eq. 2")
     ]
     fitness_length: Annotated[
         FitnessLength,
-        About("length whose reciprocal is the fitness: sampled, or counted over cells (`cell_length`)", f"{PAPER}, eqs. 8, 9"),
+        About("length whose reciprocal is the fitness: sampled, or counted over cells (`cell_length`)", PAPER + ", eqs. 8, 9"),
     ]
     invalid: Annotated[
-        Invalid, About("a curve that touches occupied cells is deleted, or lengthened for each of them", f"{PAPER}, Section 3.2.2")
+        Invalid, About("a curve that touches occupied cells is deleted, or lengthened for each of them", PAPER + ", Section 3.2.2")
     ]
     penalty: Annotated[float, Range(0), About("length added for each occupied cell", unit="cells")]
     survival: Annotated[
-        Survival, About("the best of parents and offspring survive, or the best of the offspring alone", f"{PAPER}, Algorithm 2, line 15")
+        Survival, About("the best of parents and offspring survive, or the best of the offspring alone", PAPER + ", Algorithm 2, line 15")
     ]
-    offspring: Annotated[Offspring, About("children and their mutants join the pool, or mutants alone", f"{PAPER}, Algorithm 2")]
+    offspring: Annotated[Offspring, About("children and their mutants join the pool, or mutants alone", PAPER + ", Algorithm 2")]
     children_per_parent: Annotated[int, Range(1, 2), About("children in a batch for each chromosome of the population")]
 
 

@@ -46,21 +46,21 @@ _IMPROVEMENT = 1e-9
 class Settings(NamedTuple):
     """Settings of the search (meledje, Sections 2 to 4)."""
 
-    mutation: Annotated[Mutation, About("mutation operator", f"{PAPER}, Section 3")]
-    population: Annotated[int, Range(2), About("paths of a generation", f"{PAPER}, Section 4")]
+    mutation: Annotated[Mutation, About("mutation operator", PAPER + ", Section 3")]
+    population: Annotated[int, Range(2), About("paths of a generation", PAPER + ", Section 4")]
     generations: Annotated[int, Range(0), About("most generations after the first")]
     stall: Annotated[int, Range(1), About("generations without improvement that end the search")]
     initial: Annotated[
         Initial,
         About(
-            "first paths: walks from cell to visible cell, random paths of which feasible ones are kept, or any", f"{PAPER}, Section 2.3"
+            "first paths: walks from cell to visible cell, random paths of which feasible ones are kept, or any", PAPER + ", Section 2.3"
         ),
     ]
     most_nodes: Annotated[int, Range(1), About("most inner nodes of a first path")]
     selection: Annotated[Selection, About("how parents are drawn; roulette in proportion to the reciprocal of the objective")]
-    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents", f"{PAPER}, Section 4")]
+    crossover_probability: Annotated[float, Range(0, 1), About("of a pair of parents", PAPER + ", Section 4")]
     cut: Annotated[Cut, About("parents are cut after the same number of nodes, or independently")]
-    mutation_probability: Annotated[float, Range(0, 1), About("of a path, or of each inner node", f"{PAPER}, Section 4")]
+    mutation_probability: Annotated[float, Range(0, 1), About("of a path, or of each inner node", PAPER + ", Section 4")]
     mutation_for: Annotated[MutationFor, About("what mutates with that probability: a path, or each inner node")]
     without_obstacle: Annotated[
         WithoutObstacle, About("what `proposed` changes of a path that meets no obstacle: any node as in ref12, or none")
@@ -69,7 +69,7 @@ class Settings(NamedTuple):
         ObstacleNode, About("a node encounters an obstacle if its edge to the next node meets one, or in a cell next to an occupied one")
     ]
     keep_better: Annotated[
-        bool, About("whether ref12 and proposed keep a node better than all its neighbours", f"{PAPER}, Table 1, step 4")
+        bool, About("whether ref12 and proposed keep a node better than all its neighbours", PAPER + ", Table 1, step 4")
     ]
     direction: Annotated[Direction, About("steps that ref21 accepts: within a right angle of the line to the target, or with its signs")]
     ref21_test: Annotated[Ref21Test, About("what ref21 tests: the two edges of the new node, or the whole path")]
@@ -78,7 +78,7 @@ class Settings(NamedTuple):
     elitism: Annotated[int, Range(0, 1), About("how many of the best so far replace a path")]
     result: Annotated[Result, About("best path of the last generation, or of the run")]
     optimal_within: Annotated[float, Range(0), About("share of the optimum by which an optimal path may exceed it")]
-    friction: Annotated[float, Range(0), About("climbs are divided by it", f"{PAPER}, Section 2.1, without a number")]
+    friction: Annotated[float, Range(0), About("climbs are divided by it", PAPER + ", Section 2.1, without a number")]
     corners: Annotated[Corners, About("whether an edge through a corner of occupied cells meets them (closed)")]
 
 
