@@ -577,7 +577,7 @@ def test_no_effect_says_below_what_size(columns_alone):
     claim = claim_of("tharwat2018", "C9")
     results = made("tharwat2018", claim, truth=True)
     runs = results["maps"].runs
-    runs["collisions_a"] = 15 + 0.01 * generator("alike").normal(size=len(runs))
+    runs["collisions_c"] = 15 + 0.01 * generator("alike").normal(size=len(runs))
     row = verdict("tharwat2018", claim, results)
     assert row["verdict"] == "no effect"
     assert "differs by less than 0.0" in row["reason"]

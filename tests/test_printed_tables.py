@@ -75,7 +75,7 @@ CASES = [(case, number) for case in ("case1", "case2") for number in OBSTACLES]
 LENGTH_AND_TIME = [(metric, statistic) for metric in ("length", "cpu_s") for statistic in ("min", "max", "mean")]
 TRIALS = [("optimal", "count"), ("near_optimal", "count"), ("infeasible", "count")]
 MEANS = [("objective", "mean"), ("generation_improved", "mean"), ("cpu_s", "mean")]
-SWARMS = [("collisions_a", "mean"), ("rank", "mean"), ("objective", "mean")]
+SWARMS = [("collisions_c", "mean"), ("rank", "mean"), ("objective", "mean")]
 OF_METHOD = ("method", "metric", "statistic")
 
 
@@ -164,7 +164,7 @@ RUNS = {
 def test_numbers_of_runs_and_units(study):
     rows = [row for file in (STUDIES / study / "published").glob("table*.csv") for row in transcribed(study, file.stem) if "metric" in row]
     runs, unit = RUNS[study]
-    units = {"cpu_s": "s", "generation_1pct": "generation", "generation_improved": "generation", "collisions_a": "particles"}
+    units = {"cpu_s": "s", "generation_1pct": "generation", "generation_improved": "generation", "collisions_c": "samples"}
     units |= dict.fromkeys(("objective", "length", "cells4"), unit)
     assert {row["n"] for row in rows} == {runs}
     assert all(row["unit"] == units.get(row["metric"], "-") for row in rows)

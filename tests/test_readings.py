@@ -44,10 +44,21 @@ def test_grid_has_settings_worlds_and_metrics(studies):
     assert found["O2"]["values"] == [None, 0.9, 0.7298]
     assert "cpso1_gauss" in found["O2"]["methods"]
     assert found["workspace"]["values"] == [None, "public"]
-    assert found["profile"]["values"] == [None, "tuned"]
-    assert found["O10"]["metric"] == "collisions_a"
+    assert found["profile"]["values"] == [None, "tuned", "public_model"]
+    assert found["profile"]["overrules"] == {"tuned": ["O2b", "O2c"], "public_model": ["O7", "O8"]}
     # Roadmaps have no printed number.
     assert "O18" not in found
+
+
+def test_what_the_paper_does_not_define_has_no_vote(studies):
+    job = choices.readings_job(studies["tharwat2018"], "full")
+    assert "O10" not in {choice["id"] for choice in job["choices"]}
+    assert {value["metric"] for table in job["tables"].values() for value in table["spec"]["values"]} == {"rank", "objective"}
+    # Its numbers stand in the same file as the others, and are passed over.
+    both = printed(5.0, 6.0)
+    found, likelihood = readings.numbers_of(results(5.0), SPEC, pd.concat([both, both.assign(metric="length")]), "study/table")
+    assert found["metric"].to_list() == ["objective"] * 2
+    assert likelihood == readings.numbers_of(results(5.0), SPEC, both, "study/table")[1]
 
 
 @pytest.mark.parametrize("key", KEYS)
@@ -191,6 +202,17 @@ def test_a_large_grid_is_climbed_to_the_planted_reading():
     tried = readings.search(CHOICES, lambda chosen: evaluated(chosen, planted), "study", most=60)
     assert len(tried) <= 60
     assert max(tried, key=lambda each: each.rank).reading == planted
+
+
+def test_a_reading_names_no_choice_that_its_world_makes_itself():
+    """As a bundle of settings beats the single ones, `O1=2, world=other` would be the runs of `world=other` under another name."""
+    world = {"id": "world", "detail": "", "values": [None, "other"], "column": "world", "overrules": {"other": ["O1"]}}
+    for grid in (CHOICES[:2], CHOICES):
+        tried = readings.search([*grid, world], lambda chosen: evaluated(chosen, {"O2": 1}), "study", most=60)
+        made = [each.reading for each in tried]
+        assert any("world" in reading for reading in made)
+        assert not any({"world", "O1"} <= reading.keys() for reading in made)
+    assert len(readings.search([*CHOICES[:2], world], lambda chosen: evaluated(chosen, {}), "study", most=60)) == 9 + 3
 
 
 def test_readings_that_exclude_themselves_are_left_out_and_the_budget_is_kept():

@@ -282,6 +282,17 @@ def test_published_minimum_between_the_bound_and_ours_cannot_fail():
     assert (found["can_fail"], found["verdict"], found["why"]) == (False, "inconclusive", "interval without an end on that side")
 
 
+def test_what_the_paper_does_not_define_is_inconclusive_wherever_it_lies():
+    values = [entry | ({"defined": False} if entry["metric"] == "length" else {}) for entry in SPEC["values"]]
+    ours = results().runs.query("feasible and problem == 'long' and method == 'plain'")["length"]
+    for value in (ours.median(), 10 * ours.median()):
+        before = row(compare(results(), plain=f"{value}"), "long", "plain", "length")
+        found = row(compare(results(), spec=SPEC | {"values": values}, plain=f"{value}"), "long", "plain", "length")
+        assert (found["verdict"], found["why"]) == ("inconclusive", "quantity that the paper does not define")
+        assert (found["in_range"], found["power"]) == (before["in_range"], before["power"])
+    assert before["verdict"] == "disagrees"
+
+
 def test_what_would_accept_another_method_too_is_inconclusive():
     ours = results().runs.query("feasible and problem == 'long' and method == 'plain'")["length"]
     near = float(ours.min())

@@ -23,7 +23,7 @@ One row for each group of runs, metric and statistic; an empty cell means that t
 | power | share of the numbers that matter (`_rivals`) that would have been rejected instead of the published one |
 | identified | cells of the paths whose length the published number is to the last digit (`identified`), and the chance of a match |
 | verdict | identified; disagrees; inconclusive; agrees |
-| why | why it is inconclusive: the interval has no end on that side, or contains most of the numbers that matter |
+| why | why it is inconclusive: not defined by the paper, or the interval has no end there, or contains most of the numbers that matter |
 | possible | whether the metric can have the published value, and ranks add up. A length below the bound of our map is judged all the same |
 | share_claimed | share of all runs whose path passed the planner's own test |
 | share_feasible | share of all runs whose path the certified checker accepts |
@@ -56,6 +56,9 @@ VERDICTS = ("identified", "agrees", "disagrees", "inconclusive")
 
 NO_END, TOO_WIDE = "interval without an end on that side", "interval that contains most numbers of the competing methods"
 """Why a number in the interval is inconclusive: the test could not have failed, or has no power."""
+
+UNDEFINED = "quantity that the paper does not define"
+"""Why a number is inconclusive wherever it lies: if it disagrees, that refutes our definition alone."""
 
 _COLUMNS = [
     *("metric", "statistic", "unit", "n_published", "value_published", "n_ours", "n_asked", "value_ours"),
@@ -102,6 +105,9 @@ def compare(
     table.loc[_impossible_ranks(both, published, spec), "possible"] = False
     found = pd.Series([_identified(row, spec.get("identify", []), results.problems) for row in both.to_dict("records")], dtype=object)
     table["identified"], table["verdict"] = found, table["verdict"].astype(object).mask(found.notna(), "identified")
+    undefined = _undefined(both, spec) & table["in_range"].notna()
+    table["verdict"] = table["verdict"].mask(undefined, "inconclusive")
+    table["why"] = table["why"].astype(object).mask(undefined, UNDEFINED)
     whole, marks = ("n_published", "n_ours", "n_asked"), ("in_range", "can_fail", "possible")
     return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))
 
@@ -116,6 +122,11 @@ def _identified(row: dict[str, Any], entries: list[dict], problems: dict[str, Pr
             if found and found.paths and found.chance < identified.UNLIKELY:
                 return identified.in_words(found)
     return None
+
+
+def _undefined(both: pd.DataFrame, spec: dict) -> pd.Series:
+    """Which rows (n,) hold a quantity that the paper does not define."""
+    return both["metric"].isin({entry["metric"] for entry in spec["values"] if not entry.get("defined", True)})
 
 
 def _impossible_ranks(both: pd.DataFrame, published: pd.DataFrame, spec: dict) -> np.ndarray:

@@ -113,9 +113,11 @@ def section(readings: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFr
         return []
     parts = [
         "## Readings that explain the printed numbers",
-        "What a paper leaves open is varied together, and each such reading is scored by how many of the printed numbers lie in the "
-        "central 95 % of what experiments of the paper's size would print. `<study>_readings.csv` has a row for each reading, "
-        "`<study>_explained.csv` for each printed number, `<study>_held_out.csv` for each table.",
+        "What a paper leaves open is varied together, and each such reading is scored by the joint likelihood of the printed numbers. How "
+        "many lie in the central 95 % of what experiments of the paper's size would print is shown, too; but a reading whose runs vary "
+        "widely refuses nothing, so beside it stands how many would if printed numbers were exchanged. Numbers of a quantity that the "
+        "paper does not define have no vote. `<study>_readings.csv` has a row for each reading, `<study>_explained.csv` for each printed "
+        "number, `<study>_held_out.csv` for each table.",
     ]
     for study, own in readings.groupby("study", sort=False):
         parts.append(f"**{titles[study]}.** {sentences(own, *(each[each['study'] == study] for each in (explained, held_out)))}")

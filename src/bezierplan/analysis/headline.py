@@ -24,9 +24,9 @@ COLUMNS = {
 LEGEND = (
     "*agree*: the published number lies in the range (95 %) of what an experiment of the paper's size would print, judging by our runs, "
     "and the range excludes most of what the paper prints of other methods. *identified*: it is to the last digit the length of a path "
-    "that we can name. *disagree*: it lies outside. *inconclusive*: the range is too wide, or has no end on that side. *typical "
-    "deviation*: median of |ours - published| / |published|. *partly*: holds in some of the comparisons. The baseline is the exact "
-    "shortest path with rounded corners, which needs no search."
+    "that we can name. *disagree*: it lies outside. *inconclusive*: the range is too wide or has no end on that side, or the paper "
+    "does not define the quantity. *typical deviation*: median of |ours - published| / |published|. *partly*: holds in some of the "
+    "comparisons. The baseline is the exact shortest path with rounded corners, which needs no search."
 )
 
 _NUMBERS = {

@@ -266,7 +266,7 @@ def search(choices: list[dict], evaluate: Callable[[Reading], Evaluated | None],
 def _all(choices: list[dict]) -> Iterator[Reading]:
     readings: list[Reading] = [{}]
     for choice in choices:
-        readings = [_with(reading, choice["id"], value) for reading in readings for value in choice["values"]]
+        readings = [_with(reading, choice["id"], value, choices) for reading in readings for value in choice["values"]]
     yield from readings
 
 
@@ -275,13 +275,19 @@ def _starts(choices: list[dict], name: str) -> Iterator[Reading]:
     for number in range(1, STARTS):
         rng = generator(f"{name}/start/{number}")
         drawn = {choice["id"]: choice["values"][rng.integers(len(choice["values"]))] for choice in choices}
-        yield {choice: value for choice, value in drawn.items() if value is not None}
+        yield _settled({choice: value for choice, value in drawn.items() if value is not None}, choices)
 
 
-def _with(reading: Reading, choice: str, value: Any) -> Reading:
+def _with(reading: Reading, choice: str, value: Any, choices: list[dict]) -> Reading:
     """A reading with one choice made; None stands for the value in force."""
     rest = {other: kept for other, kept in reading.items() if other != choice}
-    return rest if value is None else rest | {choice: value}
+    return rest if value is None else _settled(rest | {choice: value}, choices)
+
+
+def _settled(reading: Reading, choices: list[dict]) -> Reading:
+    """A reading without the choices that its world makes itself: with another value they would name runs that are not made."""
+    worlds = [choice["overrules"].get(str(reading.get(choice["id"])), []) for choice in choices if "column" in choice]
+    return {choice: value for choice, value in reading.items() if choice not in set().union(*worlds)}
 
 
 def _ascend(reading: Reading, choices: list[dict], rank: Callable, spent: Callable[[], bool]) -> None:
@@ -291,7 +297,7 @@ def _ascend(reading: Reading, choices: list[dict], rank: Callable, spent: Callab
         improved = False
         for choice in choices:
             for value in choice["values"]:
-                other = _with(reading, choice["id"], value)
+                other = _with(reading, choice["id"], value, choices)
                 found = rank(other)
                 if found > best:
                     reading, best, improved = other, found, True

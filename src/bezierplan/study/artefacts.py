@@ -65,6 +65,11 @@ class TableValue(Model):
     least: Quantity = Field(
         None, description="a column of numbers of the runs table that no value of these runs can lie below, if the metric has no such bound"
     )
+    defined: Flag = Field(
+        True,
+        description="whether the paper says what it counts here; if not, its numbers are shown beside ours, but are all inconclusive, and "
+        "`snakemake readings` leaves them out; left out: true",
+    )
     label: Label = Field(description="how the value is printed, at most 80 characters, 30 a word")
     decimals: Decimals = Field(description="how many decimals are printed, a whole number from 0 to 15")
 

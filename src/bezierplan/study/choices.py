@@ -3,7 +3,8 @@
 A choice is a mapping of plain values: id; detail; values, the one in force first (None, as methods may differ in it); and what it governs:
 
     setting, methods, along   a setting of some methods, and further settings that go with it, method -> settings
-    column                    the column of the tables whose value is the paper's world
+    column, overrules         the column of the tables whose value is the paper's world, and value -> ids of the choices of settings that it
+                              makes itself
     metric                    the metric with which a printed word is compared
 """
 
@@ -19,8 +20,9 @@ from bezierplan.study.definition import Study
 
 
 def printed_tables(study: Study) -> dict[str, Pivot]:
-    """The tables of runs that have published numbers, except those of nothing but seconds, which no reading explains."""
-    printed = {name: table for name, table in study.compared().items() if table.published}
+    """The tables of runs that have published numbers, except those of nothing but seconds, which no reading explains, or of nothing that
+    the paper defines."""
+    printed = {name: table for name, table in study.compared().items() if table.published and any(entry.defined for entry in table.values)}
     return {name: table for name, table in printed.items() if {row["unit"] for row in _published(study, name)} != {"s"}}
 
 
@@ -35,6 +37,7 @@ def choices(study: Study) -> list[dict[str, Any]]:
     tables = printed_tables(study)
     printed = {method for name, table in tables.items() for method in _methods(study, name, table)}
     compared = {table.reads.get(row["metric"], row["metric"]) for name, table in tables.items() for row in _published(study, name)}
+    compared -= {entry.metric for table in tables.values() for entry in table.values if not entry.defined}
     found = []
     for assumption in study.assumptions:
         governs: dict[str, Any] = {}
@@ -52,9 +55,15 @@ def choices(study: Study) -> list[dict[str, Any]]:
         for column, value in table.primary.items():
             values = worlds.setdefault(column, [value])
             values += [other for other in one_or_list(table.where.get(column, [])) if other not in values]
-    for column, values in worlds.items():
-        found.append({"id": column, "detail": f"Which {column} the tables show", "values": [None, *values[1:]], "column": column})
-    return found
+    return found + [_world(study, column, values, found) for column, values in worlds.items()]
+
+
+def _world(study: Study, column: str, values: list, settings: list[dict[str, Any]]) -> dict[str, Any]:
+    """The choice between worlds, the one in force first. settings: the choices of settings."""
+    made = {str(value): study.presets.get(column, {}).get(str(value).lower(), {}) for value in values[1:]}
+    overrules = {value: [choice["id"] for choice in settings if choice.get("setting") in own] for value, own in made.items()}
+    detail = f"Which {column} the tables show"
+    return {"id": column, "detail": detail, "values": [None, *values[1:]], "column": column, "overrules": overrules}
 
 
 def _methods(study: Study, name: str, table: Pivot) -> list[str]:
@@ -72,7 +81,9 @@ def readings_job(study: Study, scale: str) -> dict[str, Any]:
         chunk_jobs = {method: jobs.job(study, table.experiment, method, scale, 0) for method in methods}
         for job in chunk_jobs.values():
             job["repeats"] = [0, content.readings or content.repeats[scale]]
-        spec = table.plain() | {"where": table.where | {"method": methods}}
+        # What the paper does not define has no vote.
+        voting = [entry.plain() for entry in table.values if entry.defined]
+        spec = table.plain() | {"where": table.where | {"method": methods}, "values": voting}
         tables[name] = {"experiment": table.experiment, "spec": spec, "jobs": chunk_jobs}
     experiments = list(dict.fromkeys(table["experiment"] for table in tables.values()))
     return {"study": study.key, "tables": tables, "choices": choices(study), "most": study.readings_tried, "experiments": experiments}

@@ -397,7 +397,7 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
         for row in _cells(table, "objective").itertuples():
             rows.append(_row(name, _place(row), "no path is shorter than the straight line", row.value, straight, row.value >= straight))
     before = pd.concat([tables["table3"], tables["table4"]])
-    for metric in ("collisions_a", "objective"):
+    for metric in ("collisions_c", "objective"):
         first = _by_method(before, metric)
         for row in _cells(tables["table5"], metric).itertuples():
             if row.method in first:
