@@ -34,7 +34,7 @@ from bezierplan.workspaces import files
 from bezierplan.workspaces.kinds import kinds
 from bezierplan.workspaces.problem import Problem
 
-RESERVED = {*columns.RUN_COLUMNS, *columns.OUTCOMES, *columns.JOINED, *columns.DRIVE_JOINED, *columns.WORDS, *PLACE} - {"generations"}
+RESERVED = {*columns.RUN_COLUMNS, *columns.DRIVE_RESULTS, *columns.JOINED, *columns.DRIVE_JOINED, *columns.WORDS, *PLACE} - {"generations"}
 """Names that no setting can have. The column `generations` holds the number actually performed, so a setting of that name adds nothing."""
 LONGEST_REFERENCE = 1000
 """Times the perimeter of a workspace: no best known path is longer."""
