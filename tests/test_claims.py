@@ -1031,6 +1031,16 @@ def test_exchanging_the_direction_contradicts_what_was_supported(name):
     assert judged(check | {"direction": OPPOSITE[check["direction"]]}, runs)["verdict"] == "contradicted"
 
 
+def test_the_decisive_comparison_is_marked_even_among_equal_ones():
+    """Of two equal checks the row of the claim repeats the first, and only that one is decisive."""
+    summary, details = judge({"checks": [LOWER, LOWER | {"secondary": True}, LOWER]}, APART)
+    assert details["decisive"].to_list() == [True, False, False]
+    assert details["effect"].nunique() == 1
+    assert summary.iloc[0]["effect"] == details.iloc[0]["effect"]
+    untestable = {"test": "untestable", "reason": "nobody knows"}
+    assert not judge({"checks": [LOWER, untestable]}, APART)[1]["decisive"].any()
+
+
 def test_columns():
     summary, details = judge({"checks": [LOWER]}, APART)
     assert summary.columns.to_list() == judging.CLAIM_COLUMNS

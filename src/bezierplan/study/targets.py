@@ -410,8 +410,6 @@ def summary_params(given: Studies, scale: str) -> dict:
     tables = _published_tables(given)
     job = {
         "tables": [list(name) for name in tables],
-        "deciding": [table.primary for table in tables.values()],
-        "variants": {key: list(study.variants()) for key, study in given.items()},
         "titles": {key: study.title for key, study in given.items()},
     }
     return {"job": job, "code": _code("summary")}

@@ -61,6 +61,7 @@ Columns of claim_checks.csv, one row per comparison:
 | study, id, variant, timed | as above |
 | check | number of the check within the claim, from 1 |
 | primary | false for secondary checks, which are only reported |
+| decisive | whether the row of claims.csv repeats it: the worst -, otherwise that with the largest p |
 | test, metric, statistic, unit | of the check; unit of the metric |
 | condition, comparison | where, and what is compared |
 | mark, mark_family | on its own; in the family, empty for secondary checks |
@@ -109,7 +110,7 @@ CLAIM_COLUMNS = [
     *("units_to_decide", "replication_probability", "size", "artefact", "timed", "reason"),
 ]
 CHECK_COLUMNS = [
-    *("study", "id", "variant", "check", "primary", "test", "metric", "statistic", "unit", "condition", "comparison"),
+    *("study", "id", "variant", "check", "primary", "decisive", "test", "metric", "statistic", "unit", "condition", "comparison"),
     *("mark", "mark_family", "effect", "effect_size_name", "effect_size", "low95", "high95", "n", "counted", "p", "p_family"),
     *("margin", "least_detectable"),
     *("rho", "r_squared", "effect_published", "published", "timed", "reason"),
@@ -201,10 +202,11 @@ def _judge_variant(claim: dict, first: dict, assignment: dict, study: str, mater
                 obstacle = obstacle or str(reason)
     judged = _marked(judged)
     deciding = [each for each in judged if each.primary]
-    rows = [_check_row(each, material) | {key: described[key] for key in ("study", "id", "variant")} for each in judged]
-    if obstacle:
+    shown = None if obstacle else _shown(deciding, holds)
+    named = {key: described[key] for key in ("study", "id", "variant")}
+    rows = [_check_row(each, material) | named | {"decisive": each is shown} for each in judged]
+    if shown is None:
         return described | {"verdict": "untestable", "published": _published(deciding), "reason": obstacle}, rows
-    shown = _shown(deciding, holds)
     finding = shown.finding
     verdict = verdicts.verdict([each.mark for each in deciding], [each.mark_family for each in deciding], holds)
     everywhere = verdict == "supported" and holds != "any"
