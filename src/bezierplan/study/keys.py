@@ -8,6 +8,7 @@ from functools import partial
 from pydantic.fields import FieldInfo
 
 from bezierplan.analysis.claims import kinds
+from bezierplan.analysis.claims.claim import Claim
 from bezierplan.figures import panels
 from bezierplan.places import TREE
 from bezierplan.running import columns
@@ -39,7 +40,7 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
         ("A panel has `kind`, and by kind", panels.kinds()),
     ],
     "claims": [
-        ("A claim", claims.Claim),
+        ("A claim", Claim),
         ("A **check** has `test`, its kind, and by kind", kinds.kinds()),
     ],
     "assumptions": [("An assumption", claims.Assumption)],

@@ -7,6 +7,7 @@ from typing import Any
 import pandas as pd
 
 from bezierplan.analysis import headline, sensitivity
+from bezierplan.analysis.claims.kinds import Check, check_of
 from bezierplan.figures import style
 from bezierplan.figures.page import content, other, why
 from bezierplan.figures.page.addresses import address, of_cells
@@ -188,7 +189,7 @@ def _claims(
         row = rows[rows["primary"].astype(bool)].iloc[0]
         variant = _text(row, "variant")
         own = checks[(checks["id"] == identity) & (checks["variant"].fillna("") == variant)] if checks is not None else pd.DataFrame()
-        written = job["checks"].get(identity, [])
+        written = [check_of(each) for each in job["checks"].get(identity, [])]
         decisive = next((n for n, (_, each) in enumerate(own.iterrows()) if _flag(each, "decisive")), None)
         claims.append(
             content.Claim(
@@ -218,7 +219,7 @@ def _claims(
     return claims
 
 
-def _why(decisive: pd.Series, checks: list[dict], labels: dict[str, str], claim: pd.Series) -> str:
+def _why(decisive: pd.Series, checks: list[Check], labels: dict[str, str], claim: pd.Series) -> str:
     """The sentence that says why (`why`), from the decisive comparison; empty for a check that the study has no more."""
     number = int(decisive["check"])
     if number > len(checks):
@@ -227,7 +228,7 @@ def _why(decisive: pd.Series, checks: list[dict], labels: dict[str, str], claim:
     return why.why(decisive, checks[number - 1], *words, own_criterion=_flag(claim, "own_criterion"))
 
 
-def _comparison(row: pd.Series, labels: dict[str, str], checks: list[dict]) -> content.Comparison:
+def _comparison(row: pd.Series, labels: dict[str, str], checks: list[Check]) -> content.Comparison:
     words = [_labelled(_text(row, "comparison"), labels), _labelled(_text(row, "condition"), labels)]
     return content.Comparison(
         check=(number := int(row["check"])),
