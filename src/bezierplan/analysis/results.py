@@ -23,7 +23,7 @@ class Results(NamedTuple):
 
     runs: one row per run, columns as in `running.columns`, with the bounds of its problem. problems: by name.
     bounds: one row per problem, indexed by name, columns as in `problems.bounds_of`. published: the study's published numbers, if
-    requested. jobs: method -> the job of its runs (`study.job`), if runs are reproduced. worlds: by problem, where a world moves.
+    requested. jobs: method -> the job of its runs (`jobs.job`), if runs are reproduced. worlds: by problem, where a world moves.
     """
 
     runs: pd.DataFrame

@@ -1,6 +1,6 @@
 """One chunk of runs: one method on every condition of an experiment, for a block of repeats.
 
-A job is a mapping with these keys, all of them names and plain values (built by `study.job`):
+A job is a mapping with these keys, all of them names and plain values (built by `jobs.job`):
 
     study, experiment, method    names
     planner, settings            the planner and its settings, by name

@@ -66,7 +66,7 @@ def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, floa
 
 
 def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, str]]:
-    """Problems and the names of their workspaces, both keyed by problem, from their descriptions (`study.problems_job`).
+    """Problems and the names of their workspaces, both keyed by problem, from their descriptions (`jobs.problems_job`).
 
     Map files are looked up in the folder. Raises ValueError for a fault in any of them.
     """

@@ -27,7 +27,7 @@ def problems_job(study: Study, experiment: str, scale: str) -> dict:
 
 
 def job(study: Study, experiment: str, method: str, scale: str, chunk: int) -> dict:
-    """A chunk of runs, as `running.run_chunk` takes it. A chunk always runs whole, whatever the number of requested repeats."""
+    """A chunk of runs, as `execution.run_chunk` takes it. A chunk always runs whole, whatever the number of requested repeats."""
     content = study.experiments[experiment]
     size = content.chunk[scale]
     return {

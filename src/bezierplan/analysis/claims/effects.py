@@ -73,7 +73,7 @@ class Finding(NamedTuple):
 
     toward: 1 if the effect matters and points as claimed, -1 if it matters and points the other way, otherwise 0. negligible: whether the
     interval of the effect lies within the margin. least_detectable: the effect that would have been detected with a power of 0.8.
-    mark: `+`, `-`, `0` or `?` if it does not follow from p (`claim_verdicts.mark`). rho, r_squared: of trends.
+    mark: `+`, `-`, `0` or `?` if it does not follow from p (`verdicts.mark`). rho, r_squared: of trends.
     """
 
     effect: float = math.nan
