@@ -3,7 +3,9 @@
 import pytest
 from studies import studies
 
+from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.variants import in_variant, variants
+from bezierplan.schema.model import parsed
 from bezierplan.study import alternatives, jobs, targets
 
 STUDIES = studies()
@@ -21,8 +23,11 @@ def test_an_alternative_judges_the_primary_variant_and_runs_only_what_it_judges(
     study = STUDIES["elhoseny2017"]
     name = next(name for name in alternatives.tried(study) if any(claim.id == "C1" for claim in alternatives.headline_claims(study, name)))
     claim = next(claim for claim in alternatives.headline_claims(study, name) if claim.id == "C1")
-    [check] = in_variant([each.plain() for each in claim.checks], *2 * variants(claim.plain()))
-    assert check["where"]["workspace"] == "published_like"
+    [check] = in_variant(claim.checks, *2 * variants(claim))
+    assert check.where["workspace"] == "published_like"
+    judged = targets.alternative_params(STUDIES, "full", "elhoseny2017", name)["job"]
+    assert judged["primary_alone"]
+    assert [parsed(Claim, each, "claims").in_primary_variant() for each in judged["claims"]] == alternatives.headline_claims(study, name)
     job = targets.alternative_params(STUDIES, "full", "elhoseny2017", name)["chunks"]["fields100/mga/0.parquet"]
     assert {place["workspace"] for place in job["problems"].values()} == {"published_like"}
     assert len(job["problems"]) == len(study.problems_of("fields100", "full")) / 2

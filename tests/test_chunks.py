@@ -11,7 +11,7 @@ import pytest
 from studies import studies
 
 from bezierplan.analysis import results
-from bezierplan.running import log, problems
+from bezierplan.running import columns, log, problems, rows
 from bezierplan.study import definition, jobs, page, targets
 from bezierplan.study.experiments import Experiment
 from bezierplan.workspaces.grid import from_lines
@@ -66,6 +66,11 @@ def test_runs_are_pairs_where_methods_share_their_random_numbers(seeds, paired):
     assert experiment(10, 5, **seeds).paired == paired
 
 
+# A row with nothing in its columns.
+_NOTHING = {"name": "", "word": "", "number": 0, "flag": False, "list": []}
+EMPTY = {name: _NOTHING[kind] for name, kind in (columns.PLANNED | columns.RESULTS).items()}
+
+
 @pytest.fixture
 def chunks(tmp_path):
     """The folder of an experiment's results: two chunks of four repeats of two methods, their times, problems and bounds."""
@@ -79,9 +84,9 @@ def chunks(tmp_path):
         for chunk in range(2):
             repeats = np.arange(4 * chunk, 4 * chunk + 4)
             of = {"experiment": "first", "method": method, "problem": "across"}
-            runs = pd.DataFrame({"id": [f"{method}{n}" for n in repeats], **of, "repeat": repeats, "length": 2.0, "feasible": True})
-            times = pd.DataFrame({"id": runs["id"], "cpu_s": repeats / 100, "wall_s": repeats / 50})
-            parquet.write_table(pa.Table.from_pandas(runs), folder / f"{chunk}.parquet")
+            runs = [EMPTY | of | {"id": f"{method}{n}", "repeat": int(n), "length": 2.0, "feasible": True} for n in repeats]
+            times = pd.DataFrame({"id": [run["id"] for run in runs], "cpu_s": repeats / 100, "wall_s": repeats / 50})
+            parquet.write_table(rows.table(runs, columns.Planned, columns.Outcome), folder / f"{chunk}.parquet")
             parquet.write_table(pa.Table.from_pandas(times[::-1]), folder / f"{chunk}.times.parquet")
     return tmp_path
 
@@ -116,6 +121,8 @@ MISPLACED = {
     "nothing for bounds": ("bounds.parquet", b"", "not a whole Parquet file"),
     "a csv for problems": ("problems.parquet", b"problem\nacross\n", "not a whole Parquet file"),
     "runs for bounds": ("bounds.parquet", f"{MINE}/0.times.parquet", "not of the problems that the runs are of"),
+    "runs of an earlier version": (f"{MINE}/0.parquet", {"clearance_error": None}, "no column clearance_error"),
+    "runs with counts as numbers": (f"{MINE}/0.parquet", {"evaluations": 1.5}, "column evaluations is of type double, not int64"),
     "times for problems": ("problems.parquet", f"{MINE}/0.times.parquet", "not of the problems that the runs are of"),
 }
 
@@ -123,7 +130,14 @@ MISPLACED = {
 @pytest.mark.parametrize("fault", MISPLACED)
 def test_a_file_in_the_place_of_another_is_told(chunks, fault):
     place, content, told = MISPLACED[fault]
-    (chunks / place).write_bytes(content if isinstance(content, bytes) else (chunks / content).read_bytes())
+    if isinstance(content, dict):
+        table = parquet.read_table(chunks / place)
+        for column, value in content.items():
+            table = table.drop_columns(column)
+            table = table if value is None else table.append_column(column, pa.array([value] * len(table)))
+        parquet.write_table(table, chunks / place)
+    else:
+        (chunks / place).write_bytes(content if isinstance(content, bytes) else (chunks / content).read_bytes())
     with pytest.raises(ValueError, match=told) as found:
         read(chunks)
     assert str(found.value) == f"{chunks / place}: {told}; delete it and start again: the workflow reproduces it"

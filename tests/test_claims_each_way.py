@@ -16,6 +16,7 @@ from studies import KEYS, study
 
 from bezierplan.analysis import metrics, statistics
 from bezierplan.analysis.claims import comparisons, judge, variants
+from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.kinds import OfRuns, kinds
 from bezierplan.analysis.claims.material import Material
 from bezierplan.analysis.papers import elhoseny2017, ma2020, meledje, song2016, tharwat2018
@@ -52,9 +53,10 @@ def claims_of(key) -> list[dict]:
 def deciding(key, claim) -> list[dict]:
     """The deciding checks of the deciding variant, `rest` filled in, seconds replaced by the work that counts."""
     material = Material({}, published(key), artefacts(key), {}, {}, {}, {}, {})
-    first, *_ = variants.variants(claim)
-    checks = [comparisons.with_rest(check, claim, material) for check in claim["checks"]]
-    return [variants.with_work(check)[0] for check in variants.in_variant(checks, first, first) if "secondary" not in check]
+    sentence = Claim.model_validate(claim)
+    first, *_ = variants.variants(sentence)
+    checks = [comparisons.with_rest(check, sentence, material) for check in sentence.checks]
+    return [variants.with_work(check)[0].plain() for check in variants.in_variant(checks, first, first) if check.primary]
 
 
 def is_generated(claim) -> bool:
@@ -240,7 +242,7 @@ def judged(key, claim, results, printed=None) -> tuple[pd.DataFrame, pd.DataFram
     own = study(key)
     functions = {each.__name__.rpartition(".")[2]: each for each in (song2016, elhoseny2017, tharwat2018, ma2020, meledje)}
     return judge.judge(
-        [claim | {"variants": {column: values[:1] for column, values in claim.get("variants", {}).items()}}],
+        [Claim.model_validate(claim).in_primary_variant()],
         *(results, printed or published(key), artefacts(key), key, vars(functions[key])),
         variant_of=own.variants(),
         paired={name: own.experiments[name].paired for name in results},
@@ -297,17 +299,17 @@ def test_seconds_decide_only_where_counted_work_says_nothing(key, identity):
     """Between planners of different kinds, and where settings fix how much is evaluated; then by medians, as a ratio, beyond what machines
     differ by, with the evaluations as a variant. Nowhere else, whether a check names seconds or a variant does.
     """
-    claim = claim_of(key, identity)
+    claim = Claim.model_validate(claim_of(key, identity))
     fixed = {("ma2020", "C15")}  # generations
     first, *_ = assignments = variants.variants(claim)
     for assignment in assignments:
-        for check in variants.in_variant(claim["checks"], first, assignment):
-            if "secondary" in check or not any(is_timed(each) for each in variants.with_work(check)[:1]):
+        for check in variants.in_variant(claim.checks, first, assignment):
+            if not check.primary or not is_timed(variants.with_work(check)[0].plain()):
                 continue
-            assert len(planners(key, check)) > 1 or (key, identity) in fixed, assignment
-            assert (check["scale"], check["statistic"]) == ("relative", "median")
-            assert check["margin"] >= OF_MACHINES
-            assert claim["variants"]["metric"] == ["cpu_s", "evaluations"]
+            assert len(planners(key, check.plain())) > 1 or (key, identity) in fixed, assignment
+            assert (check.scale, check.statistic) == ("relative", "median")
+            assert check.margin >= OF_MACHINES
+            assert claim.variants["metric"] == ["cpu_s", "evaluations"]
 
 
 @pytest.mark.parametrize(("key", "identity"), CASES)

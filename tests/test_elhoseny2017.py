@@ -10,6 +10,7 @@ from faults import told
 from studies import arguments, studies, study
 
 from bezierplan.analysis import audit
+from bezierplan.analysis.claims.kinds import function
 from bezierplan.analysis.papers import elhoseny2017
 from bezierplan.analysis.results import Results
 from bezierplan.running import execution, problems
@@ -158,14 +159,17 @@ def results(side, least):
     return Results(twice, {}, pd.DataFrame())
 
 
+CHECK = function.Options(test="function", name="printed_over_bound", effect="ratio", effect_unit="-")
+
+
 def test_printed_lengths_over_the_bounds():
     found = {"fields100": results(100, 150.0), "fields200": results(200, 300.0)}
-    mark, effect, _, fields = elhoseny2017.printed_over_bound({"where": {}}, found, PUBLISHED)
+    mark, effect, _, fields = elhoseny2017.printed_over_bound(CHECK, found, PUBLISHED)
     assert (mark, fields) == ("-", 80)
     largest = {name: PUBLISHED[name].query("method != 'mga'")["value"].max() for name in ("table2", "table3")}
     assert effect == pytest.approx(max(largest["table2"] / 151.5, largest["table3"] / 301.5), rel=1e-12)
     low = {name: PUBLISHED[name].assign(value=150.0 * factor) for name, factor in (("table2", 1), ("table3", 2))}
-    assert elhoseny2017.printed_over_bound({"where": {}}, found, PUBLISHED | low)[0] == "+"
+    assert elhoseny2017.printed_over_bound(CHECK, found, PUBLISHED | low)[0] == "+"
 
 
 # Faults.

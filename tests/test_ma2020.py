@@ -9,6 +9,7 @@ import pytest
 from studies import arguments
 
 from bezierplan.analysis import audit
+from bezierplan.analysis.claims.kinds import function
 from bezierplan.analysis.papers import ma2020
 from bezierplan.analysis.results import Results
 from bezierplan.geometry import checker, curves, shortest_paths
@@ -254,6 +255,7 @@ CUSP = [(0, 0), (1, 1), (0, 1), (1, 0)]
     [([SMOOTH], True, "+", 1), ([SMOOTH, STILL], True, "-", 2), ([CUSP], True, "-", 1), ([SMOOTH], False, "?", 0)],
 )
 def test_continuous_curvature(points, feasible, mark, count):
-    found = ma2020.continuous_curvature({"experiment": "environments", "where": {}}, results(points, feasible), {})
+    check = function.Options(test="function", name="continuous_curvature", effect="share", effect_unit="-", experiment="environments")
+    found = ma2020.continuous_curvature(check, results(points, feasible), {})
     assert (found[0], found[2], found[3]) == (mark, None, count)
     assert count == 0 or found[1] == 0

@@ -20,13 +20,13 @@ def test_readme_shows_the_outcome_that_is_kept():
 
 def comparison(values, ours, methods=("plain", "other")):
     in_range = [abs(a - b) < 1 for a, b in zip(values, ours, strict=True)]
-    frame = {"problem": "a", "method": methods, "metric": "length", "value_published": values, "value_ours": ours}
+    frame = {"primary": True, "problem": "a", "method": methods, "metric": "length", "value_published": values, "value_ours": ours}
     verdict = ["agrees" if each else "disagrees" for each in in_range]
     return pd.DataFrame(frame | {"statistic": "mean", "n_published": 10, "in_range": in_range, "verdict": verdict, "possible": True})
 
 
 def test_readings_that_do_not_decide_are_not_counted():
-    numbers = summary.numbers({("one", "table1"): comparison([1.0, 9.0], [1.2, 1.2])}, {"one": ["other"]})
+    numbers = summary.numbers({("one", "table1"): comparison([1.0, 9.0], [1.2, 1.2]).assign(primary=[True, False])})
     claims = pd.DataFrame(
         {"study": "one", "id": ["C1", "C1", "C2"], "primary": [True, False, True], "verdict": ["supported", "partly", "no effect"]}
         | {"finding": False}
@@ -37,7 +37,7 @@ def test_readings_that_do_not_decide_are_not_counted():
 
 
 def test_published_number_that_is_wrong_is_counted_as_one_that_disagrees():
-    numbers = summary.numbers({("one", "table1"): comparison([1.0, 9.0], [1.2, 1.2])}, {"one": []})
+    numbers = summary.numbers({("one", "table1"): comparison([1.0, 9.0], [1.2, 1.2])})
     claims = pd.DataFrame({"study": ["one"], "id": ["C1"], "primary": [True], "finding": [False], "verdict": ["supported"]})
     found = headline.outcome(numbers, claims).loc["one"]
     assert (found["numbers"], found["agrees"]) == (2, 1)
@@ -45,17 +45,11 @@ def test_published_number_that_is_wrong_is_counted_as_one_that_disagrees():
 
 def test_numbers_without_a_published_value_are_left_out():
     table = comparison([1.0, float("nan")], [1.2, 1.2])
-    assert summary.numbers({("one", "table1"): table}, {"one": []})["method"].tolist() == ["plain"]
-
-
-def test_other_conditions_than_the_deciding_one_are_not_counted():
-    table = comparison([1.0, 9.0], [1.2, 9.0]).assign(workspace=["first", "second"])
-    numbers = summary.numbers({("one", "table1"): table}, {"one": []}, {("one", "table1"): {"workspace": "first"}})
-    assert numbers["primary"].tolist() == [True, False]
+    assert summary.numbers({("one", "table1"): table})["method"].tolist() == ["plain"]
 
 
 def counted(*tables):
-    return summary.numbers({("one", f"table{n}"): table for n, table in enumerate(tables)}, {"one": []})["counted"].tolist()
+    return summary.numbers({("one", f"table{n}"): table for n, table in enumerate(tables)})["counted"].tolist()
 
 
 def test_repeats_in_another_table_are_counted_once():
@@ -84,7 +78,7 @@ def test_outcome_counts_verdicts_of_numbers():
     words = ["agrees", "disagrees", "inconclusive", "inconclusive"]
     table = comparison([1.0, 2.0, 3.0, 9.0], [1.2, 2.2, 3.2, 4.0], list("abcd")).assign(verdict=words)
     claims = pd.DataFrame({"study": ["one"], "id": ["C1"], "primary": [True], "finding": [False], "verdict": ["supported"]})
-    found = headline.outcome(summary.numbers({("one", "table1"): table}, {"one": []}), claims).loc["one"]
+    found = headline.outcome(summary.numbers({("one", "table1"): table}), claims).loc["one"]
     assert found[["numbers", "agrees", "disagrees", "inconclusive"]].to_list() == [4, 1, 1, 2]
 
 
@@ -95,7 +89,7 @@ def test_readings_that_agree_stand_next_to_the_verdict():
     found = summary.with_readings(claims, tried)
     assert found["readings"].to_list() == ["3 of 3", "", "1 of 2", ""]
     assert found["verdict"].equals(claims["verdict"])
-    numbers = summary.numbers({("one", "table1"): comparison([1.0], [1.2], ["plain"])}, {"one": []})
+    numbers = summary.numbers({("one", "table1"): comparison([1.0], [1.2], ["plain"])})
     assert headline.outcome(numbers, found).loc["one", "stable"] == "1 of 2"
     assert "stable" not in headline.outcome(numbers, claims)
 

@@ -203,7 +203,7 @@ def test_columns_of_the_comparison():
         "problem,method,metric,statistic,unit,n_published,value_published,n_ours,n_asked,value_ours,value_ours_scaled,best,mean,median,"
         "quartile1,quartile3,"
         "low95_ours,high95_ours,low95_predicted,high95_predicted,quantile_published,in_range,can_fail,power,verdict,why,identified,possible,"
-        "share_claimed,share_feasible,bound,gap"
+        "share_claimed,share_feasible,bound,gap,primary"
     )
 
 
@@ -430,3 +430,11 @@ def test_printed_ranks_that_no_runs_have_are_impossible():
         ("brief", "plain"): True,
         ("brief", "fast"): True,
     }
+
+
+def test_rows_of_the_papers_reading_are_primary():
+    """A variant of a method is another reading, and so is another value of what the table's `primary` names."""
+    found = compare(results(), spec=SPEC | {"primary": {"problem": "long"}})
+    expected = (found["problem"] == "long") & (found["method"] != "faster")
+    assert found["primary"].tolist() == expected.tolist()
+    assert compare(results())["primary"].tolist() == (found["method"] != "faster").tolist()

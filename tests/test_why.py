@@ -5,6 +5,7 @@ import math
 import pandas as pd
 import pytest
 
+from bezierplan.analysis.claims import kinds
 from bezierplan.figures.page import why
 
 ROW = {"test": "lower", "metric": "length", "statistic": "mean", "unit": "cell", "effect": 3.0, "low95": 1.0, "high95": 5.0, "margin": 0.5}
@@ -84,17 +85,37 @@ SENTENCES = {
 }
 
 
+OF_RUNS = {"experiment": "e", "metric": "length"}
+GROUPS = OF_RUNS | {"groups": ["a"], "than": ["b"], "margin": 0.5}
+NEEDED = {
+    "lower": GROUPS | {"direction": "lower"},
+    "equal_within": GROUPS | {"statistic": "mean"},
+    "difference": OF_RUNS | {"groups": ["a", "b"], "margin": 0.5},
+    "ordered": OF_RUNS | {"order": [["a"], ["b"]], "margin": 0.5},
+    "trend": OF_RUNS | {"margin": 0.5},
+    "share": OF_RUNS,
+    "function": {"name": "found", "effect_unit": "-"},
+    "published_arithmetic": {"form": "equal", "of": [{"table": "table1"}], "equals": 1},
+}
+"""Kind of test -> keys that it needs and no sentence mentions."""
+
+
+def check_of(test, **written):
+    return kinds.check_of({"test": test} | NEEDED[test] | written)
+
+
 @pytest.mark.parametrize(("row", "check", "name", "sentence"), SENTENCES.values(), ids=SENTENCES)
 def test_each_kind_of_test_has_a_sentence(row, check, name, sentence):
     given = pd.Series(ROW | row)
-    assert why.why(given, {"test": given["test"]} | check, name, "Case 1", own_criterion=False) == sentence
+    assert why.why(given, check_of(given["test"], **check), name, "Case 1", own_criterion=False) == sentence
 
 
 def test_a_limit_of_ours_is_said_to_be_ours():
-    given, check = pd.Series(ROW | SHARE), {"test": "share", "event": {"at_most": 30}, "threshold": 0.5, "direction": "at_least"}
+    given, check = pd.Series(ROW | SHARE), check_of("share", event={"at_most": 30}, threshold=0.5, direction="at_least")
     assert why.why(given, check, "", "", own_criterion=True).endswith("; the paper gives no number, so this limit is ours.")
 
 
 def test_the_line_in_a_picture_is_what_a_share_is_compared_with():
-    assert [why.reference({"test": "share", "threshold": each}) for each in ("all", "none", "some", 0.5)] == [1.0, 0.0, 0.0, 0.5]
-    assert why.reference({"test": "lower"}) == 0.0
+    assert [why.reference(check_of("share", threshold=each)) for each in ("all", "none", "some")] == [1.0, 0.0, 0.0]
+    assert why.reference(check_of("share", threshold=0.5, direction="at_least")) == 0.5
+    assert why.reference(check_of("lower", direction="lower")) == 0.0

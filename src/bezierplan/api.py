@@ -260,7 +260,20 @@ def read_map(
 def shortest_path(problem: Problem) -> Shortest:
     """The exact shortest path of a point from start to target.
 
-    Raises ValueError for a start or target outside or in an obstacle.
+    Parameters
+    ----------
+    problem : Problem
+        A map with start and target.
+
+    Returns
+    -------
+    Shortest
+        Its length and a polyline along it.
+
+    Raises
+    ------
+    ValueError
+        For a start or target outside or in an obstacle.
 
     Examples
     --------

@@ -11,7 +11,7 @@ with log.job(snakemake) as output:
 
     job, files = snakemake.params.job, snakemake.input
     comparisons = {tuple(name): pd.read_csv(file) for name, file in zip(job["tables"], files.comparisons, strict=True)}
-    numbers = summary.numbers(comparisons, job["variants"], dict(zip(comparisons, job["deciding"], strict=True)))
+    numbers = summary.numbers(comparisons)
     claims = summary.read_claims(files.claims)
     numbers.to_csv(output.numbers, index=False, float_format="%.10g", lineterminator="\n")
     claims.to_csv(output.claims, index=False, float_format="%.10g", lineterminator="\n")

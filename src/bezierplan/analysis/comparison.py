@@ -29,6 +29,7 @@ One row for each group of runs, metric and statistic; an empty cell means that t
 | share_feasible | share of all runs whose path the certified checker accepts |
 | bound | least length of the problem, of the metric's kind (`metrics.Metric`); for several problems, the median over the runs |
 | gap | median over the feasible runs of that kind of length / bound - 1 |
+| primary | whether the row is the paper's reading: no variant of a method, and what the table's `primary` names |
 """
 
 import math
@@ -65,7 +66,7 @@ _COLUMNS = [
     "value_ours_scaled",
     *("best", "mean", "median", "quartile1", "quartile3", "low95_ours", "high95_ours"),
     *("low95_predicted", "high95_predicted", "quantile_published", "in_range", "can_fail", "power", "verdict", "why"),
-    *("identified", "possible", "share_claimed", "share_feasible", "bound", "gap"),
+    *("identified", "possible", "share_claimed", "share_feasible", "bound", "gap", "primary"),
 ]
 
 
@@ -108,8 +109,16 @@ def compare(
     undefined = _undefined(both, spec) & table["in_range"].notna()
     table["verdict"] = table["verdict"].mask(undefined, "inconclusive")
     table["why"] = table["why"].astype(object).mask(undefined, UNDEFINED)
+    table["primary"] = _is_primary(table, spec.get("primary", {}), variant_of)
     whole, marks = ("n_published", "n_ours", "n_asked"), ("in_range", "can_fail", "possible")
     return table.astype(dict.fromkeys(whole, "Int64") | dict.fromkeys(marks, "boolean"))
+
+
+def _is_primary(table: pd.DataFrame, primary: dict[str, Any], variant_of: dict[str, str]) -> np.ndarray:
+    """Which rows (n,) are the paper's reading. primary: column -> the value that it has there."""
+    read = [table[column].to_numpy() == value for column, value in primary.items()]
+    named = [~table["method"].isin(variant_of).to_numpy()] if "method" in table else []
+    return np.logical_and.reduce([np.ones(len(table), dtype=bool), *read, *named])
 
 
 def _identified(row: dict[str, Any], entries: list[dict], problems: dict[str, Problem]) -> str | None:

@@ -101,7 +101,11 @@ def markdown(found: Headline) -> str:
 
 
 def deviation(numbers: pd.DataFrame) -> float:
-    """The median of |ours - published| / |published|, NaN without numbers other than 0. Ours are scaled to the paper's number of runs."""
+    """The median of |ours - published| / |published|, NaN without numbers other than 0. Ours are scaled to the paper's number of runs.
+
+    Quantities that the paper does not define say nothing.
+    """
+    numbers = numbers[numbers["why"] != comparison.UNDEFINED]
     published, ours = (numbers[name].to_numpy(dtype=float) for name in ("value_published", "value_ours_scaled"))
     with np.errstate(divide="ignore", invalid="ignore"):
         relative = np.abs(ours - published) / np.abs(published)

@@ -23,16 +23,36 @@ if TYPE_CHECKING:
 
 
 class Metric(NamedTuple):
-    """unit: `u` stands for the workspace's unit of length, `-` for a number without unit. meaning: one phrase.
+    """What is measured of a run.
 
-    feasible_only: taken over the runs whose path the certified checker accepts, otherwise over all runs.
-    compute: (runs, problems) -> one number per run (n,), where runs is a table of at least one run; None for a column of the runs table.
-    among_rows: it compares the methods of a table with each other, so variants and baselines outside the table have none.
-    least: the smallest value that a run can have, or the column of the runs table that holds it. most: the largest.
-    bound, gap: the column with the bound for this kind of length, and the metric of the gap to it.
-    step: the distance between possible values of a run, 1 for whole numbers; None if there is none. needs: columns that only some runs
-    tables have; with none, and without compute, the column of its own name. on: kinds of workspace; () for all. of_group: all runs of a
-    method under a condition share it, so resampling them does not show how certain it is.
+    Attributes
+    ----------
+    unit : str
+        `u` stands for the workspace's unit of length, `-` for a number without unit.
+    meaning : str
+        One phrase.
+    feasible_only : bool
+        Whether it is taken over the runs whose path the certified checker accepts, otherwise over all runs.
+    compute : callable or None
+        (runs, problems) -> one number per run (n,), where runs is a table of at least one run; None for a column of the runs table.
+    among_rows : bool
+        Whether it compares the methods of a table with each other, so that variants and baselines outside the table have none.
+    least : float or str
+        The smallest value that a run can have, or the column of the runs table that holds it.
+    most : float
+        The largest value that a run can have.
+    bound : str
+        The column with the bound for this kind of length.
+    gap : str
+        The metric of the gap to that bound.
+    step : float or None
+        The distance between possible values of a run, 1 for whole numbers; None if there is none.
+    of_group : bool
+        Whether all runs of a method under a condition share it, so that resampling them does not show how certain it is.
+    needs : tuple of str
+        Columns that only some runs tables have; with none, and without compute, the column of its own name.
+    on : tuple of str
+        Kinds of workspace; () for all.
     """
 
     unit: str
@@ -51,11 +71,29 @@ class Metric(NamedTuple):
 
 
 def values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Series:
-    """A metric of each run, as floats (booleans as 1 and 0) with the runs' index.
+    """A metric of each run.
 
-    NaN where the run has no such value, and where a metric for feasible runs only meets an infeasible run. A metric that compares runs
-    with each other uses the given ones. Raises KeyError for an unknown metric, and ValueError if the runs table lacks a column that only
-    some have.
+    Parameters
+    ----------
+    runs : DataFrame
+        Rows of a runs table; a metric that compares runs with each other uses these.
+    name : str
+        A name of `METRICS`.
+    problems : dict of str to Problem
+        The problems that the runs are of, by name.
+
+    Returns
+    -------
+    Series of float
+        With the runs' index; booleans as 1 and 0. Nan where the run has no such value, and where a metric for feasible runs only meets an
+        infeasible run.
+
+    Raises
+    ------
+    KeyError
+        For an unknown metric.
+    ValueError
+        If the runs table lacks a column that only some have.
     """
     import pandas as pd
 
@@ -74,7 +112,20 @@ def values(runs: pd.DataFrame, name: str, problems: dict[str, Problem]) -> pd.Se
 
 
 def unit(name: str, workspace_unit: str) -> str:
-    """The unit of a metric in a workspace with the given unit of length."""
+    """The unit of a metric in a workspace.
+
+    Parameters
+    ----------
+    name : str
+        A name of `METRICS`.
+    workspace_unit : str
+        The workspace's unit of length.
+
+    Returns
+    -------
+    str
+        `-` for a number without unit.
+    """
     return re.sub(r"\bu\b", lambda _: workspace_unit, METRICS[name].unit)
 
 

@@ -10,7 +10,9 @@ import pyarrow as pa
 import pyarrow.parquet as parquet
 
 from bezierplan.running import problems as problem_files
+from bezierplan.running import rows as row_files
 from bezierplan.running import worlds
+from bezierplan.running.columns import TABLES, Table
 from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import World
@@ -19,9 +21,9 @@ from bezierplan.workspaces.worlds import World
 class Results(NamedTuple):
     """Runs, problems and bounds of an experiment.
 
-    runs: one row per run, columns as in `running.run_chunk`, with the bounds of its problem. problems: by name.
+    runs: one row per run, columns as in `running.columns`, with the bounds of its problem. problems: by name.
     bounds: one row per problem, indexed by name, columns as in `problems.bounds_of`. published: the study's published numbers, if
-    requested. jobs: method -> the job of its runs (`study.job`), if runs are reproduced. worlds: by problem, where a world moves.
+    requested. jobs: method -> the job of its runs (`jobs.job`), if runs are reproduced. worlds: by problem, where a world moves.
     """
 
     runs: pd.DataFrame
@@ -41,37 +43,53 @@ def read(runs: list[str], repeats: int, problems: str, bounds: str) -> Results:
     """
     table = pd.concat(_chunks(runs), ignore_index=True)
     table = table[table["repeat"] < repeats].reset_index(drop=True)
-    bounded = _table(bounds)
-    for file, known in ((problems, _table(problems)), (bounds, bounded)):
+    bound_table = _read(bounds)
+    bounded = bound_table.to_pandas()
+    for file, known in ((problems, _read(problems).to_pandas()), (bounds, bounded)):
         if "problem" not in known or not set(table["problem"]) <= set(known["problem"]):
             raise _misplaced(file, "not of the problems that the runs are of")
+    _refuse_unlike(bounds, bound_table, TABLES["bounds"], "least_arrival")
     found = joined(table, problem_files.read(problems), bounded)
     return found._replace(worlds=worlds.read(problems))
 
 
 def _chunks(files: list[str]) -> Iterator[pd.DataFrame]:
-    """The rows of each chunk file with their times. Raises ValueError for a file that is not the one that belongs in its place."""
+    """The rows of each chunk file with their times. Raises ValueError for a file that is not the one that belongs in its place, or lacks a
+    declared column.
+    """
     seen: set[str] = set()
     for file in files:
-        rows, place = _table(file), PurePath(file).parts
+        table, place = _read(file), PurePath(file).parts
+        rows = table.to_pandas()
         for column, wanted in zip(("experiment", "method"), place[-3:-1]):
             others = set(rows[column]) - {wanted} if column in rows else {"no runs"}
             if others:
                 raise _misplaced(file, f"of {column} {min(map(str, others))}, not {wanted}")
         if not seen.isdisjoint(rows["id"]) or rows["id"].duplicated().any():
             raise _misplaced(file, "the runs of another chunk")
+        _refuse_unlike(file, table, TABLES["runs"], "arrival")
         seen.update(rows["id"])
         beside = str(PurePath(file).with_suffix(".times.parquet"))
-        times = _table(beside)
+        timed = _read(beside)
+        times = timed.to_pandas()
         if "id" not in times or sorted(times["id"]) != sorted(rows["id"]):
             raise _misplaced(beside, f"not the times of {PurePath(file).name}")
+        _refuse_unlike(beside, timed, TABLES["times"], "replan_mean_s")
         yield rows.merge(times, on="id", validate="one_to_one")
 
 
-def _table(file: str) -> pd.DataFrame:
-    """The rows of a Parquet file. Raises ValueError, naming it, for one that is cut off or none."""
+def _refuse_unlike(file: str, table: pa.Table, declared: Table, driven: str) -> None:
+    """Raise ValueError, naming the file, if it lacks a declared column or has it in another type. driven: the column by which drives are
+    known.
+    """
+    if fault := row_files.fault(table.schema, *declared.every, *([declared.drives] if driven in table.column_names else [])):
+        raise _misplaced(file, fault)
+
+
+def _read(file: str) -> pa.Table:
+    """The table of a Parquet file. Raises ValueError, naming it, for one that is cut off or none."""
     try:
-        return parquet.read_table(file).to_pandas()
+        return parquet.read_table(file)
     except (OSError, pa.ArrowException):
         raise _misplaced(file, "not a whole Parquet file") from None
 

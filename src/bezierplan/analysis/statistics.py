@@ -76,7 +76,25 @@ WITHOUT_INTERVAL = ("min", "max", "range")
 
 
 def statistic(name: str, values: np.ndarray) -> float:
-    """A named statistic of values (n,) without gaps; NaN without values. Raises KeyError for an unknown name."""
+    """A named statistic of values.
+
+    Parameters
+    ----------
+    name : str
+        A name of `STATISTICS`.
+    values : (n,) array
+        Without gaps.
+
+    Returns
+    -------
+    float
+        Nan without values.
+
+    Raises
+    ------
+    KeyError
+        For an unknown name.
+    """
     return float(STATISTICS[name](values)) if len(values) else math.nan
 
 
@@ -152,9 +170,21 @@ def _normal(name: str, values: np.ndarray, share: float) -> np.ndarray:
 
 
 def interval(name: str, values: np.ndarray, rng: np.random.Generator) -> tuple[float, float]:
-    """95 % percentile bootstrap interval of a named statistic of values (n,); above `MOST_RESAMPLED` values, its normal approximation.
+    """95 % percentile bootstrap interval of a statistic; above `MOST_RESAMPLED` values, its normal approximation.
 
-    NaN for fewer than two values, and for statistics that depend on the number of values (`WITHOUT_INTERVAL`).
+    Parameters
+    ----------
+    name : str
+        A name of `STATISTICS`.
+    values : (n,) array
+        Without gaps.
+    rng : Generator
+        What the bootstrap draws from.
+
+    Returns
+    -------
+    low, high : float
+        Nan for fewer than two values, and for statistics that depend on the number of values (`WITHOUT_INTERVAL`).
     """
     if len(values) < 2 or name in WITHOUT_INTERVAL:
         return math.nan, math.nan
@@ -209,9 +239,15 @@ def predicted_within(name: str, groups: list[np.ndarray], size: int, rng: np.ran
 class Prediction(NamedTuple):
     """A published number among those that experiments of the paper's size would print, judging by our runs.
 
-    quantile: its position, ties counted half. in_range: whether it is within the central 95 %, ties counted in its favour; None below
-    `LEAST_RUNS` values. low, high: ends of the central 95 %. If our values do not determine how far the least or the largest of others may
-    lie, an end is the least or the largest possible value, or infinite.
+    Attributes
+    ----------
+    quantile : float
+        Its position, ties counted half.
+    in_range : bool or None
+        Whether it is within the central 95 %, ties counted in its favour; None below `LEAST_RUNS` values.
+    low, high : float
+        Ends of the central 95 %. If our values do not determine how far the least or the largest of others may lie, an end is the least or
+        the largest possible value, or infinite.
     """
 
     quantile: float
@@ -230,14 +266,31 @@ def prediction(
     possible: tuple[float, float] = (-math.inf, math.inf),
     groups: list[np.ndarray] | None = None,
 ) -> Prediction:
-    """Place a published number among the numbers that experiments of the paper's size would print, judging by our values (n,).
+    """Place a published number among the numbers that experiments of the paper's size would print, judging by our values.
 
-    size: number of values behind the published statistic; if None (not stated), the number is placed among our single values.
-    decimals: those of the printed number, to which ours are rounded before comparison; None to compare without rounding.
-    possible: the least and the largest possible single value; no experiment's extreme lies beyond them. groups: our values by group, if
-    all values of the paper's experiment belong to one.
+    Parameters
+    ----------
+    name : str
+        A name of `STATISTICS`.
+    values : (n,) array
+        Ours, without gaps.
+    published : float
+        The published number; nan if there is none.
+    size : int or None
+        Number of values behind the published statistic; if None (not stated), the number is placed among our single values.
+    decimals : int or None
+        Those of the printed number, to which ours are rounded before comparison; None to compare without rounding.
+    rng : Generator
+        What experiments are drawn from.
+    possible : tuple of float
+        The least and the largest possible single value; no experiment's extreme lies beyond them.
+    groups : list of array, optional
+        Our values by group, if all values of the paper's experiment belong to one.
 
-    NaN and None without values or without a published number.
+    Returns
+    -------
+    Prediction
+        Nan and None without values or without a published number.
     """
     if not len(values) or math.isnan(published):
         return Prediction(math.nan, None, math.nan, math.nan)
@@ -361,7 +414,7 @@ def _extremes(name: str, values: np.ndarray, size: int) -> tuple[np.ndarray, np.
 
 
 def holm(p: np.ndarray) -> np.ndarray:
-    """p (n,) of a family, corrected by Holm's step-down procedure: (n,)."""
+    """The p (n,) of a family, corrected by Holm's step-down procedure: (n,)."""
     order = np.argsort(p)
     corrected = np.empty(len(p))
     corrected[order] = np.minimum(np.maximum.accumulate(np.sort(p) * np.arange(len(p), 0, -1)), 1)

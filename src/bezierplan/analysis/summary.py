@@ -19,25 +19,13 @@ def read_claims(files: list[str]) -> pd.DataFrame:
     )
 
 
-def numbers(
-    comparisons: dict[tuple[str, str], pd.DataFrame], variants: dict[str, list[str]], deciding: dict[tuple[str, str], dict] | None = None
-) -> pd.DataFrame:
-    """Every row of comparisons that has a published number.
+def numbers(comparisons: dict[tuple[str, str], pd.DataFrame]) -> pd.DataFrame:
+    """Every row of comparisons that has a published number, in their order.
 
-    comparisons: (study, table) -> `comparison.compare`. variants: study -> its methods that are another reading of a published one.
-    deciding: (study, table) -> column -> the value whose rows are the primary reading. Columns: study, table, primary (the row is not
-    another reading), counted (it is primary, can be judged, and adds information: `_counted`), then those of the comparisons, key columns
-    first.
+    comparisons: (study, table) -> `comparison.compare`. Columns: study, table, primary, counted (the row is primary, can be judged, and
+    adds information: `_counted`), then the others of the comparisons, key columns first.
     """
-    frames = []
-    for (study, table), frame in comparisons.items():
-        printed = frame[frame["value_published"].notna()]
-        primary = pd.Series(True, index=printed.index)
-        if "method" in printed:
-            primary &= ~printed["method"].isin(variants[study])
-        for column, value in (deciding or {}).get((study, table), {}).items():
-            primary &= printed[column] == value
-        frames.append(printed.assign(study=study, table=table, primary=primary))
+    frames = [frame[frame["value_published"].notna()].assign(study=study, table=table) for (study, table), frame in comparisons.items()]
     everything = pd.concat(frames, ignore_index=True)
     last = list(everything.columns[everything.columns.get_loc("metric") :].drop(["study", "table", "primary"], errors="ignore"))
     keys = [column for column in everything.columns if column not in last and column not in ("study", "table", "primary")]

@@ -1,6 +1,6 @@
 """A figure: its panels on one sheet, and the table of everything drawn on it.
 
-A kind of panel is a module of `bezierplan.figures` with two functions:
+A kind of panel is a module of `figures.panels` with two functions:
 
     data(source, *, <options>) -> DataFrame         what is drawn; the source is Results, a Workspace if nothing is planned, the table
                                                     of a study's function, Results with the table of a function of them, or None if

@@ -25,11 +25,21 @@ class GridRegion(NamedTuple):
     A doubled grid has an element for every cell, for every open edge between two cells, and for every vertex between four, each in its
     place: with a ring of cells around the grid to represent the outside, even indices are cells and odd indices are grid lines.
 
-    cell: side of a cell, in units. origin: (2,) x and y of the grid's lower left corner, in units; everything else, including paths, is
-    measured from it (`from_origin`). blocked: bool (2 rows + 3, 2 columns + 3), whether all cells that touch an element are occupied.
-    counts: (2 rows + 4, 2 columns + 4), prefix sums of `blocked`. edges: (n, 4) boundary of the region as x, y, x, y in units, collinear
-    edges joined. contacts: (m, 3) x and y in units of the inner vertices at which two occupied cells share only a corner, and the sign of
-    the slope of the diagonal through their two free cells.
+    Attributes
+    ----------
+    cell : float
+        Side of a cell, in units.
+    origin : (2,) array
+        x and y of the grid's lower left corner, in units; everything else, including paths, is measured from it (`from_origin`).
+    blocked : (2 rows + 3, 2 columns + 3) array of bool
+        Whether all cells that touch an element are occupied.
+    counts : (2 rows + 4, 2 columns + 4) array of int
+        Prefix sums of `blocked`.
+    edges : (n, 4) array
+        Boundary of the region as x, y, x, y in units, collinear edges joined.
+    contacts : (m, 3) array
+        x and y in units of the inner vertices at which two occupied cells share only a corner, and the sign of the slope of the diagonal
+        through their two free cells.
     """
 
     cell: float
@@ -43,7 +53,16 @@ class GridRegion(NamedTuple):
 class CircleRegion(NamedTuple):
     """Open discs and the outside of the border.
 
-    centres: (n, 2), radii: (n,), bounds: (4,) lowest and highest x, lowest and highest y, edges: (4, 4) the border as x, y, x, y; in units.
+    Attributes
+    ----------
+    centres : (n, 2) array
+        In units.
+    radii : (n,) array
+        In units.
+    bounds : (4,) array
+        Lowest and highest x, lowest and highest y, in units.
+    edges : (4, 4) array
+        The border as x, y, x, y in units.
     """
 
     centres: np.ndarray
@@ -55,9 +74,18 @@ class CircleRegion(NamedTuple):
 class PolygonRegion(NamedTuple):
     """The union of polygons and of the outside of the border, by its boundary.
 
-    edges: (n, 4) as x, y, x, y in units, directed so that free space is on the left, without collinear vertices. normals: (n, 2) unit
-    vectors to the free side. following: (n,) index of the edge that begins where this one ends. preceding: (n,) its inverse. convex: bool
-    (n,), whether the blocked region is convex at the end of an edge.
+    Attributes
+    ----------
+    edges : (n, 4) array
+        As x, y, x, y in units, directed so that free space is on the left, without collinear vertices.
+    normals : (n, 2) array
+        Unit vectors to the free side.
+    following : (n,) array of int
+        Index of the edge that begins where this one ends.
+    preceding : (n,) array of int
+        Its inverse.
+    convex : (n,) array of bool
+        Whether the blocked region is convex at the end of an edge.
     """
 
     edges: np.ndarray
@@ -71,9 +99,17 @@ Region = GridRegion | CircleRegion | PolygonRegion
 
 
 def region(workspace: Workspace) -> Region:
-    """The blocked region of a workspace; of cells drawn from polygons, that of the polygons. Build it once and use it for many paths.
+    """The blocked region of a workspace; of cells drawn from polygons, that of the polygons.
 
-    It shares no memory with the workspace.
+    Parameters
+    ----------
+    workspace : Grid, Circles or Polygons
+        What the robot moves in.
+
+    Returns
+    -------
+    GridRegion, CircleRegion or PolygonRegion
+        It shares no memory with the workspace. Build it once and use it for many paths.
     """
     if isinstance(workspace, Grid) and isinstance(workspace.drawn, Polygons):
         return _polygon_region(workspace.drawn)
@@ -85,8 +121,21 @@ def region(workspace: Workspace) -> Region:
 
 
 def blocks(region: Region, point: tuple[float, float], tolerance: float = 1e-9) -> bool:
-    """Whether a point, in units, lies in the blocked region, deeper than a tolerance. Meant for single points: it needs no compiled
-    code.
+    """Whether a point lies in the blocked region. Meant for single points: it needs no compiled code.
+
+    Parameters
+    ----------
+    region : Region
+        The blocked region of a workspace.
+    point : tuple of float
+        (x, y) in units.
+    tolerance : float
+        The depth, in units, up to which a point is free.
+
+    Returns
+    -------
+    bool
+        Whether it lies deeper than the tolerance.
     """
     if isinstance(region, GridRegion):
         column, row = (_element(value / region.cell, tolerance) for value in from_origin(np.array(point), region))

@@ -35,9 +35,22 @@ __all__ = ["About", "Path", "Plan", "Problem", "Range", "Setting", "known_planne
 class Plan(NamedTuple):
     """What a planner returns.
 
-    path: None if it found no path to show. objective: its final objective value, by its own definition. claimed_feasible: the result of its
-    own feasibility test. evaluations: number of paths whose objective it evaluated. history: (generations + 1,) best objective so far after
-    generation 0, 1, .... stop: why it ended. extra: additional columns of the runs table, by name.
+    Attributes
+    ----------
+    path : Path or None
+        None if it found no path to show.
+    objective : float
+        Its final objective value, by its own definition.
+    claimed_feasible : bool
+        The result of its own feasibility test.
+    evaluations : int
+        Number of paths whose objective it evaluated.
+    history : (generations + 1,) array
+        Best objective so far after generation 0, 1, ....
+    stop : str
+        Why it ended.
+    extra : dict of str to float or bool
+        Additional columns of the runs table, by name.
     """
 
     path: Path | None

@@ -74,7 +74,7 @@ class Settings(NamedTuple):
 
 @with_settings(Settings)
 def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
-    """The exact shortest path (`exact.bounds`), rounded.
+    """The exact shortest path (`shortest_paths.shortest_path`), rounded.
 
     Parameters
     ----------

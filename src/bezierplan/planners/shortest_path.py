@@ -1,4 +1,4 @@
-"""A baseline: the exact shortest path, which no other planner can beat (`exact.bounds`)."""
+"""A baseline: the exact shortest path, which no other planner can beat (`shortest_paths.shortest_path`)."""
 
 import math
 

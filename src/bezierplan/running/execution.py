@@ -1,6 +1,6 @@
 """One chunk of runs: one method on every condition of an experiment, for a block of repeats.
 
-A job is a mapping with these keys, all of them names and plain values (built by `study.job`):
+A job is a mapping with these keys, all of them names and plain values (built by `jobs.job`):
 
     study, experiment, method    names
     planner, settings            the planner and its settings, by name
@@ -25,8 +25,8 @@ import pyarrow as pa
 
 from bezierplan.geometry.region import Region, region
 from bezierplan.planners import Plan, planner_module, planner_settings
-from bezierplan.running import answer, watchdog
-from bezierplan.running.columns import TAKEN
+from bezierplan.running import answer, rows, watchdog
+from bezierplan.running.columns import TAKEN, Outcome, Planned, Times
 from bezierplan.running.loans import Loan, lend
 from bezierplan.workspaces import seeds
 from bezierplan.workspaces.problem import Problem
@@ -143,28 +143,27 @@ def row(job: dict, condition: Condition, repeat: int, plan: Any, problem: Proble
     plan = accepted(plan, problem, job, condition, repeat)
     curve, points = answer.stored(plan.path)
     length, check = answer.verdict(answer.restored(curve, points), blocked)
-    return {
-        **identity(job, condition, repeat),
-        "objective": plan.objective,
-        "length": length,
-        "claimed_feasible": plan.claimed_feasible,
-        "feasible": check.feasible,
-        "collision_at": check.collision_at,
-        "collision_depth": check.depth,
-        "clearance": check.clearance,
-        "clearance_error": check.tolerance,
-        "evaluations": plan.evaluations,
-        "generations": len(plan.history) - 1,
-        "stop": plan.stop,
-        "history": plan.history.tolist(),
-        "path_curve": curve,
-        "path_points": points,
-        **plan.extra,
-    }
+    outcome = Outcome(
+        objective=plan.objective,
+        length=length,
+        claimed_feasible=plan.claimed_feasible,
+        feasible=check.feasible,
+        collision_at=check.collision_at,
+        collision_depth=check.depth,
+        clearance=check.clearance,
+        clearance_error=check.tolerance,
+        evaluations=plan.evaluations,
+        generations=len(plan.history) - 1,
+        stop=plan.stop,
+        history=plan.history.tolist(),
+        path_curve=curve,
+        path_points=points,
+    )
+    return identity(job, condition, repeat) | outcome._asdict() | plan.extra
 
 
 def run_chunk(problems: dict[str, Problem], job: dict) -> tuple[pa.Table, pa.Table]:
-    """The runs of a job (`RUN_COLUMNS`) and, in a separate table because they are never reproducible, their times: id, cpu_s, wall_s.
+    """The runs of a job (columns as in `columns`) and, in a separate table because they are never reproducible, their times.
 
     Planners get copies of the problems, and these stay here to judge by. Raises PlannerFailure, naming the run, if a planner fails, does
     not return a valid plan for the problem (`row`), changes a workspace, or gives another plan when its first run is repeated.
@@ -175,23 +174,23 @@ def run_chunk(problems: dict[str, Problem], job: dict) -> tuple[pa.Table, pa.Tab
     given = list(conditions(list(job["problems"]), job["vary"]))
     deterministic = getattr(planner_module(job["planner"]), "deterministic", False)
     first, last = job["repeats"]
-    rows, times = {}, {}
+    found, times = {}, {}
     with watchdog.watching(job.get("time_limit")) as watch:
         for n, (k, repeat) in enumerate(_order(job, len(given), range(first, first + 1 if deterministic else last))):
             condition = given[k]
             problem, loan = met[condition.problem], loans[condition.problem]
             once = partial(run, job, condition, repeat, loan.problem)
             made = partial(row, job, condition, repeat, problem=problem, blocked=blocked[condition.problem])
-            if not rows:
+            if not found:
                 # What needs no random numbers must not be changed by others.
                 again = partial(run, job, condition, repeat + 1, loan.problem) if deterministic else once
                 warm = _warm_up(partial(timed, again, job, condition, repeat, watch))
             plan, cpu, wall = timed(once, job, condition, repeat, watch)
             refuse_changed(loan, job, condition, repeat)
-            rows[k, repeat] = made(plan)
+            found[k, repeat] = made(plan)
             if n == 0:
-                refuse_unrepeatable(map(made, warm), rows[k, repeat], job, deterministic)
-            times[k, repeat] = {"id": rows[k, repeat]["id"], "cpu_s": cpu, "wall_s": wall}
+                refuse_unrepeatable(map(made, warm), found[k, repeat], job, deterministic)
+            times[k, repeat] = Times(found[k, repeat]["id"], cpu, wall)._asdict()
             if (n + 1) % _LOGGED == 0:
                 logger.info("%d runs done", n + 1)
     if fault := next(filter(None, (loan.thorough_fault() for loan in loans.values())), ""):
@@ -199,16 +198,11 @@ def run_chunk(problems: dict[str, Problem], job: dict) -> tuple[pa.Table, pa.Tab
         raise UnfitAnswer(f"run {runs_of}: planner {job['planner']}: {fault}")
     if deterministic:
         for k, repeat in itertools.product(range(len(given)), range(first + 1, last)):
-            rows[k, repeat] = rows[k, first] | {"id": run_id(job, given[k], repeat), "repeat": repeat}
-            times[k, repeat] = times[k, first] | {"id": rows[k, repeat]["id"]}
-    logger.info("all %d runs done", len(rows))
-    return table([rows[key] for key in sorted(rows)]), pa.Table.from_pylist([times[key] for key in sorted(times)])
-
-
-def table(rows: list[dict[str, Any]]) -> pa.Table:
-    """Rows as a table. Conditions may differ in their columns, so columns are collected over all rows."""
-    columns = dict.fromkeys(column for each in rows for column in each)
-    return pa.table({column: [each.get(column) for each in rows] for column in columns})
+            found[k, repeat] = found[k, first] | {"id": run_id(job, given[k], repeat), "repeat": repeat}
+            times[k, repeat] = times[k, first] | {"id": found[k, repeat]["id"]}
+    logger.info("all %d runs done", len(found))
+    ordered = sorted(found)
+    return rows.table([found[key] for key in ordered], Planned, Outcome), rows.table([times[key] for key in ordered], Times)
 
 
 def _order(job: dict, conditions: int, repeats: range) -> list[tuple[int, int]]:

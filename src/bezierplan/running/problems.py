@@ -1,21 +1,20 @@
 """The problems of an experiment: built from their descriptions, and kept in a file with one row per problem.
 
 Columns of a problem file: problem, workspace (its name), start_x, start_y, target_x, target_y (units), drawn (the workspace itself, as
-JSON: `workspaces.files.to_json`). Columns of a file of bounds: problem, straight_line, bound (units; infinite without a free path),
-least_length (the bound less an allowance for the checker's tolerance), bound_path (the shortest path, flat as x0, y0, x1, y1, ...),
-octile_bound (the least of all lengths counted in cells, `cell_length`, in units; NaN without a grid).
+JSON: `workspaces.files.to_json`). Columns of a file of bounds: `columns.Bound`.
 """
 
 import math
 from collections.abc import Iterator
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bezierplan.geometry import cell_length
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import blocks, region
+from bezierplan.running.columns import Bound
 from bezierplan.workspaces import files, lattice, random_blocks, robot
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem, Workspace
@@ -23,7 +22,7 @@ from bezierplan.workspaces.problem import Problem, Workspace
 if TYPE_CHECKING:
     import pyarrow as pa
 
-    from bezierplan.geometry.shortest_paths import Bound
+    from bezierplan.geometry import shortest_paths
 
 
 def build(name: str, description: dict, workspace: Workspace) -> Problem:
@@ -67,7 +66,7 @@ def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, floa
 
 
 def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, str]]:
-    """Problems and the names of their workspaces, both keyed by problem, from their descriptions (`study.problems_job`).
+    """Problems and the names of their workspaces, both keyed by problem, from their descriptions (`jobs.problems_job`).
 
     Map files are looked up in the folder. Raises ValueError for a fault in any of them.
     """
@@ -164,26 +163,25 @@ def read(file: str) -> dict[str, Problem]:
 
 def bounds_of(problems: dict[str, Problem]) -> "pa.Table":
     """The straight line and the exact shortest path of each problem, one row each."""
-    import pyarrow as pa
-
     from bezierplan.geometry import shortest_paths
+    from bezierplan.running import rows
 
-    rows = [bound_row(name, problem, shortest_paths.shortest_path(problem), _cell_bound(problem)) for name, problem in problems.items()]
-    return pa.Table.from_pylist(rows)
+    bounds = [bound_row(name, problem, shortest_paths.shortest_path(problem), _cell_bound(problem)) for name, problem in problems.items()]
+    return rows.table([each._asdict() for each in bounds], Bound)
 
 
-def bound_row(name: str, problem: Problem, bound: "Bound", octile_bound: float) -> dict[str, Any]:
+def bound_row(name: str, problem: Problem, bound: "shortest_paths.Bound", octile_bound: float) -> Bound:
     """A row of a file of bounds. bound: the shortest path, in units; octile_bound: in units, NaN where there is none."""
     from bezierplan.geometry import shortest_paths
 
-    return {
-        "problem": name,
-        "straight_line": math.dist(problem.start, problem.target),
-        "bound": bound.length,
-        "least_length": shortest_paths.least_length(bound),
-        "bound_path": bound.points.ravel().tolist(),
-        "octile_bound": octile_bound,
-    }
+    return Bound(
+        problem=name,
+        straight_line=math.dist(problem.start, problem.target),
+        bound=bound.length,
+        least_length=shortest_paths.least_length(bound),
+        bound_path=bound.points.ravel().tolist(),
+        octile_bound=octile_bound,
+    )
 
 
 def _cell_bound(problem: Problem) -> float:

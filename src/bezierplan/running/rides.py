@@ -1,25 +1,8 @@
 """One chunk of runs in moving worlds: like `execution`, of which it keeps names, seeds and columns, but a run is a simulated drive.
 
-A job is as in `execution`, with one more key: policy, the values of a `simulation.policy.Policy` by name.
-
-Columns of the runs table: those of `columns.RUN_COLUMNS`, of which path_curve and path_points hold the way driven; feasible, whether the
-robot arrived without a collision (`simulation.motion_check`) by a motion from start to target; collision_at, when it first collided, in
-steps; claimed_feasible, whether it arrived; objective, the time of arrival times the pace, in units; history, the way driven until each
-plan plus the length of that plan. And:
-
-    arrival          time of arrival, in steps; nan if it did not arrive
-    steps            time until the end of the drive, in steps
-    travelled        length of the way driven, in units
-    first_plan       length of the first plan, in units; last_plan: of the last one
-    last_optimum     least length that a last plan from cell centre to cell centre could have (`cells.least_plan`)
-    replans          plans after the first; waits: time spent waiting, in steps
-    collision_steps  steps in which it was in an obstacle; hit_waiting: whether it stood when it first collided
-    known_at         first step from which on it could know of its first collision; avoidable: whether it could still have escaped then
-                     (`simulation.hindsight`)
-    clearance_least  least distance to an obstacle, in units, negative inside a circle
-
-Times, which never repeat, have a table of their own: id, cpu_s, wall_s, and CPU seconds of the plans after the first: replan_mean_s,
-replan_95_s, replan_max_s; and replans_late, how many of them took longer than a step.
+A job is as in `execution`, with one more key: policy, the values of a `simulation.policy.Policy` by name. Columns are those of
+`columns.Outcome`, some with a meaning of their own, and `columns.DriveOutcome`; of times, those of `columns.Times` and
+`columns.DriveTimes`.
 """
 
 import math
@@ -31,8 +14,9 @@ import pyarrow as pa
 import pyarrow.parquet as parquet
 
 from bezierplan.planners import planner_module
-from bezierplan.running import execution, watchdog
+from bezierplan.running import execution, rows, watchdog
 from bezierplan.running import problems as problem_files
+from bezierplan.running.columns import Bound, DriveBound, DriveOutcome, DriveTimes, Outcome, Planned, Times
 from bezierplan.running.execution import Condition
 from bezierplan.running.loans import lend_once
 from bezierplan.running.simulation import cells, hindsight, motion_check
@@ -82,36 +66,38 @@ def row(job: dict, condition: Condition, repeat: int, ride: Ride, problem: Probl
     moments = np.append(np.arange(0, math.ceil(times[-1])), times[-1])
     # Without regard to what the robot believes: the motion itself leads from start to target.
     joins = (tuple(points[0].tolist()), tuple(points[-1].tolist())) == (problem.start, problem.target)
-    found = {
-        **execution.identity(job, condition, repeat),
-        "objective": float(times[-1]) * world.pace if ride.arrived else math.inf,
-        "length": travelled,
-        "claimed_feasible": ride.arrived,
-        "feasible": ride.arrived and joins and not collided,
-        "collision_at": verdict.collision_at,
-        "collision_depth": verdict.depth,
-        "clearance": max(least, 0.0),
-        "clearance_error": verdict.tolerance,
-        "evaluations": sum(plan.evaluations for plan in ride.plans),
-        "generations": ride.replans,
-        "stop": "arrived" if ride.arrived else "time",
-        "history": [way + length for way, length in zip(driven, lengths)],
-        "path_curve": path.curve,
-        "path_points": path.points.ravel().tolist(),
-        "arrival": float(times[-1]) if ride.arrived else math.nan,
-        "steps": float(times[-1]),
-        "travelled": travelled,
-        "first_plan": lengths[0],
-        "last_plan": lengths[-1],
-        "last_optimum": _last_optimum(ride, world, problem),
-        "replans": ride.replans,
-        "waits": float(ride.waited),
-        "collision_steps": int((verdict.clearance < -motion_check.TOUCHING).sum()) if least < 0 else int(collided),
-        "hit_waiting": collided and bool(np.array_equal(points[leg], points[leg - 1])),
-        "known_at": known,
-        "avoidable": hindsight.avoidable(ride.motion, known, world, problem),
-        "clearance_least": least,
-    }
+    outcome = Outcome(
+        objective=float(times[-1]) * world.pace if ride.arrived else math.inf,
+        length=travelled,
+        claimed_feasible=ride.arrived,
+        feasible=ride.arrived and joins and not collided,
+        collision_at=verdict.collision_at,
+        collision_depth=verdict.depth,
+        clearance=max(least, 0.0),
+        clearance_error=verdict.tolerance,
+        evaluations=sum(plan.evaluations for plan in ride.plans),
+        generations=ride.replans,
+        stop="arrived" if ride.arrived else "time",
+        history=[way + length for way, length in zip(driven, lengths)],
+        path_curve=path.curve,
+        path_points=path.points.ravel().tolist(),
+    )
+    driving = DriveOutcome(
+        arrival=float(times[-1]) if ride.arrived else math.nan,
+        steps=float(times[-1]),
+        travelled=travelled,
+        first_plan=lengths[0],
+        last_plan=lengths[-1],
+        last_optimum=_last_optimum(ride, world, problem),
+        replans=ride.replans,
+        waits=float(ride.waited),
+        collision_steps=int((verdict.clearance < -motion_check.TOUCHING).sum()) if least < 0 else int(collided),
+        hit_waiting=collided and bool(np.array_equal(points[leg], points[leg - 1])),
+        known_at=known,
+        avoidable=hindsight.avoidable(ride.motion, known, world, problem),
+        clearance_least=least,
+    )
+    found = execution.identity(job, condition, repeat) | outcome._asdict() | driving._asdict()
     trace = {
         "id": found["id"],
         "x": np.interp(moments, times, points[:, 0]).astype(np.float32),
@@ -140,27 +126,29 @@ def run_chunk(problems: dict[str, Problem], worlds: dict[str, World], job: dict)
     """
     texts = {name: to_json(worlds[name]) for name in job["problems"]}
     driven = {name: from_json(text) for name, text in texts.items()}
-    rows, times, traces = [], [], []
+    drives, times, traces = [], [], []
     with watchdog.watching(job.get("time_limit")) as watch:
         for condition in execution.conditions(list(job["problems"]), job["vary"]):
             for repeat in range(*job["repeats"]):
                 problem, world = problems[condition.problem], worlds[condition.problem]
                 once = partial(run, job, condition, repeat, problem, driven[condition.problem])
-                if not rows:
+                if not drives:
                     first, *_ = execution.timed(once, job, condition, repeat, watch)  # compiles and loads
                 ride, cpu, wall = execution.timed(once, job, condition, repeat, watch)
                 found, trace = row(job, condition, repeat, ride, problem, world)
-                if not rows:
+                if not drives:
                     again, _ = row(job, condition, repeat, first, problem, world)
                     execution.refuse_unrepeatable([again], found, job, deterministic=False)
-                rows.append(found)
+                drives.append(found)
                 traces.append(trace)
-                times.append({"id": found["id"], "cpu_s": cpu, "wall_s": wall} | _replan_times(ride, job["policy"]["step_seconds"]))
+                replans = _replan_times(ride, job["policy"]["step_seconds"])
+                times.append(Times(found["id"], cpu, wall)._asdict() | replans._asdict())
     for name, text in texts.items():
         if to_json(driven[name]) != text:
             runs_of = f"{job['study']}/{job['experiment']}/*/{job['method']}"
             raise execution.UnfitAnswer(f"run {runs_of}: planner {job['planner']}: problem: {name}: world: is another after the runs")
-    return execution.table(rows), pa.Table.from_pylist(times), pa.Table.from_pylist(traces)
+    runs = rows.table(drives, Planned, Outcome, DriveOutcome)
+    return runs, rows.table(times, Times, DriveTimes), pa.Table.from_pylist(traces)
 
 
 def rerun(job: dict, condition: str, repeat: int, problem: Problem, world: World) -> tuple[Ride, motion_check.Verdict]:
@@ -170,34 +158,30 @@ def rerun(job: dict, condition: str, repeat: int, problem: Problem, world: World
     return ride, motion_check.check(ride.motion, world)
 
 
-def _replan_times(ride: Ride, step_seconds: float) -> dict[str, float]:
+def _replan_times(ride: Ride, step_seconds: float) -> DriveTimes:
     seconds = np.array([plan.seconds for plan in ride.plans[1:]])
     late = int((seconds > step_seconds).sum())
     if not len(seconds):
-        return dict.fromkeys(("replan_mean_s", "replan_95_s", "replan_max_s"), math.nan) | {"replans_late": late}
-    quantile = float(np.quantile(seconds, 0.95))
-    return {"replan_mean_s": seconds.mean(), "replan_95_s": quantile, "replan_max_s": seconds.max(), "replans_late": late}
+        return DriveTimes(math.nan, math.nan, math.nan, late)
+    return DriveTimes(float(seconds.mean()), float(np.quantile(seconds, 0.95)), float(seconds.max()), late)
 
 
 def bounds_of(problems: dict[str, Problem], worlds: dict[str, World], arrivals: dict[str, float]) -> pa.Table:
-    """One row per problem: straight_line; bound, the length of the shortest way through places that are free at some time, with
-    least_length and bound_path (`problems.bounds_of`); octile_bound, nan. And, in steps and units:
+    """One row per problem: columns of `columns.Bound`, without an octile bound, and of `columns.DriveBound`.
 
-        least_arrival        the bound over the pace: no robot arrives earlier
-        clairvoyant_arrival  of the earliest schedule found by a search that knows the future; clairvoyant_length, of its way
-        best_arrival         the earlier one of that and of the first arrival of a drive (arrivals, by problem; left out if there is none)
+    arrivals: the first arrival of a drive, by problem, left out if there is none.
     """
-    rows = []
+    bounds = []
     for name, problem in problems.items():
         schedule, least = earliest(worlds[name], problem), least_way(worlds[name], problem)
-        arrival = {
-            "least_arrival": least.length / worlds[name].pace,
-            "clairvoyant_arrival": schedule.arrival,
-            "clairvoyant_length": schedule.length,
-            "best_arrival": min(schedule.arrival, arrivals.get(name, math.inf)),
-        }
-        rows.append(problem_files.bound_row(name, problem, least, math.nan) | arrival)
-    return pa.Table.from_pylist(rows)
+        arrival = DriveBound(
+            least_arrival=least.length / worlds[name].pace,
+            clairvoyant_arrival=schedule.arrival,
+            clairvoyant_length=schedule.length,
+            best_arrival=min(schedule.arrival, arrivals.get(name, math.inf)),
+        )
+        bounds.append(problem_files.bound_row(name, problem, least, math.nan)._asdict() | arrival._asdict())
+    return rows.table(bounds, Bound, DriveBound)
 
 
 def first_arrivals(files: list[str], repeats: int) -> dict[str, float]:

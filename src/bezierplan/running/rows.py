@@ -1,12 +1,55 @@
-"""Files of runs: tables that hold a digest of their own rows, so that a later change of any column shows."""
+"""Files of runs: tables whose columns have the declared types (`columns`), and that hold a digest of their own rows, so that a later
+change of any column shows.
+"""
 
 import hashlib
 import json
+from typing import Any
 
 import pyarrow as pa
 import pyarrow.parquet as parquet
 
+from bezierplan.running import columns
+
 _DIGEST = b"bezierplan_rows"
+
+
+_TYPES = {
+    columns.RunName: pa.string(),
+    str: pa.string(),
+    int: pa.int64(),
+    float: pa.float64(),
+    bool: pa.bool_(),
+    list[float]: pa.list_(pa.float64()),
+}
+
+
+def table(rows: list[dict[str, Any]], *declared: type) -> pa.Table:
+    """Rows as a table: declared columns, which every row must have, in their types, others in that of their values.
+
+    Conditions may differ in their settings, so columns are collected over all rows. Raises KeyError for a row that lacks a declared column,
+    and `pyarrow.ArrowInvalid` or `ArrowTypeError` for a value that does not have its type.
+    """
+    types = {name: _TYPES[kind] for name, (kind, _) in columns.declared(*declared).items()}
+    names = dict.fromkeys(name for row in rows for name in row)
+    return pa.table(
+        {
+            name: pa.array([row[name] for row in rows], types[name]) if name in types else pa.array([row.get(name) for row in rows])
+            for name in (names or types)
+        }
+    )
+
+
+def fault(schema: pa.Schema, *declared: type) -> str:
+    """The first declared column that a file lacks or has in another type, in words; empty if there is none."""
+    for name, (kind, _) in columns.declared(*declared).items():
+        if name not in schema.names:
+            return f"no column {name}"
+        found = schema.field(name).type
+        # What wrote a file chooses between the two types of text.
+        if found != _TYPES[kind] and not (pa.types.is_large_string(found) and pa.types.is_string(_TYPES[kind])):
+            return f"column {name} is of type {found}, not {_TYPES[kind]}"
+    return ""
 
 
 def write(table: pa.Table, file: str) -> None:
@@ -35,7 +78,9 @@ def rows_digest(table: pa.Table) -> str:
 def _parts(column: pa.Array) -> list[bytes]:
     """The content of a column as bytes."""
     if pa.types.is_list(column.type):
-        return [b"list", *_parts(column.value_lengths()), *_parts(column.flatten())]
+        values = column.flatten()
+        # Without values, any type of them is the same content.
+        return [b"list", *_parts(column.value_lengths()), *(_parts(values) if len(values) else [b"[]"])]
     if pa.types.is_floating(column.type) or pa.types.is_integer(column.type):
         missing = column.is_null().to_numpy(zero_copy_only=False)
         return [str(column.type).encode(), missing.tobytes(), column.fill_null(0).to_numpy(zero_copy_only=False).tobytes()]

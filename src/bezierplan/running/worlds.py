@@ -20,7 +20,7 @@ from bezierplan.workspaces.worlds import ChangingCells, MovingCircles, World
 
 
 def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, str], dict[str, World]]:
-    """Problems, the names of their workspaces, and their worlds, all keyed by problem, from their descriptions (`study.problems_job`).
+    """Problems, the names of their workspaces, and their worlds, all keyed by problem, from their descriptions (`jobs.problems_job`).
 
     Map files are looked up in the folder. Raises ValueError for a fault in any of them.
     """

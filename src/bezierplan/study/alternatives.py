@@ -4,9 +4,10 @@ import dataclasses
 import itertools
 from typing import Any
 
+from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.kinds import Check
 from bezierplan.schema.model import one_or_list
-from bezierplan.study.claims import Assumption, Claim
+from bezierplan.study.claims import Assumption
 from bezierplan.study.definition import Study
 
 
@@ -54,14 +55,15 @@ def with_alternative(study: Study, name: str) -> Study:
     return dataclasses.replace(study, methods=methods)
 
 
+def claims_tried(study: Study, name: str) -> list[Claim]:
+    """The claims on which an alternative is tried."""
+    wanted = assumption_of(study, alternatives(study)[name][0]).claims
+    return [claim for claim in study.claims if claim.id in wanted]
+
+
 def headline_claims(study: Study, name: str) -> list[Claim]:
     """The claims on which an alternative is tried, in their primary variant only."""
-    wanted = assumption_of(study, alternatives(study)[name][0]).claims
-    return [
-        claim.but(variants={column: values[:1] for column, values in claim.variants.items()})
-        for claim in study.claims
-        if claim.id in wanted
-    ]
+    return [claim.in_primary_variant() for claim in claims_tried(study, name)]
 
 
 def alternatives_described(study: Study) -> dict[str, dict]:

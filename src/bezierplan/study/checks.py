@@ -13,6 +13,7 @@ from typing import Any
 from pydantic import ConfigDict, TypeAdapter, ValidationError
 
 from bezierplan.analysis import measures, metrics, statistics
+from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.kinds import Check, PublishedMargin
 from bezierplan.figures.panels import Panel, spheres
 from bezierplan.planners import PLACE, planner_module
@@ -24,7 +25,7 @@ from bezierplan.schema.model import Model, first_fault, named, one_or_list
 from bezierplan.study import published
 from bezierplan.study.alternatives import alternatives, concerned, methods_changed, with_alternative
 from bezierplan.study.artefacts import Comparison, Pivot, Table
-from bezierplan.study.claims import Assumption, Claim
+from bezierplan.study.claims import Assumption
 from bezierplan.study.definition import Study, files_of, relative
 from bezierplan.study.design import Design, fits, in_first_variant
 from bezierplan.study.files import inside
@@ -34,7 +35,7 @@ from bezierplan.workspaces import files
 from bezierplan.workspaces.kinds import kinds
 from bezierplan.workspaces.problem import Problem
 
-RESERVED = {*columns.RUN_COLUMNS, *columns.OUTCOMES, *columns.JOINED, *columns.DRIVE_JOINED, *columns.WORDS, *PLACE} - {"generations"}
+RESERVED = {*columns.RUN_COLUMNS, *columns.DRIVE_RESULTS, *columns.JOINED, *columns.DRIVE_JOINED, *columns.WORDS, *PLACE} - {"generations"}
 """Names that no setting can have. The column `generations` holds the number actually performed, so a setting of that name adds nothing."""
 LONGEST_REFERENCE = 1000
 """Times the perimeter of a workspace: no best known path is longer."""

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from bezierplan.analysis.claims.claim import Claim
 from bezierplan.planners import planner_module, planner_settings
 from bezierplan.study.artefacts import Figure, Pivot, Table
-from bezierplan.study.claims import Assumption, Claim
+from bezierplan.study.claims import Assumption
 from bezierplan.study.experiments import Experiment, Method, Policy, Problem, Worth
 from bezierplan.workspaces import files
 from bezierplan.workspaces.kinds import Workspace, file_keys

@@ -3,6 +3,7 @@
 from functools import cache
 from typing import Any
 
+from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.kinds import Check
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.geometry.curves import CURVES
@@ -10,7 +11,6 @@ from bezierplan.planners import PLACE, planner_module
 from bezierplan.running.columns import DRIVE_JOINED, DRIVE_RESULTS, JOINED, PLANNED, RESULTS, RUN_COLUMNS
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.model import identity, is_number, one_or_list
-from bezierplan.study.claims import Claim
 from bezierplan.study.definition import Study
 from bezierplan.study.jobs import job
 

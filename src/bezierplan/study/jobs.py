@@ -7,12 +7,12 @@ import itertools
 from collections import Counter
 from typing import Any
 
+from bezierplan.analysis.claims.claim import Claim
 from bezierplan.figures.panels import Panel
 from bezierplan.planners import PLACE
 from bezierplan.schema.model import one_or_list
 from bezierplan.study.alternatives import experiments_of_claims
 from bezierplan.study.artefacts import Comparison
-from bezierplan.study.claims import Claim
 from bezierplan.study.definition import Study
 
 
@@ -27,7 +27,7 @@ def problems_job(study: Study, experiment: str, scale: str) -> dict:
 
 
 def job(study: Study, experiment: str, method: str, scale: str, chunk: int) -> dict:
-    """A chunk of runs, as `running.run_chunk` takes it. A chunk always runs whole, whatever the number of requested repeats."""
+    """A chunk of runs, as `execution.run_chunk` takes it. A chunk always runs whole, whatever the number of requested repeats."""
     content = study.experiments[experiment]
     size = content.chunk[scale]
     return {
@@ -144,13 +144,18 @@ def methods_of(study: Study, artefact: str, experiment: str) -> list[str]:
     return [method for method in study.methods_of(experiment) if method in needed]
 
 
-def claims_job(study: Study, claims: list[Claim]) -> dict:
-    """What claims depend on in addition to runs, problems, bounds and the files of published numbers."""
-    experiments = {name: study.experiments[name] for name in experiments_of_claims(claims)}
+def claims_job(study: Study, claims: list[Claim], primary_alone: bool) -> dict:
+    """What claims depend on in addition to runs, problems, bounds and the files of published numbers.
+
+    primary_alone: whether they are judged in their primary variant only.
+    """
+    judged = [claim.in_primary_variant() for claim in claims] if primary_alone else claims
+    experiments = {name: study.experiments[name] for name in experiments_of_claims(judged)}
     return {
         "study": study.key,
         "module": study.module(),
         "claims": [claim.plain() for claim in claims],
+        "primary_alone": primary_alone,
         "artefacts": {name: artefact.plain() for name, artefact in (study.tables | study.figures).items()},
         "variant_of": study.variants(),
         "paired": {name: experiment.paired for name, experiment in experiments.items()},

@@ -1,5 +1,5 @@
-"""The tables of keys in config/README.md, generated from the models: `python -m bezierplan.study.keys` updates them, and a test ensures
-that they are up to date.
+"""The tables of keys in config/README.md, generated from the models, and those of columns in results/README.md, from their declarations:
+`python -m bezierplan.study.keys` updates them, and a test ensures that they are up to date.
 """
 
 import re
@@ -8,14 +8,17 @@ from functools import partial
 from pydantic.fields import FieldInfo
 
 from bezierplan.analysis.claims import kinds
+from bezierplan.analysis.claims.claim import Claim
 from bezierplan.figures import panels
 from bezierplan.places import TREE
+from bezierplan.running import columns
 from bezierplan.schema.model import Model, keys
 from bezierplan.study import artefacts, claims, experiments
 from bezierplan.workspaces import kinds as workspace_kinds
 from bezierplan.workspaces.kinds import changing_cells
 
 README = TREE / "config" / "README.md"
+RESULTS_README = TREE / "results" / "README.md"
 
 GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
     "experiments": [
@@ -37,7 +40,7 @@ GROUPS: dict[str, list[tuple[str, type[Model] | dict[str, type[Model]]]]] = {
         ("A panel has `kind`, and by kind", panels.kinds()),
     ],
     "claims": [
-        ("A claim", claims.Claim),
+        ("A claim", Claim),
         ("A **check** has `test`, its kind, and by kind", kinds.kinds()),
     ],
     "assumptions": [("An assumption", claims.Assumption)],
@@ -81,17 +84,52 @@ def _name(name: str, field: FieldInfo) -> str:
     return f"**`{name}`**" if field.is_required() else f"`{name}`"
 
 
+# How the type of a column's values is printed.
+_PRINTED = {columns.RunName: "word", str: "word", int: "whole number", float: "number", bool: "flag", list[float]: "numbers"}
+
+
+def columns_of(table: columns.Table) -> str:
+    """The table of columns of a kind of file, as Markdown."""
+    return _columns([(name, kind, about.unit, about.meaning) for name, (kind, about) in columns.declared(*table.every).items()])
+
+
+def columns_of_drives(table: columns.Table) -> str:
+    """Likewise of drives: columns that mean something else, and those that only drives have."""
+    every, own = columns.declared(*table.every), columns.declared(table.drives)
+    other = [(name, kind, "", about.drive) for name, (kind, about) in every.items() if about.drive]
+    return _columns([*other, *((name, kind, about.unit, about.meaning) for name, (kind, about) in own.items())])
+
+
+def _columns(rows: list[tuple[str, type, str, str]]) -> str:
+    """Name, type, unit and meaning of each column."""
+    lines = [f"| `{name}` | {_PRINTED[kind]} | {unit} | {meaning} |" for name, kind, unit, meaning in rows]
+    return "\n".join(["| column | values | unit | meaning |", "| --- | --- | --- | --- |", *lines])
+
+
 def _between(content: str, marks: re.Match) -> str:
     return f"{marks[1]}\n{content}\n\n{marks[2]}"
 
 
 def renewed(text: str) -> str:
     """The text of config/README.md with tables that match the current models."""
-    for name in GROUPS:
-        marked = re.compile(rf"(<!-- keys of {name}\.yaml -->\n).*?(<!-- /keys -->)", re.DOTALL)
-        text = marked.sub(partial(_between, described(name)), text)
+    return _renewed(text, {f"{name}.yaml": described(name) for name in GROUPS}, "keys")
+
+
+def renewed_columns(text: str) -> str:
+    """The text of results/README.md with tables that match the current declarations."""
+    every = {name: columns_of(table) for name, table in columns.TABLES.items()}
+    drives = {f"{name} of drives": columns_of_drives(table) for name, table in columns.TABLES.items()}
+    return _renewed(text, every | drives, "columns")
+
+
+def _renewed(text: str, tables: dict[str, str], what: str) -> str:
+    """A text with other tables between marks, such as `<!-- keys of claims.yaml -->` and `<!-- /keys -->`."""
+    for name, table in tables.items():
+        marked = re.compile(rf"(<!-- {what} of {re.escape(name)} -->\n).*?(<!-- /{what} -->)", re.DOTALL)
+        text = marked.sub(partial(_between, table), text)
     return text
 
 
 if __name__ == "__main__":
-    README.write_text(renewed(README.read_text(encoding="utf-8")), encoding="utf-8")
+    for file, change in ((README, renewed), (RESULTS_README, renewed_columns)):
+        file.write_text(change(file.read_text(encoding="utf-8")), encoding="utf-8")

@@ -11,11 +11,11 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
+from bezierplan.analysis.claims.claim import Claim
 from bezierplan.places import TREE
 from bezierplan.running.digest import content_digest, versioned_digest
 from bezierplan.study import alternatives, choices, definition, design, jobs
 from bezierplan.study.artefacts import Comparison, Pivot
-from bezierplan.study.claims import Claim
 from bezierplan.study.definition import Study
 
 Studies = dict[str, Study]
@@ -256,7 +256,7 @@ def claims_params(given: Studies, scale: str, study: str) -> dict:
     """Params of claims."""
     own = given[study]
     return {
-        "job": _claims_job(own, scale, own.claims),
+        "job": _claims_job(own, scale, own.claims, primary_alone=False),
         "published": content_digest(*own.published_files()),
         "code": _code("claims", own.module(), *_kinds(own.claims)),
     }
@@ -267,8 +267,8 @@ def _kinds(claims: list[Claim]) -> list[str]:
     return sorted({f"bezierplan.analysis.claims.kinds.{check.test}" for claim in claims for check in claim.checks})
 
 
-def _claims_job(study: Study, scale: str, claims: list[Claim]) -> dict:
-    job = jobs.claims_job(study, claims)
+def _claims_job(study: Study, scale: str, claims: list[Claim], primary_alone: bool) -> dict:
+    job = jobs.claims_job(study, claims, primary_alone)
     artefacts = {name: {key: value for key, value in spec.items() if key != "title"} for name, spec in job["artefacts"].items()}
     return job | {"artefacts": artefacts, "repeats": {name: study.experiments[name].repeats[scale] for name in job["paired"]}}
 
@@ -299,7 +299,7 @@ def alternative_params(given: Studies, scale: str, study: str, alternative: str)
     planners = sorted({_planner(job["planner"]) for job in chunks.values()})
     return {
         "chunks": chunks,
-        "job": _claims_job(own, scale, claims),
+        "job": _claims_job(own, scale, alternatives.claims_tried(own, alternative), primary_alone=True),
         "published": content_digest(*own.published_files()),
         "code": _code("alternative", own.module(), *_kinds(claims), *planners),
     }
@@ -410,8 +410,6 @@ def summary_params(given: Studies, scale: str) -> dict:
     tables = _published_tables(given)
     job = {
         "tables": [list(name) for name in tables],
-        "deciding": [table.primary for table in tables.values()],
-        "variants": {key: list(study.variants()) for key, study in given.items()},
         "titles": {key: study.title for key, study in given.items()},
     }
     return {"job": job, "code": _code("summary")}

@@ -8,7 +8,17 @@ from bezierplan.workspaces.files import Workspace
 
 
 class Problem(NamedTuple):
-    """A workspace with a start and a target, both (x, y) in the workspace's unit."""
+    """A workspace with a start and a target.
+
+    Attributes
+    ----------
+    name : str
+        Its name.
+    workspace : Grid, Circles or Polygons
+        What the robot moves in.
+    start, target : tuple of float
+        (x, y) in the workspace's unit.
+    """
 
     name: str
     workspace: Workspace
@@ -17,7 +27,15 @@ class Problem(NamedTuple):
 
 
 class Path(NamedTuple):
-    """A curve kind of `curves.CURVES` and its control points (n, 2), in the workspace's unit."""
+    """A path, given by the control points of its curve.
+
+    Attributes
+    ----------
+    curve : str
+        A kind of `curves.CURVES`.
+    points : (n, 2) array
+        Control points, in the workspace's unit.
+    """
 
     curve: str
     points: np.ndarray

@@ -1,5 +1,6 @@
 """From a check of a claim to its comparisons: which runs are compared, and the published numbers of the same cells."""
 
+import itertools
 import math
 from collections.abc import Iterator
 from pathlib import PurePath
@@ -9,8 +10,9 @@ import pandas as pd
 
 from bezierplan.analysis import comparison, metrics
 from bezierplan.analysis.claims import effects
+from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import Comparison
-from bezierplan.analysis.claims.kinds import cell_column, kind_of, named_groups, option
+from bezierplan.analysis.claims.kinds import GROUP_KEYS, Check, OfRuns, kind_of
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.analysis.claims.published import printed, printed_table, rows_of_cell
 from bezierplan.analysis.results import pick, select
@@ -28,43 +30,44 @@ def unit_of(metric: str, experiments: list[str], material: Material) -> str:
     return metrics.unit(metric, next(iter(problems.values())).workspace.unit)
 
 
-def with_rest(check: dict, claim: dict, material: Material) -> dict:
+def with_rest(check: Check, claim: Claim, material: Material) -> Check:
     """The check with `rest` replaced by the groups of the claim's artefact that the check does not name."""
-    named = named_groups(check)
+    named = check.groups_named
     if REST not in named:
         return check
     rest = [group for group in _groups_of_artefact(check, claim, material) if group not in named]
-    replaced = {
-        key: [group for name in check[key] for group in (rest if name == REST else [name])] for key in ("groups", "than") if key in check
-    }
-    if "order" in check:
-        replaced["order"] = [[group for name in tier for group in (rest if name == REST else [name])] for tier in check["order"]]
-    return check | replaced
+    return check.but(**{key: _filled(getattr(check, key), rest) for key in GROUP_KEYS if key in check.model_fields_set})
 
 
-def _parts_of_artefact(check: dict, claim: dict, material: Material) -> list[dict]:
+def _filled(groups: list, rest: list) -> list:
+    """A list of groups, or of lists of them, with others in the place of `rest`."""
+    parts = [[_filled(each, rest)] if isinstance(each, list) else rest if each == REST else [each] for each in groups]
+    return list(itertools.chain.from_iterable(parts))
+
+
+def _parts_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list[dict]:
     """The tables and figure panels among a claim's artefacts that show runs of the check's experiments."""
     parts = []
-    for name in one_or_list(claim.get("artefact", [])):
+    for name in claim.artefacts:
         artefact = material.artefacts.get(name, {})
-        parts += [part for part in artefact.get("panels", [artefact]) if part.get("experiment") in one_or_list(check["experiment"])]
+        parts += [part for part in artefact.get("panels", [artefact]) if part.get("experiment") in check.experiments]
     return parts
 
 
-def _groups_of_artefact(check: dict, claim: dict, material: Material) -> list:
+def _groups_of_artefact(check: OfRuns, claim: Claim, material: Material) -> list:
     """Groups that an artefact shows, each once, in its order; all groups of the experiment if it does not select any."""
-    across = option(check, "across")
+    across = check.cells
     groups = []
     for part in _parts_of_artefact(check, claim, material) or [{}]:
         if across in part.get("where", {}):
             groups += one_or_list(part["where"][across])
         else:
-            runs = [material.results[name].runs for name in one_or_list(check["experiment"]) if name in material.results]
+            runs = [material.results[name].runs for name in check.experiments if name in material.results]
             groups += sorted({group for table in runs for group in table[across].dropna()})
     return list(dict.fromkeys(groups))
 
 
-def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison]:
+def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Comparison]:
     """The comparisons of a check without `rest`, in an order independent of that of the runs.
 
     Raises Untestable if its experiment was not run, has no such metric, or has no run that satisfies its `where`; Fault if runs of several
@@ -73,9 +76,9 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
     runs = _measured_runs(check, claim, material)
     if runs.empty:
         raise Untestable("no run is of the conditions that the claim names")
-    column, unit = cell_column(check), option(check, "replicate")
-    every, pool = option(check, "every"), option(check, "pool") or []
-    tables, printed_metric = _published_tables(check, claim, material), check.get("printed_metric", check["metric"])
+    column, unit = check.cells, check.replicate
+    every, pool = check.every, check.pooled
+    tables, printed_metric = _published_tables(check, claim, material), check.printed_metric
     keys = ["experiment", *every, *pool, *([column] if column else []), *(key for _, table in tables for key in table if key in runs)]
     keys = list(dict.fromkeys(key for key in keys if key != "value"))
     printed_tables = [printed_table(experiment, table, printed_metric) for experiment, table in tables]
@@ -106,9 +109,9 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
                     cells=tuple(cells),
                     strata=strata,
                     printed=numbers,
-                    paper_units=number_of_runs or material.repeats.get(one_or_list(check["experiment"])[0]),
+                    paper_units=number_of_runs or material.repeats.get(check.experiments[0]),
                     boolean=_is_boolean(check, material),
-                    paired=check.get("paired", _shares_draws(check, material)),
+                    paired=_shares_draws(check, material) if check.pairs_units is None else check.pairs_units,
                     note=_note(check, rows, column, cells),
                     factors=tuple((key, rows[key].iloc[0]) for key in every),
                     typical=typical.get((place, name), math.nan),
@@ -117,50 +120,50 @@ def comparisons(check: dict, claim: dict, material: Material) -> list[Comparison
     return found
 
 
-def _typical(check: dict, claim: dict, material: Material) -> dict[tuple[str, str], float]:
+def _typical(check: OfRuns, claim: Claim, material: Material) -> dict[tuple[str, str], float]:
     """Of a check that picks runs: by place and name, the share of all runs that count in which the event happens; else nothing."""
-    if "pick" not in check:
+    if not check.picks:
         return {}
-    every = comparisons({key: value for key, value in check.items() if key != "pick"}, claim, material)
+    every = comparisons(check.but(pick=None), claim, material)
     return {(each.place, each.name): float(effects.points(each, "mean")[0]) for each in every}
 
 
-def _measured_runs(check: dict, claim: dict, material: Material) -> pd.DataFrame:
+def _measured_runs(check: OfRuns, claim: Claim, material: Material) -> pd.DataFrame:
     """The runs of a check's conditions with the column `value`, which is NaN where a run does not count.
 
     A condition on an outcome, such as `feasible: true`, keeps the other runs without a value (or as failed, if failures rank last): a
     place where no run satisfies it is kept.
     """
-    where = option(check, "where")
+    where = check.where
     conditions = {column: wanted for column, wanted in where.items() if column not in metrics.METRICS}
     outcomes = {column: wanted for column, wanted in where.items() if column in metrics.METRICS}
     measured = []
-    for name in one_or_list(check["experiment"]):
+    for name in check.experiments:
         if name not in material.results:
             raise Untestable(f"the experiment {name} was not run")
         runs, problems = material.results[name].runs, material.results[name].problems
-        if check["metric"] == "rank":
+        if check.metric == "rank":
             # Ranks are taken among all rows of the artefact, whichever of them the check compares.
             for part in _parts_of_artefact(check, claim, material)[:1]:
                 runs = select(runs, part.get("where", {}))
         else:
             runs = select(runs, conditions)
-        if metrics.METRICS[check["metric"]].compute is None and check["metric"] not in runs:
-            raise Untestable(f"the runs of {name} have no {check['metric']}")
+        if metrics.METRICS[check.metric].compute is None and check.metric not in runs:
+            raise Untestable(f"the runs of {name} have no {check.metric}")
         counting = _compared(runs, check)
-        counting = _picked(counting, check["pick"]) if "pick" in check else counting
-        values = metrics.values(counting, check["metric"], problems).fillna(_failure(check))
+        counting = _picked(counting, check.picks) if check.picks else counting
+        values = metrics.values(counting, check.metric, problems).fillna(_failure(check))
         values = values.loc[select(counting, outcomes).index].reindex(runs.index)
-        if check.get("failures") == "last":
+        if check.failed_runs == "last":
             values = values.fillna(np.inf)
         measured.append(select(runs.assign(value=values), conditions))
     return pd.concat(measured, ignore_index=True)
 
 
-def _compared(runs: pd.DataFrame, check: dict) -> pd.DataFrame:
+def _compared(runs: pd.DataFrame, check: OfRuns) -> pd.DataFrame:
     """The runs whose values are needed: those of the groups that a check names, or all for ranks among them."""
-    groups = named_groups(check)
-    return runs[runs[cell_column(check)].isin(groups)] if groups and not metrics.METRICS[check["metric"]].among_rows else runs
+    groups = check.groups_named
+    return runs[runs[check.cells].isin(groups)] if groups and not metrics.METRICS[check.metric].among_rows else runs
 
 
 def _picked(runs: pd.DataFrame, which: dict) -> pd.DataFrame:
@@ -169,24 +172,24 @@ def _picked(runs: pd.DataFrame, which: dict) -> pd.DataFrame:
     return runs.loc[[run.name for run in chosen if run is not None]]
 
 
-def _failure(check: dict) -> float:
+def _failure(check: OfRuns) -> float:
     """The value of a run without one: dropped, worse than any other, or one for which the event is false."""
-    match option(check, "failures"):
+    match check.failed_runs:
         case "last":
             return np.inf
         case "count":
-            above = "above" in check.get("event", {}) or "at_least" in check.get("event", {})
+            above = check.limit is not None and check.limit[0] in ("above", "at_least")
             return -np.inf if above else np.inf
     return np.nan
 
 
-def _refuse_mixtures(check: dict, claim: dict, runs: pd.DataFrame, keys: list[str]) -> None:
+def _refuse_mixtures(check: OfRuns, claim: Claim, runs: pd.DataFrame, keys: list[str]) -> None:
     """Raise Fault if a unit of a comparison, as identified by the keys, mixes several experiments, conditions or methods."""
     distinct = runs[[*keys, *(factor for factor in _FACTORS if factor not in keys)]].drop_duplicates()
     mixed = distinct[distinct.duplicated(keys, keep=False)]
     if not mixed.empty:
         factor = next(factor for factor in _FACTORS if factor not in keys and mixed[factor].nunique() > 1)
-        what = f"claim {claim['id']}: {check['test']} of {check['metric']}"
+        what = f"claim {claim.id}: {check.test} of {check.metric}"
         raise Fault(f"{what}: several values of {factor} are neither told apart nor pooled")
 
 
@@ -206,20 +209,20 @@ def _unit_table(rows: pd.DataFrame, unit: str, column: str | None) -> pd.DataFra
     return rows.groupby([unit, column])["value"].mean().unstack(column)
 
 
-def _is_boolean(check: dict, material: Material) -> bool:
+def _is_boolean(check: OfRuns, material: Material) -> bool:
     """Whether the metric is a boolean column that is not averaged over the runs of a unit."""
-    runs = material.results[one_or_list(check["experiment"])[0]].runs
-    return option(check, "replicate") == "repeat" and check["metric"] in runs and pd.api.types.is_bool_dtype(runs[check["metric"]])
+    runs = material.results[check.experiments[0]].runs
+    return check.replicate == "repeat" and check.metric in runs and pd.api.types.is_bool_dtype(runs[check.metric])
 
 
-def _shares_draws(check: dict, material: Material) -> bool:
+def _shares_draws(check: OfRuns, material: Material) -> bool:
     """Whether units with the same number share a random workspace or a start."""
-    return "replicate" in check or all(material.paired.get(name, False) for name in one_or_list(check["experiment"]))
+    return "replicate" in check.model_fields_set or all(material.paired.get(name, False) for name in check.experiments)
 
 
-def _note(check: dict, rows: pd.DataFrame, column: str | None, cells: list) -> str:
+def _note(check: OfRuns, rows: pd.DataFrame, column: str | None, cells: list) -> str:
     """A note where two groups are compared on their successful runs but differ in success rate (Fisher's exact test)."""
-    if len(cells) != 2 or option(check, "failures") not in (None, "drop") or not metrics.METRICS[check["metric"]].feasible_only:
+    if len(cells) != 2 or check.failed_runs != "drop" or not metrics.METRICS[check.metric].feasible_only:
         return ""
     values = [rows.loc[rows[column] == cell, "value"] for cell in cells]
     counts = [[int(each.notna().sum()), int(each.isna().sum())] for each in values]
@@ -230,13 +233,13 @@ def _note(check: dict, rows: pd.DataFrame, column: str | None, cells: list) -> s
     return "compared on successes alone, which are of different number" if stats.fisher_exact(counts).pvalue < effects.ALPHA else ""
 
 
-def _published_tables(check: dict, claim: dict, material: Material) -> list[tuple[str, pd.DataFrame]]:
+def _published_tables(check: OfRuns, claim: Claim, material: Material) -> list[tuple[str, pd.DataFrame]]:
     """Experiment and published numbers of each table of the check's experiments, the claim's artefacts first."""
-    own = one_or_list(claim.get("artefact", []))
+    own = claim.artefacts
     tables = []
     for name in [*own, *(name for name in material.artefacts if name not in own)]:
         artefact = material.artefacts.get(name, {})
-        if "published" in artefact and artefact.get("experiment") in one_or_list(check["experiment"]):
+        if "published" in artefact and artefact.get("experiment") in check.experiments:
             published = material.published[PurePath(artefact["published"]).stem]
             tables.append((artefact["experiment"], comparison.as_read(published, artefact)))
     return tables

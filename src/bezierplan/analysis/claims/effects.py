@@ -9,12 +9,12 @@ half added to each kind of pair (Agresti and Min 2005): resampling says nothing 
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from bezierplan.analysis import statistics
-from bezierplan.analysis.claims.kinds import kind_of, option
+from bezierplan.analysis.claims.kinds import OfRuns, PublishedMargin, kind_of
 from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED, TAIL
 from bezierplan.workspaces.seeds import generator
 
@@ -73,7 +73,7 @@ class Finding(NamedTuple):
 
     toward: 1 if the effect matters and points as claimed, -1 if it matters and points the other way, otherwise 0. negligible: whether the
     interval of the effect lies within the margin. least_detectable: the effect that would have been detected with a power of 0.8.
-    mark: `+`, `-`, `0` or `?` if it does not follow from p (`claim_verdicts.mark`). rho, r_squared: of trends.
+    mark: `+`, `-`, `0` or `?` if it does not follow from p (`verdicts.mark`). rho, r_squared: of trends.
     """
 
     effect: float = math.nan
@@ -96,11 +96,11 @@ class Finding(NamedTuple):
 # What a claim says about point values. All take (..., k) numbers of cells, so that they work for ours, printed ones and draws.
 
 
-def event(check: dict, values: np.ndarray) -> np.ndarray:
+def event(check: OfRuns, values: np.ndarray) -> np.ndarray:
     """Whether the event of a share happened, as 1 and 0; NaN is kept. Without an event, the values are already boolean."""
-    if "event" not in check:
+    if check.limit is None:
         return values
-    ((word, limit),) = check["event"].items()
+    word, limit = check.limit
     return np.where(np.isnan(values), np.nan, _EVENTS[word](values, limit))
 
 
@@ -112,27 +112,27 @@ class Effect(NamedTuple):
     reference: the cell to whose value an effect is relative. statistic: the statistic of a cell if the check names none.
     """
 
-    of: Callable[[dict, np.ndarray, tuple], np.ndarray]
-    gradient: Callable[[dict, np.ndarray, tuple], np.ndarray | None]
-    claimed: Callable[[dict, np.ndarray, float], np.ndarray]
+    of: Callable[[Any, np.ndarray, tuple], np.ndarray]
+    gradient: Callable[[Any, np.ndarray, tuple], np.ndarray | None]
+    claimed: Callable[[Any, np.ndarray, float], np.ndarray]
     reference: int = 1
     statistic: str = "mean"
 
 
-def _group_less_other(check: dict, points: np.ndarray, cells: tuple) -> np.ndarray:
+def _group_less_other(check: OfRuns, points: np.ndarray, cells: tuple) -> np.ndarray:
     group, other = points[..., 0], points[..., 1]
-    return group / other - 1 if option(check, "scale") == "relative" else group - other
+    return group / other - 1 if check.relative else group - other
 
 
-def _gradient_of_groups(check: dict, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
-    if option(check, "scale") != "relative":
+def _gradient_of_groups(check: OfRuns, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
+    if not check.relative:
         return np.array([1.0, -1.0])
     return np.array([1.0, -ours[0] / ours[1]]) / ours[1] if ours[1] else None
 
 
-def on_claimed_side(check: dict, effects: np.ndarray, margin: float) -> np.ndarray:
+def on_claimed_side(check: OfRuns, effects: np.ndarray, margin: float) -> np.ndarray:
     """Whether the effect points as claimed and exceeds the claimed least effect, if any."""
-    return SIDES[check["direction"]] * effects > (option(check, "least") or 0)
+    return SIDES[check.side] * effects > check.least_claimed
 
 
 # Two cells: a group and the one that it is compared with.
@@ -145,37 +145,37 @@ def pairs_in_words(pairs: Iterable[Sequence], relation: str) -> Iterator[tuple[s
         yield f"{pair[0]} {relation} {pair[1]}", list(pair)
 
 
-def effect(check: dict, points: np.ndarray, cells: tuple) -> np.ndarray:
+def effect(check: OfRuns, points: np.ndarray, cells: tuple) -> np.ndarray:
     """The effect (...) of point values (..., k) of the cells."""
     with np.errstate(divide="ignore", invalid="ignore"):
         return kind_of(check).EFFECT.of(check, points, cells)
 
 
-def claimed(check: dict, effects: np.ndarray, margin: float) -> np.ndarray:
+def claimed(check: OfRuns, effects: np.ndarray, margin: float) -> np.ndarray:
     """Whether an effect is what the claim says, by its value alone."""
     return kind_of(check).EFFECT.claimed(check, effects, margin)
 
 
-def margin_of(check: dict, comparison: Comparison) -> float:
+def margin_of(check: OfRuns, comparison: Comparison) -> float:
     """The smallest effect that matters: given as a number or as a share.
 
     `{published: share}`: a share of the other group's value (of the value at the lowest x; for booleans the share itself), or the printed
     difference of the same cells if that is smaller and points as claimed. NaN for tests without a margin.
     """
-    margin = check.get("margin", math.nan)
-    if not isinstance(margin, dict):
+    margin = check.least_margin
+    if not isinstance(margin, PublishedMargin):
         return margin
-    own = margin["published"]
-    if option(check, "scale") != "relative" and not comparison.boolean:
+    own = margin.published
+    if not check.relative and not comparison.boolean:
         own *= abs(float(points(comparison, point_statistic(check))[kind_of(check).EFFECT.reference]))
     printed = effect(check, comparison.printed, comparison.cells)
-    as_claimed = printed * SIDES.get(check.get("direction"), np.sign(printed)) > 0
+    as_claimed = printed * SIDES.get(check.side, np.sign(printed)) > 0
     return min(own, float(abs(printed))) if as_claimed else own
 
 
-def point_statistic(check: dict) -> str:
+def point_statistic(check: OfRuns) -> str:
     """The statistic that represents a cell by one number."""
-    named = option(check, "statistic")
+    named = check.statistic_named
     return kind_of(check).EFFECT.statistic if named in (None, "rank") else named
 
 
@@ -221,10 +221,10 @@ def drawn_points(comparison: Comparison, statistic: str, name: str, size: int | 
     return total / len(comparison.strata)
 
 
-def drawn_effects(check: dict, comparison: Comparison, name: str) -> np.ndarray:
+def drawn_effects(check: OfRuns, comparison: Comparison, name: str) -> np.ndarray:
     """The effect of the check's statistic in bootstrap draws (DRAWS,), or their normal approximation; NaN with an empty cell."""
     statistic = point_statistic(check)
-    if comparison.boolean and statistic == "mean" and option(check, "scale") != "relative" and len(comparison.cells) == 2:
+    if comparison.boolean and statistic == "mean" and not check.relative and len(comparison.cells) == 2:
         adjusted = [_adjusted_difference(*counted(stratum, comparison.paired), comparison.paired) for stratum in comparison.strata.values()]
         centre, variance = np.mean(adjusted, axis=0)
         return statistics.normal_draws(float(centre), math.sqrt(variance / len(adjusted)))
@@ -252,7 +252,7 @@ def _adjusted_difference(group: np.ndarray, other: np.ndarray, paired: bool) -> 
     return shares[0] - shares[1], sum(share * (1 - share) / (len(values) + 2) for share, values in zip(shares, (group, other)))
 
 
-def by_draws(check: dict, comparison: Comparison, name: str) -> Finding:
+def by_draws(check: OfRuns, comparison: Comparison, name: str) -> Finding:
     """Test a sentence about extremes: how often it holds in experiments of the paper's size, drawn from our runs."""
     statistic = point_statistic(check)
     ours = float(effect(check, points(comparison, statistic), comparison.cells))

@@ -61,6 +61,7 @@ Columns of claim_checks.csv, one row per comparison:
 | study, id, variant, timed | as above |
 | check | number of the check within the claim, from 1 |
 | primary | false for secondary checks, which are only reported |
+| decisive | whether the row of claims.csv repeats it: the worst -, otherwise that with the largest p |
 | test, metric, statistic, unit | of the check; unit of the metric |
 | condition, comparison | where, and what is compared |
 | mark, mark_family | on its own; in the family, empty for secondary checks |
@@ -83,8 +84,9 @@ import pandas as pd
 
 from bezierplan.analysis import metrics
 from bezierplan.analysis.claims import comparisons, effects, verdicts
+from bezierplan.analysis.claims.claim import Claim
 from bezierplan.analysis.claims.effects import ALPHA, Comparison, Finding
-from bezierplan.analysis.claims.kinds import OfRuns, kind_of, option
+from bezierplan.analysis.claims.kinds import Check, OfRuns, kind_of
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.analysis.claims.variants import in_variant, variants, with_work
 from bezierplan.analysis.results import Results
@@ -109,7 +111,7 @@ CLAIM_COLUMNS = [
     *("units_to_decide", "replication_probability", "size", "artefact", "timed", "reason"),
 ]
 CHECK_COLUMNS = [
-    *("study", "id", "variant", "check", "primary", "test", "metric", "statistic", "unit", "condition", "comparison"),
+    *("study", "id", "variant", "check", "primary", "decisive", "test", "metric", "statistic", "unit", "condition", "comparison"),
     *("mark", "mark_family", "effect", "effect_size_name", "effect_size", "low95", "high95", "n", "counted", "p", "p_family"),
     *("margin", "least_detectable"),
     *("rho", "r_squared", "effect_published", "published", "timed", "reason"),
@@ -126,7 +128,7 @@ class _Judged(NamedTuple):
     """
 
     number: int
-    check: dict
+    check: Any
     primary: bool
     condition: str
     name: str
@@ -139,7 +141,7 @@ class _Judged(NamedTuple):
 
 
 def judge(
-    claims: Sequence[dict],
+    claims: Sequence[Claim],
     results: dict[str, Results],
     published: dict[str, pd.DataFrame],
     artefacts: dict[str, dict],
@@ -153,7 +155,7 @@ def judge(
 ) -> tuple[pd.DataFrame, pd.DataFrame]:
     """The claims of a study as tables with `CLAIM_COLUMNS` and `CHECK_COLUMNS`, described above.
 
-    claims: as in claims.yaml. study: its name; all random draws are seeded by names. functions: by name, of the study's file in `papers/`.
+    study: its name; all random draws are seeded by names. functions: by name, of the study's file in `papers/`.
     The others as in `Material`. Nothing depends on the order of the runs. Raises Fault for a claim that mixes runs of
     several conditions or names an unknown function.
     """
@@ -173,38 +175,39 @@ def judge(
 # From comparisons to a verdict.
 
 
-def _judge_variant(claim: dict, first: dict, assignment: dict, study: str, material: Material) -> tuple[dict, list[dict]]:
+def _judge_variant(claim: Claim, first: dict, assignment: dict, study: str, material: Material) -> tuple[dict, list[dict]]:
     """The row of claims.csv, and those of claim_checks.csv, of one variant of a claim."""
     variant = ", ".join(f"{column}={' '.join(map(str, one_or_list(value)))}" for column, value in assignment.items())
-    holds = claim.get("holds", "all")
-    name = f"{study}/{claim['id']}/{variant}"
+    holds = claim.holds
+    name = f"{study}/{claim.id}/{variant}"
     # `rest` means the same as in the primary variant, so it is filled in before values are substituted.
-    checks = [comparisons.with_rest(check, claim, material) for check in claim["checks"]]
+    checks = [comparisons.with_rest(check, claim, material) for check in claim.checks]
     checks = in_variant(checks, first, assignment)
     described = {
-        **{key: claim[key] for key in ("id", "place", "statement")},
+        **{key: getattr(claim, key) for key in ("id", "place", "statement")},
         "study": study,
         "variant": variant,
-        "artefact": ", ".join(one_or_list(claim.get("artefact", []))),
-        "finding": claim.get("finding", False),
-        "own_criterion": "criterion" in claim,
-        "timed": any(_is_timed(check) for check in checks if "secondary" not in check and "work" not in check),
+        "artefact": ", ".join(claim.artefacts),
+        "finding": bool(claim.finding),
+        "own_criterion": claim.criterion is not None,
+        "timed": any(_is_timed(check) for check in checks if check.primary and len(with_work(check)) == 1),
     }
     judged, obstacle = [], ""
     for number, check in [(number, each) for number, given in enumerate(checks, start=1) for each in with_work(given)]:
         try:
             judged += _findings(number, check, claim, name, material)
         except Untestable as reason:
-            if "secondary" in check:
+            if not check.primary:
                 judged.append(_Judged(number, check, False, "", "", None, Finding(reason=str(reason))))
             else:
                 obstacle = obstacle or str(reason)
     judged = _marked(judged)
     deciding = [each for each in judged if each.primary]
-    rows = [_check_row(each, material) | {key: described[key] for key in ("study", "id", "variant")} for each in judged]
-    if obstacle:
+    shown = None if obstacle else _shown(deciding, holds)
+    named = {key: described[key] for key in ("study", "id", "variant")}
+    rows = [_check_row(each, material) | named | {"decisive": each is shown} for each in judged]
+    if shown is None:
         return described | {"verdict": "untestable", "published": _published(deciding), "reason": obstacle}, rows
-    shown = _shown(deciding, holds)
     finding = shown.finding
     verdict = verdicts.verdict([each.mark for each in deciding], [each.mark_family for each in deciding], holds)
     everywhere = verdict == "supported" and holds != "any"
@@ -229,7 +232,7 @@ def _judge_variant(claim: dict, first: dict, assignment: dict, study: str, mater
                     _less_than(deciding, verdict, material),
                     _reason(shown),
                     _disagreement(judged),
-                    claim.get("note", ""),
+                    claim.note or "",
                 ],
             )
         ),
@@ -237,9 +240,9 @@ def _judge_variant(claim: dict, first: dict, assignment: dict, study: str, mater
     return described | summary, rows
 
 
-def _by_own_criterion(claim: dict, verdict: str) -> str:
+def _by_own_criterion(claim: Claim, verdict: str) -> str:
     """The first words of the reason for a claim that does not hold by a threshold of ours, where the paper gives no number."""
-    return "" if "criterion" not in claim or verdict in ("supported", "undecided") else "fails by our criterion alone"
+    return "" if claim.criterion is None or verdict in ("supported", "undecided") else "fails by our criterion alone"
 
 
 def _less_than(deciding: list[_Judged], verdict: str, material: Material) -> str:
@@ -248,19 +251,19 @@ def _less_than(deciding: list[_Judged], verdict: str, material: Material) -> str
     if verdict != "no effect" or not within:
         return ""
     most = max(max(abs(each.finding.low), abs(each.finding.high)) for each in within)
-    relative = option(within[0].check, "scale") == "relative"
+    relative = within[0].check.relative
     size = f"{100 * most:.2g} %" if relative else f"{most:.2g} {_unit(within[0].check, material)}".removesuffix(" -")
     where = "" if len(within) == len(deciding) else f"in {len(within)} of {len(deciding)} comparisons, "
     return f"{where}differs by less than {size}"
 
 
-def _findings(number: int, check: dict, claim: dict, name: str, material: Material) -> list[_Judged]:
+def _findings(number: int, check: Check, claim: Claim, name: str, material: Material) -> list[_Judged]:
     """The comparisons of one check with their findings. Raises Untestable."""
-    primary, kind = "secondary" not in check, kind_of(check)
-    if not issubclass(kind.Options, OfRuns):
+    primary, kind = check.primary, kind_of(check)
+    if not isinstance(check, OfRuns):
         found = kind.findings(check, claim, material)
         return [_Judged(number, check, primary, condition, words, None, finding) for condition, words, finding in found]
-    if _is_timed(check) and option(check, "scale") != "relative":
+    if _is_timed(check) and not check.relative:
         raise Untestable("absolute seconds say nothing about another machine")
     found = [
         _Judged(
@@ -269,7 +272,7 @@ def _findings(number: int, check: dict, claim: dict, name: str, material: Materi
         )
         for comparison in comparisons.comparisons(check, claim, material)
     ]
-    return _together(found) if option(check, "together") else found
+    return _together(found) if check.is_together else found
 
 
 def _together(found: list[_Judged]) -> list[_Judged]:
@@ -298,24 +301,23 @@ def _marked(judged: list[_Judged]) -> list[_Judged]:
 
 def _in_words(each: _Judged, deciding: list[_Judged]) -> verdicts.Marked:
     """A comparison with the factors that distinguish it from the others of its claim."""
-    metrics_differ = len({(other.check.get("metric"), other.check.get("statistic")) for other in deciding}) > 1
+    metrics_differ = len({(other.check.measured, other.check.statistic_written) for other in deciding}) > 1
     factors: dict[str, Any] = {}
     if each.comparison is not None:
-        if kind_of(each.check).Options.against and not each.parts:
+        if each.check.against and not each.parts:
             group, other = (_group_in_words(each.check, cell) for cell in each.comparison.cells)
             factors |= {"against": other, "group": group}
         factors |= dict(each.comparison.factors)
     elif each.condition:
         factors["in"] = each.condition
     if metrics_differ:
-        statistic = each.check.get("statistic", "")
-        factors["what"] = f"{statistic} {each.check.get('metric', each.check['test'])}".strip().replace("_", " ")
+        factors["what"] = f"{each.check.statistic_written} {each.check.measured or each.check.test}".strip().replace("_", " ")
     return verdicts.Marked(factors, each.mark_family)
 
 
-def _group_in_words(check: dict, group: Any) -> Any:
+def _group_in_words(check: Check, group: Any) -> Any:
     """A group's name; for a number, with its column."""
-    return group if isinstance(group, str) else f"{group:g} {option(check, 'across').replace('_', ' ')}"
+    return group if isinstance(group, str) else f"{group:g} {check.cells.replace('_', ' ')}"
 
 
 def _disagreement(judged: list[_Judged]) -> str:
@@ -323,7 +325,7 @@ def _disagreement(judged: list[_Judged]) -> str:
     others = {(each.condition, each.name, _is_timed(each.check)): each.mark for each in judged if not each.primary}
     deciding = [each for each in judged if each.primary]
     pairs = [(each, others.get((each.condition, each.name, not _is_timed(each.check)))) for each in deciding]
-    pairs = [(each, other) for each, other in pairs if other is not None and (_is_timed(each.check) or "printed_metric" in each.check)]
+    pairs = [(each, other) for each, other in pairs if other is not None and (_is_timed(each.check) or each.check.judges_work)]
     differing = sum(each.mark != other for each, other in pairs)
     if not differing:
         return ""
@@ -346,7 +348,7 @@ def _shown(deciding: list[_Judged], holds: str) -> _Judged:
     against = [each for each in deciding if each.mark_family == "-"]
     if against:
         first = [each for each in against if each.number == against[0].number]
-        return max(first, key=lambda each: np.nan_to_num(abs(each.finding.effect - (option(each.check, "target") or 0)), nan=np.inf))
+        return max(first, key=lambda each: np.nan_to_num(abs(each.finding.effect - each.check.claimed_difference), nan=np.inf))
     return max(deciding, key=p)
 
 
@@ -355,7 +357,7 @@ def _shown(deciding: list[_Judged], holds: str) -> _Judged:
 
 def _printed(each: _Judged) -> tuple[float, bool | None]:
     """The effect in the printed numbers, and whether the sentence holds in them; None if they are not printed."""
-    if kind_of(each.check).Options.of_printed:
+    if each.check.of_printed:
         return each.finding.effect, each.mark == "+"
     parts = each.parts or (each.comparison,)
     if None in parts or any(np.isnan(part.printed).any() for part in parts):
@@ -376,8 +378,9 @@ def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> 
     If runs are picked, the chance that runs drawn at random among those that count, one of each condition, do in their place. NaN if a cell
     is empty, or if the paper's size is unknown.
     """
-    if any("pick" in each.check for each in deciding):
-        return math.prod(each.comparison.typical if "pick" in each.check else math.nan for each in deciding)
+    picked = [isinstance(each.check, OfRuns) and each.check.picks is not None for each in deciding]
+    if any(picked):
+        return math.prod(each.comparison.typical if of_one else math.nan for each, of_one in zip(deciding, picked))
     held = []
     for each in deciding:
         every = each.parts or (each.comparison,)
@@ -433,9 +436,8 @@ def _size(each: _Judged) -> str:
 # Rows.
 
 
-def _is_timed(check: dict) -> bool:
-    metric = check.get("metric")
-    return metric in metrics.METRICS and metrics.METRICS[metric].unit == "s"
+def _is_timed(check: Check) -> bool:
+    return check.measured in metrics.METRICS and metrics.METRICS[check.measured].unit == "s"
 
 
 def _reason(each: _Judged) -> str:
@@ -452,9 +454,9 @@ def _check_row(each: _Judged, material: Material) -> dict:
     return {
         "check": each.number,
         "primary": each.primary,
-        "test": check["test"],
-        "metric": check.get("metric", ""),
-        "statistic": option(check, "statistic") or "rank" if "statistic" in kind_of(check).Options.model_fields else "",
+        "test": check.test,
+        "metric": check.measured,
+        "statistic": check.statistic_shown,
         "unit": _unit(check, material),
         "condition": each.condition,
         "comparison": each.name,
@@ -472,9 +474,9 @@ def _check_row(each: _Judged, material: Material) -> dict:
     }
 
 
-def _unit(check: dict, material: Material) -> str:
+def _unit(check: Check, material: Material) -> str:
     """The unit of a check's metric, or of the effect of a function; empty if neither is known."""
-    if "effect_unit" in check:
-        return check["effect_unit"]
-    experiments = [name for name in one_or_list(option(check, "experiment") or []) if name in material.results]
-    return comparisons.unit_of(check["metric"], experiments, material) if experiments else ""
+    if check.effect_in:
+        return check.effect_in
+    experiments = [name for name in check.experiments if name in material.results]
+    return comparisons.unit_of(check.measured, experiments, material) if experiments else ""

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis.claims import effects
-from bezierplan.analysis.claims.kinds import option
+from bezierplan.analysis.claims.kinds import OfRuns
 from bezierplan.analysis.metrics import METRICS
 
 # Statistics for a check that names none: the first that is printed for every cell is used.
@@ -22,7 +22,7 @@ class Printed(NamedTuple):
     statistics: dict[str, tuple[int, float, float]]
 
 
-def printed(check: dict, found: Sequence[Sequence[Printed | None]]) -> tuple[np.ndarray, int | None]:
+def printed(check: OfRuns, found: Sequence[Sequence[Printed | None]]) -> tuple[np.ndarray, int | None]:
     """Printed numbers of cells (k,), averaged over conditions, and their number of runs, None if that is not printed.
 
     found: of each condition, of each cell, its rows as from `rows_of_cell`.
@@ -47,10 +47,10 @@ def printed(check: dict, found: Sequence[Sequence[Printed | None]]) -> tuple[np.
     return nothing
 
 
-def _wanted(check: dict) -> tuple[str, ...]:
+def _wanted(check: OfRuns) -> tuple[str, ...]:
     """The printed statistics that serve a check, the best first. Papers print mean times; other programs disturb medians less."""
-    named = option(check, "statistic")
-    timed = check["metric"] in METRICS and METRICS[check["metric"]].unit == "s"
+    named = check.statistic_named
+    timed = check.metric in METRICS and METRICS[check.metric].unit == "s"
     if named in (None, "rank"):
         return _ANY_STATISTIC
     return (named, "unstated", *(_ANY_STATISTIC if timed and named == "median" else ()))

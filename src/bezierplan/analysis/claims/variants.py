@@ -3,17 +3,17 @@
 import itertools
 from typing import Any
 
-from bezierplan.analysis.claims.kinds import GROUP_KEYS, option
+from bezierplan.analysis.claims.claim import Claim
+from bezierplan.analysis.claims.kinds import GROUP_KEYS, Check, Comparing, OfRuns
 from bezierplan.schema.model import one_or_list
 
 
-def variants(claim: dict) -> list[dict[str, Any]]:
+def variants(claim: Claim) -> list[dict[str, Any]]:
     """Every combination of the values of a claim's variants, column -> value; the first one is primary."""
-    columns = claim.get("variants", {})
-    return [dict(zip(columns, values)) for values in itertools.product(*columns.values())]
+    return [dict(zip(claim.variants, values)) for values in itertools.product(*claim.variants.values())]
 
 
-def in_variant(checks: list[dict], first: dict[str, Any], assignment: dict[str, Any]) -> list[dict]:
+def in_variant(checks: list[Check], first: dict[str, Any], assignment: dict[str, Any]) -> list[Check]:
     """The checks with the values of an assignment instead of the first ones, wherever a check names those.
 
     Lists are replaced member by member. A column whose first value no check names becomes one more condition of `where`.
@@ -23,41 +23,47 @@ def in_variant(checks: list[dict], first: dict[str, Any], assignment: dict[str, 
         if any(_names(check, column) & set(pairs) for check in checks):
             checks = [_exchanged(check, column, pairs) for check in checks]
         else:
-            checks = [check | {"where": check.get("where", {}) | {column: chosen}} for check in checks]
+            checks = [check.but(where=check.where | {column: chosen}) if has_runs(check) else check for check in checks]
     return checks
 
 
-def _places(check: dict, column: str) -> list[str]:
-    """The keys of a check that hold values of a column."""
+def has_runs(check: Check) -> bool:
+    """Whether a check selects runs."""
+    return "where" in type(check).model_fields
+
+
+def _places(check: Check, column: str) -> dict[str, Any]:
+    """The keys of a check that hold values of a column, with these."""
     if column in ("metric", "experiment"):
-        return [column]
-    return list(GROUP_KEYS) if column == option(check, "across") else []
+        keys: tuple[str, ...] = (column,)
+    else:
+        keys = GROUP_KEYS if isinstance(check, Comparing) and column == check.across else ()
+    return {key: getattr(check, key) for key in keys if key in check.model_fields_set}
 
 
-def _names(check: dict, column: str) -> set:
+def _names(check: Check, column: str) -> set:
     """The values of a column that a check names."""
-    given = [check[key] for key in _places(check, column) if key in check] + [check.get("where", {}).get(column, [])]
-    return set(_flat(given))
+    where = check.where.get(column, []) if has_runs(check) else []
+    return set(_flat([*_places(check, column).values(), where]))
 
 
 def _flat(values: Any) -> list:
     return [value for each in values for value in _flat(each)] if isinstance(values, list) else [values]
 
 
-def _exchanged(check: dict, column: str, pairs: dict) -> dict:
-    changed = {key: _replaced(check[key], pairs) for key in _places(check, column) if key in check}
-    if column in check.get("where", {}):
-        changed["where"] = check["where"] | {column: _replaced(check["where"][column], pairs)}
-    return check | changed
+def _exchanged(check: Check, column: str, pairs: dict) -> Check:
+    changed = {key: _replaced(value, pairs) for key, value in _places(check, column).items()}
+    if has_runs(check) and column in check.where:
+        changed["where"] = check.where | {column: _replaced(check.where[column], pairs)}
+    return check.but(**changed)
 
 
 def _replaced(values: Any, pairs: dict) -> Any:
     return [_replaced(value, pairs) for value in values] if isinstance(values, list) else pairs.get(values, values)
 
 
-def with_work(check: dict) -> list[dict]:
+def with_work(check: Check) -> list[Check]:
     """A check of seconds that names counted work, split into a primary check of the work and a secondary one of the seconds."""
-    if "work" not in check:
+    if not isinstance(check, OfRuns) or check.counted_work is None:
         return [check]
-    seconds = {key: value for key, value in check.items() if key != "work"}
-    return [seconds | {"metric": check["work"], "printed_metric": check["metric"]}, seconds | {"secondary": True}]
+    return [check.of_work(), check.reported()]

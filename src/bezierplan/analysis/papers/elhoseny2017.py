@@ -7,6 +7,7 @@ Numbers of equations, sections, tables and figures are the paper's.
 import itertools
 import math
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -18,10 +19,12 @@ from bezierplan.analysis.results import Results, path_of, select
 from bezierplan.geometry.cell_length import DIAGONAL, samples
 from bezierplan.geometry.region import region
 from bezierplan.planners.parts.diversity import q_of_rows, q_statistic
-from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces import random_field
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.seeds import generator
+
+if TYPE_CHECKING:
+    from bezierplan.analysis.claims.kinds import function
 
 
 def said(published: dict[str, pd.DataFrame]) -> dict[str, float]:
@@ -53,7 +56,7 @@ def q_table(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
     return table.astype(dict.fromkeys(whole, "Int64")).round({"Q": 4})
 
 
-def q_example(check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]) -> tuple[str, float, None, int]:
+def q_example(check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]) -> tuple[str, float, None, int]:
     """Claim C20: whether the Q statistics of Table 1 agree with the text. The effect is the largest difference from a printed value."""
     genes, printed = solutions(published), said(published)
     found = {f"Q of {one} and {other}": q_of_rows(genes[one], genes[other]) for one, other in itertools.combinations(genes, 2)}
@@ -63,7 +66,9 @@ def q_example(check: dict, results: dict[str, Results], published: dict[str, pd.
     return "+" if holds else "-", max(*differences, abs(mean - printed["mean Q"])), None, len(found)
 
 
-def printed_over_bound(check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]) -> tuple[str, float, None, int]:
+def printed_over_bound(
+    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
+) -> tuple[str, float, None, int]:
     """Claim C23: whether no printed length of a rival is larger than such fields explain.
 
     A path that never turns back in x or in y counts at most two cells for every cell of the side. Shortest paths among such obstacles do
@@ -72,7 +77,7 @@ def printed_over_bound(check: dict, results: dict[str, Results], published: dict
     """
     ratios, explained, fields = [], [], 0
     for name, table in (("fields100", "table2"), ("fields200", "table3")):
-        problems = select(results[name].runs, check["where"]).drop_duplicates("problem")
+        problems = select(results[name].runs, check.where).drop_duplicates("problem")
         fields += len(problems)
         least = problems.groupby(["route", "obstacles"])["octile_bound"].mean()
         rivals = published[table][published[table]["method"] != "mga"]
@@ -83,7 +88,7 @@ def printed_over_bound(check: dict, results: dict[str, Results], published: dict
 
 
 def fitness_leads(
-    check: dict,
+    check: "function.Options",
     results: dict[str, Results],
     published: dict[str, pd.DataFrame],
     *,
@@ -102,9 +107,9 @@ def fitness_leads(
     over runs with its interval.
     """
     shares = []
-    for name in one_or_list(check["experiment"]):
+    for name in check.experiments:
         found = results[name]
-        for _, run in select(found.runs, check.get("where", {})).iterrows():
+        for _, run in select(found.runs, check.where).iterrows():
             path = path_of(run)
             if path is not None:
                 x, _ = samples(path, found.problems[run["problem"]].workspace)

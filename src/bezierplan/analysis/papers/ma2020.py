@@ -1,6 +1,7 @@
 """ma2020: its drawings, quantities computed from its printed numbers alone, the claim about curvature, and its audit."""
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -10,6 +11,9 @@ from bezierplan.analysis.measures import obstacle_clearance
 from bezierplan.analysis.results import Results, path_of, pick, select
 from bezierplan.geometry import curves
 from bezierplan.planners.parts.genetic import swap_tails
+
+if TYPE_CHECKING:
+    from bezierplan.analysis.claims.kinds import function
 
 # Methods that plan on cells.
 LATTICE_METHODS = ("aco", "ga", "aco_ga", "asfa_ga")
@@ -80,13 +84,13 @@ def _marks(mark: str, points: np.ndarray, role: str, label: str) -> pd.DataFrame
 
 
 def drawn_farther(
-    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame], *, method: str, other: str
+    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame], *, method: str, other: str
 ) -> tuple[str, float, None, int]:
     """Claim C6: whether the path drawn of one method, its shortest, stays farther from obstacles than that drawn of another, on every map.
 
     The effect is the least excess in clearance, the units are the paths. Raises Untestable if a method has no feasible run on a map.
     """
-    found = results[check["experiment"]]
+    found = results[check.experiment]
     excess = []
     for _, runs in found.runs.groupby("problem"):
         drawn = [pick(runs[runs["method"] == name], {"lowest": "length"}) for name in (method, other)]
@@ -156,13 +160,13 @@ def chance_of_lattice(low: float, high: float, tolerance: float, side: int) -> f
 
 
 def continuous_curvature(
-    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]
+    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
 ) -> tuple[str, float, tuple[float, float] | None, int]:
     """Claim C20: whether every feasible path is one polynomial piece with non-zero speed everywhere, so that its curvature is continuous.
 
     The effect is the largest jump of curvature at the joints of pieces; a path of one piece has no joints.
     """
-    runs = select(results[check["experiment"]].runs, check["where"])
+    runs = select(results[check.experiment].runs, check.where)
     paths = [path_of(run) for _, run in runs[runs["feasible"].astype(bool)].iterrows()]
     jump = max((curves.curvature_jump(path) for path in paths), default=math.nan)
     moving = all(_least_speed(curves.bezier_pieces(path)) > STILL for path in paths)

@@ -5,6 +5,7 @@ Numbers of equations, sections, tables and figures are the paper's. Drawings use
 
 import itertools
 from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -16,6 +17,9 @@ from bezierplan.planners import node_genetic, planner_settings
 from bezierplan.planners.parts.node_mutation import Direction, Mutation, ObstacleNode, Ref21Test, WithoutObstacle, mutate
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.ground import centres, ground_of, obstacles_met
+
+if TYPE_CHECKING:
+    from bezierplan.analysis.claims.kinds import function
 
 # Of a cell: any nearer to the path there is no room for a number.
 BESIDE = 0.45
@@ -164,14 +168,14 @@ def _path(places: Sequence[tuple[float, float]], role: str, label: str) -> Itera
 
 
 def less_work_for_a_path(
-    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame], *, group: str, other: str
+    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame], *, group: str, other: str
 ) -> tuple[str, float, tuple[float, float], int]:
     """Claim C7: whether one kind of first population takes less work than another until a run ends feasible, in every environment.
 
     The work is the mean number of evaluations of a run over the share of feasible ones. The effect is the largest ratio of both kinds'
     work, with the least and largest ratio that their Clopper-Pearson intervals allow; the units are the runs of the smaller kind.
     """
-    runs = select(results[check["experiment"]].runs, check["where"])
+    runs = select(results[check.experiment].runs, check.where)
     ratios = []
     for _, own in runs.groupby("workspace"):
         (least, typical, most), (least_other, typical_other, most_other) = (_work(own[own["initial"] == name]) for name in (group, other))

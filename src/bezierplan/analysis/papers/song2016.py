@@ -1,5 +1,7 @@
 """song2016: the claim about its genetic operators, an audit of its Table I, and the paths whose lengths its table prints."""
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import pandas as pd
 
@@ -9,11 +11,14 @@ from bezierplan.planners.parts.genetic import complement_bit, swap_tails
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 
+if TYPE_CHECKING:
+    from bezierplan.analysis.claims.kinds import function
+
 TRIALS = 10_000
 
 
 def genes_in_range(
-    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame], *, bits: int, genes: int
+    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame], *, bits: int, genes: int
 ) -> tuple[str, float, tuple[float, float] | None, int]:
     """Claim C8: genes outside 0 .. 2^bits - 1 after a crossover at every kind of cut and a mutation at any bit, in random chromosomes."""
     rng = np.random.default_rng(0)

@@ -4,6 +4,7 @@ Numbers of equations, sections, tables and figures are the paper's.
 """
 
 import math
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
@@ -15,6 +16,9 @@ from bezierplan.geometry import curves, shortest_paths
 from bezierplan.planners.parts import chaotic_maps
 from bezierplan.workspaces.problem import Problem, Workspace
 from bezierplan.workspaces.seeds import generator
+
+if TYPE_CHECKING:
+    from bezierplan.analysis.claims.kinds import function
 
 # The three control points (x, y), in units, of the best known single Bezier curves, by workspace: the results of 300 long runs, improved
 # by sequential quadratic programming. Their lengths are 7.7263 and 7.5180.
@@ -138,7 +142,7 @@ def flow_chart() -> pd.DataFrame:
 
 
 def gauss_above(
-    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame], *, limit: float
+    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame], *, limit: float
 ) -> tuple[str, float, tuple[float, float] | None, int]:
     """Claim C39: the share of values above a limit in long sequences of the Gauss map, without their first values.
 
@@ -157,7 +161,7 @@ def gauss_above(
 
 
 def bowl_with_local_minima(
-    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]
+    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
 ) -> tuple[str, float, tuple[float, float] | None, int]:
     """Claim C16: whether the fitness over one control point is a bowl with several local minima.
 
@@ -166,8 +170,8 @@ def bowl_with_local_minima(
     """
     from scipy import stats
 
-    found = results[check["experiment"]]
-    surface = _landscape(found._replace(runs=select(found.runs, check["where"])))
+    found = results[check.experiment]
+    surface = _landscape(found._replace(runs=select(found.runs, check.where)))
     best = surface.loc[surface["fitness"].idxmin()]
     distance = np.hypot(surface["x"] - best["x"], surface["y"] - best["y"])
     correlation = float(stats.spearmanr(surface["fitness"], distance).statistic)
@@ -318,14 +322,14 @@ def valleys(values: np.ndarray) -> np.ndarray:
 
 
 def several_homotopy_classes(
-    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame]
+    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame]
 ) -> tuple[str, float, tuple[float, float] | None, int]:
     """Claim C17: the number of classes in which runs converge; two paths of one class pass every circle on the same side.
 
     A class counts if two or more runs end within 1 % of the shortest path that any run has in it: they have reached the same optimum.
     """
-    found = results[check["experiment"]]
-    runs = select(found.runs, check["where"])
+    found = results[check.experiment]
+    runs = select(found.runs, check.where)
     classes = metrics.values(runs, "homotopy", found.problems)
     least = runs.groupby(classes)["length"].transform("min")
     converged = classes[runs["length"] <= least * (1 + CONVERGED)].value_counts()
@@ -335,15 +339,15 @@ def several_homotopy_classes(
 
 
 def least_above(
-    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame], *, limit: int
+    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame], *, limit: int
 ) -> tuple[str, float, None, int]:
     """Claim C3: whether the least mean value belongs to more particles than a limit.
 
     The effect is the share of bootstrap draws from our repeats in which it does; repeats with equal numbers start alike and are drawn
     together.
     """
-    runs = select(results[check["experiment"]].runs, check["where"])
-    values = runs.pivot_table(index="repeat", columns="particles", values=check["metric"]).dropna()
+    runs = select(results[check.experiment].runs, check.where)
+    values = runs.pivot_table(index="repeat", columns="particles", values=check.metric).dropna()
     rng = generator("tharwat2018/C3")
     means = values.to_numpy()[rng.integers(len(values), size=(statistics.DRAWS, len(values)))].mean(axis=1)
     share = float((values.columns.to_numpy()[means.argmin(axis=1)] > limit).mean())
@@ -351,7 +355,7 @@ def least_above(
 
 
 def fewer_outliers(
-    check: dict, results: dict[str, Results], published: dict[str, pd.DataFrame], *, runs_drawn: int, margin: float
+    check: "function.Options", results: dict[str, Results], published: dict[str, pd.DataFrame], *, runs_drawn: int, margin: float
 ) -> tuple[str, float, tuple[float, float], int]:
     """Claim C20: whether box plots of as many runs as the paper's show outliers for Singer less often than for the other maps.
 
@@ -359,13 +363,13 @@ def fewer_outliers(
     of `runs_drawn` runs in which neither variant has an outlier, for Singer less the mean of the other maps; its interval comes from
     resamples of our runs.
     """
-    runs = select(results[check["experiment"]].runs, check["where"])
+    runs = select(results[check.experiment].runs, check.where)
     rng = generator("tharwat2018/C20")
     clear = {}
     for name in CHAOTIC:
         inside = np.ones((RESAMPLES, BOXES), dtype=bool)
         for variant in ("cpso1", "cpso2"):
-            values = runs.loc[runs["method"] == f"{variant}_{name}", check["metric"]].to_numpy()
+            values = runs.loc[runs["method"] == f"{variant}_{name}", check.metric].to_numpy()
             resampled = values[rng.integers(len(values), size=(RESAMPLES, len(values)))]
             drawn = resampled[np.arange(RESAMPLES)[:, None, None], rng.integers(len(values), size=(RESAMPLES, BOXES, runs_drawn))]
             low, high = np.quantile(drawn, [0.25, 0.75], axis=-1, keepdims=True)

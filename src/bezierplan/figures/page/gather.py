@@ -7,6 +7,7 @@ from typing import Any
 import pandas as pd
 
 from bezierplan.analysis import headline, sensitivity
+from bezierplan.analysis.claims.kinds import Check, check_of
 from bezierplan.figures import style
 from bezierplan.figures.page import content, other, why
 from bezierplan.figures.page.addresses import address, of_cells
@@ -127,14 +128,17 @@ def _table(study: str, name: str, job: dict, folder: Path, numbers: pd.DataFrame
 def _numbers(table: str, compared: pd.DataFrame, spec: dict, numbers: pd.DataFrame | None, labels: dict[str, str]) -> list[content.Number]:
     """The cells of a table: those with a published number, and what other methods have in the same column."""
     keys = list(compared.columns[: compared.columns.get_loc("metric")])
-    printed = compared.loc[compared["value_published"].notna(), ["metric", "statistic"]].drop_duplicates()
+    published = compared["value_published"].notna()
+    compared = compared.assign(counted=False)
+    if numbers is not None:
+        # `summary.numbers` keeps the order of a table's rows.
+        compared.loc[published, "counted"] = numbers.loc[numbers["table"] == table.partition("/")[2], "counted"].to_numpy()
+    printed = compared.loc[published, ["metric", "statistic"]].drop_duplicates()
     shown = compared.merge(printed, on=["metric", "statistic"])
     places = shown[[*keys, "metric", "statistic"]].to_dict("records")
     addresses = of_cells(table, places, spec.get("primary", {}))
-    status = _status(table, keys, numbers)
     cells = []
     for place, name, (_, row) in zip(places, addresses, shown.iterrows(), strict=True):
-        primary, counted = status.get(address(*place.values()), (all(place[k] == v for k, v in spec.get("primary", {}).items()), False))
         cells.append(
             content.Number(
                 address=name,
@@ -153,24 +157,14 @@ def _numbers(table: str, compared: pd.DataFrame, spec: dict, numbers: pd.DataFra
                 predicted=_interval(row, "low95_predicted", "high95_predicted"),
                 verdict=_text(row, "verdict"),
                 why=_text(row, "why"),
-                primary=primary,
-                counted=counted,
+                primary=_flag(row, "primary"),
+                counted=_flag(row, "counted"),
                 share_feasible=_number(row, "share_feasible"),
                 bound=_number(row, "bound"),
                 gap=_number(row, "gap"),
             )
         )
     return cells
-
-
-def _status(table: str, keys: list[str], numbers: pd.DataFrame | None) -> dict[str, tuple[bool, bool]]:
-    """Cell, named by all its keys -> whether it is the paper's reading, and whether it counts; empty without the numbers of all studies."""
-    if numbers is None:
-        return {}
-    own = numbers[numbers["table"] == table.partition("/")[2]]
-    columns = [*keys, "metric", "statistic"]
-    flags = zip(own["primary"].astype(str) == "True", own["counted"].astype(str) == "True", strict=True)
-    return {address(*place): flag for place, flag in zip(own[columns].itertuples(index=False, name=None), flags, strict=True)}
 
 
 def printed_key(column: str, value: content.Cell, labels: dict[str, str]) -> str:
@@ -196,8 +190,8 @@ def _claims(
         row = rows[rows["primary"].astype(bool)].iloc[0]
         variant = _text(row, "variant")
         own = checks[(checks["id"] == identity) & (checks["variant"].fillna("") == variant)] if checks is not None else pd.DataFrame()
-        written = job["checks"].get(identity, [])
-        comparisons = [_comparison(each, labels, written) for _, each in own.iterrows()]
+        written = [check_of(each) for each in job["checks"].get(identity, [])]
+        decisive = next((n for n, (_, each) in enumerate(own.iterrows()) if _flag(each, "decisive")), None)
         claims.append(
             content.Claim(
                 address=address(study, identity),
@@ -214,8 +208,8 @@ def _claims(
                 replication=_number(row, "replication_probability"),
                 size=_text(row, "size"),
                 shown_in=[address(study, name) for name in _text(row, "artefact").replace(",", " ").split() if name in there],
-                comparisons=comparisons,
-                decisive=(decisive := _decisive(row, comparisons)),
+                comparisons=[_comparison(each, labels, written) for _, each in own.iterrows()],
+                decisive=decisive,
                 why=_why(own.iloc[decisive], written, labels, row) if decisive is not None else "",
                 variant=_labelled(variant, labels),
                 readings=[_reading(each, labels) for _, each in rows[~rows["primary"].astype(bool)].iterrows()],
@@ -226,13 +220,7 @@ def _claims(
     return claims
 
 
-def _decisive(row: pd.Series, comparisons: list[content.Comparison]) -> int | None:
-    """Which comparison a claim's row repeats: the one that determines its verdict."""
-    wanted = _number(row, "effect"), _interval(row, "low95", "high95"), _number(row, "p")
-    return next((n for n, each in enumerate(comparisons) if each.deciding and (each.effect, each.interval, each.p) == wanted), None)
-
-
-def _why(decisive: pd.Series, checks: list[dict], labels: dict[str, str], claim: pd.Series) -> str:
+def _why(decisive: pd.Series, checks: list[Check], labels: dict[str, str], claim: pd.Series) -> str:
     """The sentence that says why (`why`), from the decisive comparison; empty for a check that the study has no more."""
     number = int(decisive["check"])
     if number > len(checks):
@@ -241,7 +229,7 @@ def _why(decisive: pd.Series, checks: list[dict], labels: dict[str, str], claim:
     return why.why(decisive, checks[number - 1], *words, own_criterion=_flag(claim, "own_criterion"))
 
 
-def _comparison(row: pd.Series, labels: dict[str, str], checks: list[dict]) -> content.Comparison:
+def _comparison(row: pd.Series, labels: dict[str, str], checks: list[Check]) -> content.Comparison:
     words = [_labelled(_text(row, "comparison"), labels), _labelled(_text(row, "condition"), labels)]
     return content.Comparison(
         check=(number := int(row["check"])),

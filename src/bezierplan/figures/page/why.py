@@ -3,12 +3,18 @@
 There is a template for each kind of test (`analysis.claims.kinds`).
 """
 
+from __future__ import annotations
+
 import re
-from typing import Any
+from typing import TYPE_CHECKING
 
 import pandas as pd
 
+from bezierplan.analysis.claims.kinds import Check, OfRuns, PublishedMargin, share
 from bezierplan.analysis.metrics import METRICS
+
+if TYPE_CHECKING:
+    from bezierplan.analysis.claims.kinds import difference, equal_within, function, lower, ordered, trend
 
 EVENTS = {"below": "below", "above": "above", "at_most": "at most", "at_least": "at least", "equals": ""}
 _TIMES = 2.0
@@ -17,10 +23,10 @@ _TIMES = 2.0
 _NEEDS = {"all": "in every run", "none": "in no run", "some": "in at least one run"}
 
 
-def why(row: pd.Series, check: dict[str, Any], name: str, condition: str, own_criterion: bool) -> str:
+def why(row: pd.Series, check: Check, name: str, condition: str, own_criterion: bool) -> str:
     """The sentence about a claim's decisive comparison.
 
-    row: of claim_checks.csv. check: as in claims.yaml. name, condition: what is compared, and where, as printed. own_criterion: whether the
+    row: of claim_checks.csv. name, condition: what is compared, and where, as printed. own_criterion: whether the
     limit is ours because the paper gives no number.
     """
     where = f"{condition}: " if condition else ""
@@ -30,19 +36,19 @@ def why(row: pd.Series, check: dict[str, Any], name: str, condition: str, own_cr
     return f"{text[:1].upper()}{text[1:]}."
 
 
-def reference(check: dict[str, Any]) -> float:
+def reference(check: Check) -> float:
     """The effect on whose other side a claim fails: the share that it needs, 0 for any other test."""
-    if check["test"] != "share":
+    if not isinstance(check, share.Options):
         return 0.0
-    return {"all": 1.0, "none": 0.0, "some": 0.0}.get(check["threshold"], check["threshold"])
+    return {"all": 1.0, "none": 0.0, "some": 0.0}.get(check.threshold, check.threshold)
 
 
-def _between(row: pd.Series, check: dict[str, Any], name: str) -> str:
+def _between(row: pd.Series, check: lower.Options | ordered.Options, name: str) -> str:
     """Of groups that should be lower, or higher, than others."""
     together = re.fullmatch(r"all (\d+) together", name)
     if together and not pd.isna(row["effect"]):
         found = f"of {together[1]} comparisons in {_measured(row)}, the decisive one is {_apart(row, check).removesuffix(' than')}"
-        return f"{found}{_interval(row, check)}; the claim says {check['direction']} in all of them{_margin(row, check)}"
+        return f"{found}{_interval(row, check)}; the claim says {check.direction} in all of them{_margin(row, check)}"
     found = re.fullmatch(r"(.+) (lower|higher) than (.+)", name)
     if not found or pd.isna(row["effect"]):
         return _effect(row, check, name)
@@ -51,29 +57,29 @@ def _between(row: pd.Series, check: dict[str, Any], name: str) -> str:
     return f"{found}; the claim says {direction}{_margin(row, check)}"
 
 
-def _apart(row: pd.Series, check: dict[str, Any]) -> str:
+def _apart(row: pd.Series, check: Check) -> str:
     """How a group compares with another: `3 cell lower than`, `25,000 times`."""
     effect = row["effect"]
     if not effect:
         return "equal to"
-    if check.get("scale") == "relative" and effect > _TIMES:
+    if check.relative and effect > _TIMES:
         return f"{_printed(1 + effect)} times"
     return f"{_amount(abs(effect), row, check)} {'lower' if effect < 0 else 'higher'} than"
 
 
-def _equal(row: pd.Series, check: dict[str, Any], name: str) -> str:
+def _equal(row: pd.Series, check: equal_within.Options, name: str) -> str:
     """Of groups that should be alike, or apart by a stated amount."""
     group, _, other = name.partition(" as ")
     if pd.isna(row["effect"]) or not other:
         return _effect(row, check, name)
-    target = check.get("target")
+    target = check.target
     says = "that they are alike" if not target else f"by how much: {_amount(abs(target), row, check)} {'lower' if target < 0 else 'higher'}"
     return (
         f"in {_quantity(row)}, {group} is {_apart(row, check)} {other}{_interval(row, check)}; the claim says {says}{_margin(row, check)}"
     )
 
 
-def _differ(row: pd.Series, check: dict[str, Any], name: str) -> str:
+def _differ(row: pd.Series, check: difference.Options, name: str) -> str:
     """Of groups that should differ at all."""
     if pd.isna(row["effect"]):
         return _effect(row, check, name)
@@ -81,37 +87,38 @@ def _differ(row: pd.Series, check: dict[str, Any], name: str) -> str:
     return f"{_quantity(row)} differs between {name} by {amount}; the claim says that it differs{_margin(row, check)}"
 
 
-def _trend(row: pd.Series, check: dict[str, Any], name: str) -> str:
+def _trend(row: pd.Series, check: trend.Options, name: str) -> str:
     """Of a quantity that should rise or fall along another."""
     if pd.isna(row["effect"]):
         return _effect(row, check, name)
-    along, moves = check["x"].replace("_", " "), "rises" if row["effect"] > 0 else "falls"
-    wanted = {"up": "rises", "down": "falls"}[check["direction"]]
+    along, moves = check.x.replace("_", " "), "rises" if row["effect"] > 0 else "falls"
+    wanted = {"up": "rises", "down": "falls"}[check.direction]
     amount = f"{_amount(abs(row['effect']), row, check)}{_interval(row, check)}"
     return (
         f"{_quantity(row)} {moves} by {amount} from the least to the largest {along}; the claim says that it {wanted}{_margin(row, check)}"
     )
 
 
-def _share(row: pd.Series, check: dict[str, Any], name: str) -> str:
+def _share(row: pd.Series, check: share.Options, name: str) -> str:
     """Of a share of runs in which an event happens."""
     if pd.isna(row["effect"]):
         return _effect(row, check, name)
     happens = _event(row, check)
-    if "pick" in check:
-        picked = f"the run with the lowest {check['pick']['lowest'].replace('_', ' ')}"
+    if check.pick:
+        picked = f"the run with the lowest {check.pick.lowest.replace('_', ' ')}"
         return f"in {picked}, {happens if row['effect'] else f'it is not so that {happens}'}; the claim needs it there"
-    needed = _NEEDS.get(check["threshold"]) if isinstance(check["threshold"], str) else None
-    needed = needed or f"in {EVENTS[check['direction']]} {100 * check['threshold']:g} %"
+    needed = _NEEDS.get(check.threshold) if isinstance(check.threshold, str) else None
+    needed = needed or f"in {EVENTS[check.direction]} {100 * check.threshold:g} %"
     low, high = 100 * row["low95"], 100 * row["high95"]
     interval = "" if pd.isna(low) or pd.isna(high) else f" (95 % interval {low:.3g} to {high:.3g} %)"
     return f"{happens} in {100 * row['effect']:.3g} % of the runs{interval}; the claim needs it {needed}"
 
 
-def _event(row: pd.Series, check: dict[str, Any]) -> str:
+def _event(row: pd.Series, check: share.Options) -> str:
     """What happens in a run that counts."""
     meaning = _quantity(row)
-    for key, value in (check.get("event") or {}).items():
+    if check.limit:
+        key, value = check.limit
         unit = "" if str(row["unit"]) in meaning else _unit(row)
         return " ".join(f"{meaning} is {EVENTS[key]} {value:g}{unit}".split())
     return (
@@ -119,18 +126,18 @@ def _event(row: pd.Series, check: dict[str, Any]) -> str:
     )
 
 
-def _function(row: pd.Series, check: dict[str, Any], name: str) -> str:
+def _function(row: pd.Series, check: function.Options, name: str) -> str:
     """Of what a function of the study's own finds."""
     value = "no value" if pd.isna(row["effect"]) else f"{_printed(row['effect'])}{_unit(row)}{_interval(row, check)}"
-    return f"{check['effect']}: {value}"
+    return f"{check.effect}: {value}"
 
 
-def _arithmetic(row: pd.Series, check: dict[str, Any], name: str) -> str:
+def _arithmetic(row: pd.Series, check: Check, name: str) -> str:
     """Of printed numbers that should follow from each other."""
     return f"the paper's own numbers give {row['effect']:.4g}, and it prints {row['effect_size']:.4g}"
 
 
-def _effect(row: pd.Series, check: dict[str, Any], name: str) -> str:
+def _effect(row: pd.Series, check: Check, name: str) -> str:
     """Of any other comparison."""
     if pd.isna(row["effect"]):
         counted = "" if pd.isna(row["counted"]) else str(row["counted"]).replace(", ", " and ")
@@ -168,9 +175,9 @@ def _unit(row: pd.Series) -> str:
     return "" if pd.isna(row["unit"]) or row["unit"] in ("", "-") else f" {row['unit']}"
 
 
-def _amount(value: float, row: pd.Series, check: dict[str, Any]) -> str:
+def _amount(value: float, row: pd.Series, check: Check) -> str:
     """An effect with its unit; a relative one in per cent."""
-    return f"{_printed(100 * value)} %" if check.get("scale") == "relative" else f"{_printed(value)}{_unit(row)}"
+    return f"{_printed(100 * value)} %" if check.relative else f"{_printed(value)}{_unit(row)}"
 
 
 def _printed(value: float) -> str:
@@ -178,25 +185,27 @@ def _printed(value: float) -> str:
     return f"{float(f'{value:.3g}'):,.10g}"
 
 
-def _interval(row: pd.Series, check: dict[str, Any]) -> str:
+def _interval(row: pd.Series, check: Check) -> str:
     low, high = row["low95"], row["high95"]
     if pd.isna(low) or pd.isna(high):
         return ""
-    relative = check.get("scale") == "relative"
-    if relative and row["effect"] > _TIMES and check["test"] in ("lower", "ordered", "equal_within"):
+    relative = check.relative
+    if relative and row["effect"] > _TIMES and check.against:
         return f" (95 % interval {_printed(1 + low)} to {_printed(1 + high)} times)"
     ends = " to ".join(_printed(100 * end if relative else end) for end in (low, high))
     return f" (95 % interval {ends}{' %' if relative else ''})"
 
 
-def _margin(row: pd.Series, check: dict[str, Any]) -> str:
+def _margin(row: pd.Series, check: Check) -> str:
     """The limit within which a difference does not count, and who chose it."""
     if pd.isna(row["margin"]):
         return ""
-    printed = isinstance(check.get("margin"), dict)
+    printed = isinstance(check, OfRuns) and isinstance(check.least_margin, PublishedMargin)
     origin = "our choice, and not more than the printed difference" if printed else "our choice"
     return f"; differences below {_amount(row['margin'], row, check)} do not count ({origin})"
 
 
-def _seconds(check: dict[str, Any], row: pd.Series) -> str:
-    return "judged on counted work, because seconds differ from machine to machine" if check.get("work") else ""
+def _seconds(check: Check, row: pd.Series) -> str:
+    return (
+        "judged on counted work, because seconds differ from machine to machine" if isinstance(check, OfRuns) and check.counted_work else ""
+    )

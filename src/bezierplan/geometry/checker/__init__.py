@@ -31,11 +31,21 @@ _FULL_RANGE_DEGREE = 32
 class Check(NamedTuple):
     """The verdict on a path.
 
-    feasible: it does not enter the blocked region. collision_at: number of the piece plus the parameter within it of the first collision;
-    nan when free. depth: largest depth in the blocked region, in units; 0 when free, and where a path cuts a closed corner. Depth is the
-    distance to free space; where discs overlap or extend beyond the border it is the largest of their depths, a lower bound. clearance:
-    minimum distance to the blocked region, in units; 0 when colliding. tolerance: proven error, in units, of `clearance` when free, of
-    `depth` when colliding. intervals: number of parameter intervals that the verdict required.
+    Attributes
+    ----------
+    feasible : bool
+        Whether it does not enter the blocked region.
+    collision_at : float
+        Number of the piece plus the parameter within it of the first collision; nan when free.
+    depth : float
+        Largest depth in the blocked region, in units: the distance to free space; where discs overlap or extend beyond the border, the
+        largest of their depths, a lower bound. 0 when free, and where a path cuts a closed corner.
+    clearance : float
+        Least distance to the blocked region, in units; 0 when colliding.
+    tolerance : float
+        Proven error, in units, of `clearance` when free, of `depth` when colliding.
+    intervals : int
+        Number of parameter intervals that the verdict required.
     """
 
     feasible: bool
@@ -47,17 +57,36 @@ class Check(NamedTuple):
 
 
 def check(pieces: np.ndarray, region: Region, corner_cutting: Literal["open", "closed"] = "open") -> Check:
-    """Check a path of Bezier pieces (pieces, degree + 1, 2), in the region's unit, each beginning where the previous one ends.
+    """Check a path of Bezier pieces.
 
-    corner_cutting: whether a path may pass between two occupied cells that share only a corner; touching the corner is always allowed. Only
-    matters on grids.
+    Parameters
+    ----------
+    pieces : (pieces, degree + 1, 2) array
+        Control points, in the region's unit; each piece begins where the previous one ends.
+    region : Region
+        The blocked region of a workspace (`region.region`).
+    corner_cutting : {'open', 'closed'}
+        Whether a path may pass between two occupied cells that share only a corner; touching the corner is always allowed. Only matters on
+        grids.
 
+    Returns
+    -------
+    Check
+        The verdict.
+
+    Raises
+    ------
+    ValueError
+        For coordinates that are not finite or beyond 1e5, or 1e5 x 32 / degree for a degree above 32; for a degree above 60; and for an
+        unknown corner-cutting rule.
+
+    Notes
+    -----
     A path deeper than 4e-9 is never called free, and one no deeper than 1e-9 never colliding; in between, either verdict is possible. At
     the tip of a notch between polygons that is sharper than 60 degrees, 4e-9 becomes 2e-9 divided by the sine of half its angle.
 
-    Raises ValueError for coordinates that are not finite or beyond 1e5, or 1e5 x 32 / degree for a degree above 32; for a degree above 60;
-    and for an unknown corner-cutting rule.
-
+    Examples
+    --------
     A straight line runs into an obstacle, a parabola goes around it:
 
     >>> from bezierplan.geometry.region import region

@@ -21,16 +21,33 @@ __all__ = ["Bound", "centre_path", "lattice_path", "least_length", "shortest_pat
 
 
 def shortest_path(problem: Problem, corner_cutting: Literal["open", "closed"] = "open") -> Bound:
-    """The shortest path from start to target; no path if one of them is blocked.
+    """The shortest path from start to target.
 
-    corner_cutting: whether it may pass between two occupied cells that share only a corner; only matters on grids.
+    Parameters
+    ----------
+    problem : Problem
+        The workspace with both ends.
+    corner_cutting : {'open', 'closed'}
+        Whether it may pass between two occupied cells that share only a corner; only matters on grids.
 
+    Returns
+    -------
+    Bound
+        No path if start or target is blocked.
+
+    Raises
+    ------
+    ValueError
+        For an unknown corner-cutting rule, and for the rule `closed` on a grid with more than `grid.MOST_NODES` corners.
+
+    Notes
+    -----
     On a grid the visibility of start and target is decided for the nearest points of a lattice: coordinates that are not fractions of a
     cell with a common denominator of at most 2**20 are off by up to 5e-7 cells in that test. Lengths are those of the points themselves.
     Around circles the length is a sum of closed forms, and the polyline is up to `circles.POLYLINE_EXCESS` longer.
 
-    Raises ValueError for an unknown corner-cutting rule, and for the rule `closed` on a grid with more than `grid.MOST_NODES` corners.
-
+    Examples
+    --------
     Around two occupied cells, by their upper left corner:
 
     >>> from bezierplan.workspaces.grid import from_lines
@@ -55,6 +72,18 @@ def shortest_path(problem: Problem, corner_cutting: Literal["open", "closed"] = 
 def least_length(bound: Bound) -> float:
     """The minimum length of any path that the certified check calls free.
 
+    Parameters
+    ----------
+    bound : Bound
+        The shortest path.
+
+    Returns
+    -------
+    float
+        Its length less an allowance, in the problem's unit.
+
+    Notes
+    -----
     Such a path may be a few 1e-9 deep and cut its bends by as much; the allowance is a relative 1e-9 plus 1e-8 per radian of turning.
     Obstacles that are sharper than a right angle and gaps below 1e-7 can allow more.
     """

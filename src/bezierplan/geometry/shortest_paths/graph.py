@@ -17,8 +17,12 @@ NO_LENGTH = 1e-300
 class Bound(NamedTuple):
     """A shortest path.
 
-    length: in the problem's unit, infinite if there is no path. points: (n, 2) a polyline along it from start to target, (0, 2) if there
-    is no path.
+    Attributes
+    ----------
+    length : float
+        In the problem's unit; infinite if there is no path.
+    points : (n, 2) array
+        A polyline along it from start to target; (0, 2) if there is no path.
     """
 
     length: float

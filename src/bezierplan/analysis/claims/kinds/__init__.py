@@ -9,7 +9,7 @@ Every file has `Options`, the keys that a check of this kind may have. A kind th
 | `find(check, comparison, name)` | the `effects.Finding` of a comparison; all random draws are seeded by the name |
 
 and any other kind `findings(check, claim, material)`: condition, name and finding of each comparison; it raises `Untestable` if there is
-nothing to judge. A check is a mapping, as written in claims.yaml. All p are two-sided and all intervals 95 %, by bootstrap over units
+nothing to judge. A check is an instance of its kind's `Options`. All p are two-sided and all intervals 95 %, by bootstrap over units
 within each condition; above `statistics.MOST_RESAMPLED` units by its normal approximation.
 
 Options are read at every start of the workflow, so these files import scipy and pandas inside the functions that need them.
@@ -17,13 +17,14 @@ Options are read at every start of the workflow, so these files import scipy and
 
 import importlib
 import itertools
-from collections.abc import Iterable, Mapping
+import math
+from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 from types import ModuleType
-from typing import Annotated, Any, ClassVar, Literal
+from typing import Annotated, Any, ClassVar, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, PrivateAttr, model_validator
 
 from bezierplan.schema.model import (
     LONGEST_LINE,
@@ -34,7 +35,6 @@ from bezierplan.schema.model import (
     Model,
     Positive,
     Where,
-    defaults,
     is_line,
     is_number,
     listed,
@@ -88,12 +88,6 @@ FAILURES = (
 GROUP_KEYS = ("groups", "than", "pairs", "order")
 
 
-def named_groups(check: Mapping[str, Any]) -> list:
-    """All groups that a check names."""
-    lists = [each if isinstance(each, list) else [each] for key in GROUP_KEYS for each in check.get(key) or []]
-    return list(itertools.chain.from_iterable(lists))
-
-
 class Check(Model):
     """A check of any kind, with defaults for keys that other modules ask for.
 
@@ -107,15 +101,57 @@ class Check(Model):
 
     test: Line = Field(description="the name of a file in `src/bezierplan/analysis/claims/kinds`")
 
+    _reported: bool = PrivateAttr(False)
+
+    def _asked(self, key: str) -> Any:
+        """The value of a key that only some kinds have: as written, or its default; None for a kind without it."""
+        return getattr(self, key) if key in type(self).model_fields else None
+
     @property
     def primary(self) -> bool:
         """Whether it counts for the verdict."""
-        return not getattr(self, "secondary", None)
+        return not (self._reported or self._asked("secondary"))
+
+    def reported(self) -> Self:
+        """The same check as one that is only shown."""
+        check = self.but()
+        check._reported = True
+        return check
+
+    @property
+    def measured(self) -> str:
+        """The metric that it is about; empty if there is none."""
+        return self._asked("metric") or ""
+
+    @property
+    def effect_in(self) -> str:
+        """The unit of its effect, if the check states it; empty where it follows from the metric."""
+        return self._asked("effect_unit") or ""
+
+    @property
+    def statistic_written(self) -> str:
+        """The statistic, if one is written."""
+        return self._asked("statistic") if "statistic" in self.model_fields_set else ""
+
+    @property
+    def statistic_shown(self) -> str:
+        """The statistic that is compared; empty for a kind without a choice."""
+        return self._asked("statistic") or "rank" if "statistic" in type(self).model_fields else ""
+
+    @property
+    def relative(self) -> bool:
+        """Whether effects are relative to the value of the other group."""
+        return self._asked("scale") == "relative"
+
+    @property
+    def claimed_difference(self) -> float:
+        """The difference that the sentence claims."""
+        return self._asked("target") or 0
 
     @property
     def experiments(self) -> list[str]:
         """Experiments whose runs are judged."""
-        return one_or_list(getattr(self, "experiment", None) or [])
+        return one_or_list(self._asked("experiment") or [])
 
     @property
     def cells(self) -> str | None:
@@ -125,7 +161,8 @@ class Check(Model):
     @property
     def groups_named(self) -> list:
         """All groups that the check names."""
-        return named_groups({key: getattr(self, key, None) for key in GROUP_KEYS})
+        lists = [one_or_list(each) for key in GROUP_KEYS for each in self._asked(key) or []]
+        return list(itertools.chain.from_iterable(lists))
 
 
 def with_itself(pairs: Iterable[tuple[Any, Any]], key: str) -> None:
@@ -136,7 +173,7 @@ def with_itself(pairs: Iterable[tuple[Any, Any]], key: str) -> None:
 
 
 class OfRuns(Check):
-    """Checks of runs."""
+    """Checks of runs. What only some kinds have is neutral in the others: no groups pooled, no least effect, failed runs dropped."""
 
     experiment: listed(Experiment, least=2, single=True) = Field(description=EXPERIMENT)
     metric: Metric = Field(description="the name of a metric")
@@ -156,6 +193,79 @@ class OfRuns(Check):
                 owners[column] = key
         return self
 
+    _printed_metric: str = PrivateAttr("")
+
+    @property
+    def printed_metric(self) -> str:
+        """The metric of the printed numbers: seconds, where counted work is judged in their place."""
+        return self._printed_metric or self.metric
+
+    @property
+    def judges_work(self) -> bool:
+        """Whether counted work is judged in place of seconds."""
+        return bool(self._printed_metric)
+
+    @property
+    def counted_work(self) -> str | None:
+        """The metric that is judged in place of seconds."""
+        return self._asked("work")
+
+    def of_work(self) -> Self:
+        """The check of counted work in place of seconds."""
+        check = self.but(metric=self.counted_work)
+        check._printed_metric = self.metric
+        return check
+
+    @property
+    def statistic_named(self) -> str | None:
+        """The statistic that is compared, or rank; None if the kind decides."""
+        return self._asked("statistic")
+
+    @property
+    def least_margin(self) -> float | PublishedMargin:
+        """The smallest effect that matters; not a number for a kind without one."""
+        return math.nan if (margin := self._asked("margin")) is None else margin
+
+    @property
+    def least_claimed(self) -> float:
+        """The least effect that the sentence claims."""
+        return self._asked("least") or 0
+
+    @property
+    def side(self) -> str | None:
+        """How groups compare by the sentence; None if it does not say."""
+        return self._asked("direction")
+
+    @property
+    def pooled(self) -> list[str]:
+        """Columns whose values are averaged."""
+        return self._asked("pool") or []
+
+    @property
+    def is_together(self) -> bool:
+        """Whether the comparisons at one place make one mark."""
+        return bool(self._asked("together"))
+
+    @property
+    def pairs_units(self) -> bool | None:
+        """Whether equal units are compared with each other; None: as the experiment is drawn."""
+        return self._asked("paired")
+
+    @property
+    def failed_runs(self) -> str:
+        """What a run without a feasible path counts."""
+        return self._asked("failures") or "drop"
+
+    @property
+    def limit(self) -> tuple[str, float] | None:
+        """The event whose share is taken, such as `below` and a number, if it is not the metric itself."""
+        return event.limit if (event := self._asked("event")) else None
+
+    @property
+    def picks(self) -> dict[str, str] | None:
+        """The one run of each condition and method that is judged, as `results.pick` takes it; None: all."""
+        return pick.plain() if (pick := self._asked("pick")) else None
+
 
 class Comparing(OfRuns):
     """Checks that compare groups."""
@@ -167,25 +277,14 @@ class Comparing(OfRuns):
     margin: Margin = Field(description=MARGIN)
 
 
-def kind_of(check: Mapping[str, Any]) -> ModuleType:
+def kind_of(check: Check) -> ModuleType:
     """The file of a check's kind of test."""
-    return importlib.import_module(f"{__name__}.{check['test']}")
+    return importlib.import_module(f"{__name__}.{check.test}")
 
 
-def cell_column(check: Mapping[str, Any]) -> str | None:
-    """The column whose values are the cells; None for a kind with one cell."""
-    key = kind_of(check).Options.cells_key
-    return option(check, key) if key else None
-
-
-def option(check: Mapping[str, Any], key: str) -> Any:
-    """The value of a key of a check: as written, or the default of its kind of test; None if there is neither."""
-    return check[key] if key in check else _defaults(check["test"]).get(key)
-
-
-@cache
-def _defaults(test: str) -> dict[str, Any]:
-    return defaults(kinds()[test])
+def check_of(given: dict[str, Any]) -> Check:
+    """The check of a job, from its plain values."""
+    return kinds()[given["test"]].model_validate(given)
 
 
 @cache

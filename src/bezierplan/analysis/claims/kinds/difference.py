@@ -28,7 +28,7 @@ from bezierplan.analysis.claims.effects import (
     too_few,
     units,
 )
-from bezierplan.analysis.claims.kinds import PAIRED, SECONDARY, Comparing, Group, lower, option
+from bezierplan.analysis.claims.kinds import PAIRED, SECONDARY, Comparing, Group, lower
 from bezierplan.schema.model import Flag, listed
 
 if TYPE_CHECKING:
@@ -43,26 +43,32 @@ class Options(Comparing):
     groups: listed(Group, least=2) = Field(description="a list of at least two values of the column `across`")
 
 
-def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
+def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
     """All groups as the cells of one comparison."""
-    yield ", ".join(map(str, check["groups"])), check["groups"]
+    yield ", ".join(map(str, check.groups)), check.groups
 
 
-def _range(check: dict, points: np.ndarray, cells: tuple) -> np.ndarray:
+def _range(check: Options, points: np.ndarray, cells: tuple) -> np.ndarray:
     """The range of more than two groups, relative to their mean if so asked; the difference of two."""
     if len(cells) == 2:
         return BETWEEN_GROUPS.of(check, points, cells)
-    return np.ptp(points, axis=-1) / (points.mean(axis=-1) if option(check, "scale") == "relative" else 1)
+    return np.ptp(points, axis=-1) / (points.mean(axis=-1) if check.relative else 1)
 
 
-def _gradient(check: dict, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
+def _gradient(check: Options, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
     return BETWEEN_GROUPS.gradient(check, ours, cells) if len(cells) == 2 else None
 
 
 EFFECT = BETWEEN_GROUPS._replace(of=_range, gradient=_gradient, claimed=lambda check, effects, margin: np.abs(effects) >= margin)
 
 
-def find(check: dict, comparison: Comparison, name: str) -> Finding:
+def _of_pair(check: Options) -> lower.Options:
+    """Whether the first of two groups is higher than the second, as a check."""
+    same = {key: getattr(check, key) for key in Comparing.model_fields if key != "test"}
+    return lower.Options.model_construct(test="lower", pairs=[check.groups], direction="higher", paired=check.paired, **same)
+
+
+def find(check: Options, comparison: Comparison, name: str) -> Finding:
     """Test whether the cells differ at all."""
     from scipy import stats
 
@@ -71,7 +77,7 @@ def find(check: dict, comparison: Comparison, name: str) -> Finding:
     if reason:
         return Finding(effect=ours, n=n, mark="?", reason=reason)
     if len(comparison.cells) == 2:
-        found = lower.find(check | {"direction": "higher"}, comparison, name)
+        found = lower.find(_of_pair(check), comparison, name)
         return found._replace(toward=abs(found.toward))
     (stratum,) = comparison.strata.values()
     groups = counted(stratum, comparison.paired)

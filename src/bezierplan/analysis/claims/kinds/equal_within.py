@@ -30,7 +30,7 @@ from bezierplan.analysis.claims.effects import (
     units,
     why_none,
 )
-from bezierplan.analysis.claims.kinds import GROUPS, POOL, SECONDARY, THAN, Columns, Comparing, Groups, option, with_itself
+from bezierplan.analysis.claims.kinds import GROUPS, POOL, SECONDARY, THAN, Columns, Comparing, Groups, with_itself
 from bezierplan.analysis.statistics import WITHOUT_INTERVAL
 from bezierplan.schema.model import Number
 
@@ -56,20 +56,20 @@ class Options(Comparing):
         return self
 
 
-def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
+def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
     """Each group paired with each of the others."""
-    return pairs_in_words(itertools.product(check["groups"], check["than"]), "as")
+    return pairs_in_words(itertools.product(check.groups, check.than), "as")
 
 
-def claimed(check: dict, effects: np.ndarray, margin: float) -> np.ndarray:
+def claimed(check: Options, effects: np.ndarray, margin: float) -> np.ndarray:
     """Whether the effect, less the target, lies within the margin."""
-    return np.abs(effects - option(check, "target")) <= margin
+    return np.abs(effects - check.target) <= margin
 
 
 EFFECT = BETWEEN_GROUPS._replace(claimed=claimed)
 
 
-def find(check: dict, comparison: Comparison, name: str) -> Finding:
+def find(check: Options, comparison: Comparison, name: str) -> Finding:
     """Two one-sided tests of whether two cells' difference, less the target, lies within the margin; p of being outside where it is."""
     ours = float(effect(check, points(comparison, point_statistic(check)), comparison.cells))
     n, reason = units(comparison), too_few(comparison)
@@ -81,11 +81,11 @@ def find(check: dict, comparison: Comparison, name: str) -> Finding:
     draws = drawn_effects(check, comparison, name)
     low, high = interval(draws)
     toward = 1 if bool(claimed(check, ours, margin)) else -1
-    beyond = draws - option(check, "target")
+    beyond = draws - check.target
     if math.isnan(low):
         p = math.nan
     elif toward > 0:
         p = float(max(np.mean(beyond <= -margin), np.mean(beyond >= margin)))
     else:
-        p = min(1.0, 2 * float(np.mean(beyond <= margin) if ours > option(check, "target") else np.mean(beyond >= -margin)))
+        p = min(1.0, 2 * float(np.mean(beyond <= margin) if ours > check.target else np.mean(beyond >= -margin)))
     return Finding(ours, "difference", ours, low, high, n, p, toward, margin, reason=why_none(ours))

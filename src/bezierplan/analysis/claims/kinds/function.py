@@ -7,14 +7,18 @@ the effect, its 95 % interval or None, and the number of units.
 from __future__ import annotations
 
 import math
+from typing import TYPE_CHECKING
 
 from pydantic import Field
 
 from bezierplan.analysis.claims.effects import Finding
-from bezierplan.analysis.claims.kinds import EXPERIMENT, Check, option
+from bezierplan.analysis.claims.kinds import EXPERIMENT, Check
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.schema.checked import Fault, closest
-from bezierplan.schema.model import ARGUMENTS, Arguments, Experiment, Function, Line, Metric, Where, listed, one_or_list
+from bezierplan.schema.model import ARGUMENTS, Arguments, Experiment, Function, Line, Metric, Where, listed
+
+if TYPE_CHECKING:
+    from bezierplan.analysis.claims.claim import Claim
 
 
 class Options(Check):
@@ -29,14 +33,14 @@ class Options(Check):
     where: Where = Field({}, description="column of the runs table → value or list of values", min_length=1)
 
 
-def findings(check: dict, claim: dict, material: Material) -> list[tuple[str, str, Finding]]:
+def findings(check: Options, claim: Claim, material: Material) -> list[tuple[str, str, Finding]]:
     """The function's finding. Raises Untestable if the experiment was not run, Fault if there is no function of that name."""
-    for experiment in one_or_list(option(check, "experiment") or []):
+    for experiment in check.experiments:
         if experiment not in material.results:
             raise Untestable(f"the experiment {experiment} was not run")
-    if check["name"] not in material.functions:
-        raise Fault(f"claim {claim['id']}: function {check['name']}: unknown{closest(check['name'], material.functions)}")
-    given = check | {"where": option(check, "where")}, material.results, material.published
-    mark, effect, interval, n = material.functions[check["name"]](*given, **option(check, "arguments"))
+    if check.name not in material.functions:
+        raise Fault(f"claim {claim.id}: function {check.name}: unknown{closest(check.name, material.functions)}")
+    function = material.functions[check.name]
+    mark, effect, interval, n = function(check, material.results, material.published, **check.arguments)
     low, high = interval or (math.nan, math.nan)
-    return [("", check["name"], Finding(effect, check["effect"], effect, low, high, n, mark=mark))]
+    return [("", check.name, Finding(effect, check.effect, effect, low, high, n, mark=mark))]

@@ -59,7 +59,7 @@ from bezierplan.analysis.claims.kinds import (
     Comparing,
     Group,
     Groups,
-    option,
+    OfRuns,
     with_itself,
 )
 from bezierplan.analysis.claims.ranks import rank_test, wins
@@ -100,13 +100,13 @@ class Options(Comparing):
         return self
 
 
-def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
+def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
     """Each pair, or each group paired with each of the others."""
-    pairs = check["pairs"] if "pairs" in check else itertools.product(check["groups"], check["than"])
-    return pairs_in_words(pairs, f"{check['direction']} than")
+    pairs = check.pairs or itertools.product(check.groups, check.than)
+    return pairs_in_words(pairs, f"{check.direction} than")
 
 
-def find(check: dict, comparison: Comparison, name: str) -> Finding:
+def find(check: OfRuns, comparison: Comparison, name: str) -> Finding:
     """Test whether the first cell is lower (higher) than the second."""
     ours = float(effect(check, points(comparison, point_statistic(check)), comparison.cells))
     n, reason = units(comparison), too_few(comparison)
@@ -115,17 +115,17 @@ def find(check: dict, comparison: Comparison, name: str) -> Finding:
     if point_statistic(check) in WITHOUT_INTERVAL:
         found = by_draws(check, comparison, name)
         return found if abs(ours) >= found.margin else found._replace(mark="?")
-    side, least = SIDES[check["direction"]], option(check, "least") or 0
+    side, least = SIDES[check.side], check.least_claimed
     margin = margin_of(check, comparison)
     draws = drawn_effects(check, comparison, name)
     low, high = interval(draws)
     toward = np.sign(side * ours - least)
-    if "least" not in check and abs(ours) < margin:
+    if not least and abs(ours) < margin:
         toward = 0
     (stratum, *others) = comparison.strata.values()
     group, other = counted(stratum, comparison.paired)
-    named = option(check, "statistic")
-    if others or named not in (None, "rank", "mean") or (comparison.boolean and "least" in check):
+    named = check.statistic_named
+    if others or named not in (None, "rank", "mean") or (comparison.boolean and least):
         p = two_sided(side * draws - least)
     elif comparison.boolean:
         p = _boolean_test(group, other, comparison.paired)
@@ -156,13 +156,13 @@ def _t_test(group: np.ndarray, other: np.ndarray, paired: bool) -> float:
     return float(test.pvalue)
 
 
-def _shifted(check: dict, group: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _shifted(check: OfRuns, group: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Values of both groups, the other's shifted by the claimed least effect; infinite ones replaced by a value beyond any difference."""
     finite = np.concatenate([values[np.isfinite(values)] for values in (group, other)])
     worst = finite.max() + 2 * np.ptp(finite) + 1
     group, other = (np.where(np.isinf(values), worst, values) for values in (group, other))
-    move = SIDES[check["direction"]] * (option(check, "least") or 0)
-    return group, other * (1 + move) if option(check, "scale") == "relative" else other + move
+    move = SIDES[check.side] * check.least_claimed
+    return group, other * (1 + move) if check.relative else other + move
 
 
 def _boolean_test(group: np.ndarray, other: np.ndarray, paired: bool) -> float:
@@ -179,7 +179,7 @@ def _contingency(group: np.ndarray, other: np.ndarray) -> list[list[int]]:
     return [[int(values.sum()), int(len(values) - values.sum())] for values in (group, other)]
 
 
-def _effect_size(check: dict, comparison: Comparison, side: int, ours: float) -> tuple[str, float]:
+def _effect_size(check: OfRuns, comparison: Comparison, side: int, ours: float) -> tuple[str, float]:
     """Name and value: odds ratio of booleans; A12, the share of pairs won in the claimed direction; or the difference itself."""
     pairs = [counted(stratum, comparison.paired) for stratum in comparison.strata.values()]
     if comparison.boolean and len(pairs) == 1:

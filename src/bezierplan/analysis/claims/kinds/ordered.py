@@ -39,8 +39,8 @@ class Options(Comparing):
         return self
 
 
-def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
+def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
     """Each group paired with each of the next tier."""
-    tiers = itertools.pairwise(check["order"])
+    tiers = itertools.pairwise(check.order)
     pairs = itertools.chain.from_iterable(itertools.product(better, worse) for better, worse in tiers)
-    return pairs_in_words(pairs, f"{check['direction']} than")
+    return pairs_in_words(pairs, f"{check.direction} than")

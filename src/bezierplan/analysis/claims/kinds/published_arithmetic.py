@@ -16,6 +16,8 @@ from bezierplan.schema.model import Number, Values, mapping_or, one_or_list, wro
 if TYPE_CHECKING:
     import pandas as pd
 
+    from bezierplan.analysis.claims.claim import Claim
+
 Selected = dict[str, Values]
 
 # Columns of published files that do not distinguish cells.
@@ -47,15 +49,15 @@ class Options(Check):
         return self
 
 
-def findings(check: dict, claim: dict, material: Material) -> list[tuple[str, str, Finding]]:
+def findings(check: Options, claim: Claim, material: Material) -> list[tuple[str, str, Finding]]:
     """One finding per cell. Raises Untestable if a printed cell is empty."""
     computed = arithmetic(check, material.published)
     if empty := [finding.reason for _, finding in computed if finding.mark == "?"]:
         raise Untestable(empty[0])
-    return [(condition, check["form"], finding) for condition, finding in computed]
+    return [(condition, check.form, finding) for condition, finding in computed]
 
 
-def arithmetic(check: dict, published: dict[str, pd.DataFrame]) -> list[tuple[str, Finding]]:
+def arithmetic(check: Options, published: dict[str, pd.DataFrame]) -> list[tuple[str, Finding]]:
     """Test whether printed numbers agree. One finding for each cell of the first selector, with the cell's name.
 
     `difference`: the second minus the first; `increase_percent`: of the second over the first; `equal`: the first alone. Cells of several
@@ -64,7 +66,7 @@ def arithmetic(check: dict, published: dict[str, pd.DataFrame]) -> list[tuple[st
     """
     import pandas as pd
 
-    selectors = [*check["of"], *([check["equals"]] if isinstance(check["equals"], dict) else [])]
+    selectors = [*check.of, *([check.equals] if isinstance(check.equals, dict) else [])]
     named = {column for selector in selectors for column in selector}
     cells = _selected(published, selectors[0])
     columns = ["value"]
@@ -93,12 +95,12 @@ def _selected(published: dict[str, pd.DataFrame], selector: dict) -> pd.DataFram
     return rows
 
 
-def _computed(check: dict, numbers: list[float]) -> Finding:
+def _computed(check: Options, numbers: list[float]) -> Finding:
     """One comparison of printed numbers: those of `of`, and that of `equals` if it is one."""
     if any(map(math.isnan, numbers)):
         return Finding(mark="?", reason="a printed cell is empty")
-    wanted = numbers.pop() if isinstance(check["equals"], dict) else float(check["equals"])
-    match check["form"]:
+    wanted = numbers.pop() if isinstance(check.equals, dict) else float(check.equals)
+    match check.form:
         case "difference":
             computed = numbers[1] - numbers[0]
         case "increase_percent":
@@ -106,7 +108,7 @@ def _computed(check: dict, numbers: list[float]) -> Finding:
         case "equal":
             computed = numbers[0]
     # The larger number of digits of two printed numbers, because a trailing zero is lost on reading.
-    digits = max(map(_decimals, [wanted, computed] if check["form"] == "equal" else [wanted]))
+    digits = max(map(_decimals, [wanted, computed] if check.form == "equal" else [wanted]))
     fits = abs(computed - wanted) <= 0.5 * 10.0**-digits * (1 + 1e-9)
     return Finding(computed, "printed", wanted, mark="+" if fits else "-")
 

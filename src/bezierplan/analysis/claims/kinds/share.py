@@ -43,6 +43,12 @@ class Event(Model):
             raise wrong(f"{len(self.model_fields_set)} keys; expected one of below, above, at_most, at_least, equals")
         return self
 
+    @property
+    def limit(self) -> tuple[str, float]:
+        """How a value lies to which number."""
+        (word,) = self.model_fields_set
+        return word, getattr(self, word)
+
 
 class Options(OfRuns):
     """Keys of a check."""
@@ -67,28 +73,27 @@ class Options(OfRuns):
         return self
 
 
-def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
+def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
     """One cell, of all runs."""
-    words = [word for limit in check.get("event", {}).items() for word in limit]
-    yield " ".join(map(str, [*words, "in", *([check["direction"]] if "direction" in check else []), check["threshold"]])), [""]
+    yield " ".join(map(str, [*(check.limit or ()), "in", *([check.direction] if check.direction else []), check.threshold])), [""]
 
 
-def claimed(check: dict, effects: np.ndarray, margin: float) -> np.ndarray:
+def claimed(check: Options, effects: np.ndarray, margin: float) -> np.ndarray:
     """Whether the share is on the claimed side of the threshold."""
-    match check["threshold"]:
+    match check.threshold:
         case "all":
             return effects == 1
         case "none":
             return effects == 0
         case "some":
             return effects > 0
-    return SIDES[check["direction"]] * (effects - check["threshold"]) >= 0
+    return SIDES[check.direction] * (effects - check.threshold) >= 0
 
 
 EFFECT = Effect(lambda check, points, cells: points[..., 0], lambda check, ours, cells: np.ones(1), claimed, reference=0, statistic="share")
 
 
-def find(check: dict, comparison: Comparison, name: str) -> Finding:
+def find(check: Options, comparison: Comparison, name: str) -> Finding:
     """Test the share of units in which the event happens."""
     from scipy import stats
 
@@ -98,23 +103,23 @@ def find(check: dict, comparison: Comparison, name: str) -> Finding:
         return Finding(mark="?", reason="no run counts")
     found = Finding(k / n, "share", k / n, n=n)
     holds = bool(claimed(check, np.array(k / n), math.nan))
-    if "pick" in check:
+    if check.pick:
         return found._replace(mark="+" if holds else "-")
     exact = stats.binomtest(k, n).proportion_ci(method="exact")
     found = found._replace(low=float(exact.low), high=float(exact.high))
-    if isinstance(check["threshold"], str):
+    if isinstance(check.threshold, str):
         # For `some`, one example decides and many misses are needed to refute it; for `all` and `none` it is the other way round.
-        decided = holds == (check["threshold"] == "some") or n >= LEAST_WITHOUT_EXAMPLE
+        decided = holds == (check.threshold == "some") or n >= LEAST_WITHOUT_EXAMPLE
         mark = ("+" if holds else "-") if decided else "?"
         return found._replace(mark=mark, reason="" if decided else f"fewer than {LEAST_WITHOUT_EXAMPLE} runs")
     if n < LEAST_RUNS:
         return found._replace(mark="?", reason=f"fewer than {LEAST_RUNS} units")
-    threshold = check["threshold"]
+    threshold = check.threshold
     if len(comparison.strata) >= LEAST_RUNS:
-        return _share_of_conditions(found, comparison, threshold, SIDES[check["direction"]])
+        return _share_of_conditions(found, comparison, threshold, SIDES[check.direction])
     # Twice the smaller tail, the test that corresponds to the Clopper-Pearson interval.
     p = min(1.0, 2 * float(min(stats.binom.cdf(k, n, threshold), stats.binom.sf(k - 1, n, threshold))))
-    return found._replace(p=p, toward=int(np.sign(SIDES[check["direction"]] * (k / n - threshold))))
+    return found._replace(p=p, toward=int(np.sign(SIDES[check.direction] * (k / n - threshold))))
 
 
 def _share_of_conditions(found: Finding, comparison: Comparison, threshold: float, side: int) -> Finding:

@@ -32,7 +32,7 @@ from bezierplan.analysis.claims.effects import (
     two_sided,
     why_none,
 )
-from bezierplan.analysis.claims.kinds import MARGIN, PAIRED, SCALE, WORK, Margin, OfRuns, option
+from bezierplan.analysis.claims.kinds import MARGIN, PAIRED, SCALE, WORK, Margin, OfRuns
 from bezierplan.analysis.claims.ranks import signed_rank_test
 from bezierplan.analysis.statistics import LEAST_RUNS, MOST_RESAMPLED
 from bezierplan.schema.model import Flag, Metric, NumberColumn
@@ -56,9 +56,9 @@ class Options(OfRuns):
     work: Metric = Field(None, description=WORK)
 
 
-def cells(check: dict, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
+def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
     """All values of x, rising."""
-    yield f"{check['x']} {check['direction']}", sorted(rows[check["x"]].dropna().unique())
+    yield f"{check.x} {check.direction}", sorted(rows[check.x].dropna().unique())
 
 
 # Decimals of a slope as a share of the steepest.
@@ -71,21 +71,21 @@ def _weights(x: np.ndarray) -> np.ndarray:
     return from_mean / (from_mean**2).sum() * np.ptp(x)
 
 
-def _change(check: dict, points: np.ndarray, cells: tuple) -> np.ndarray:
+def _change(check: Options, points: np.ndarray, cells: tuple) -> np.ndarray:
     """The change from the lowest x to the highest; if relative, as a share of the value at the lowest."""
     change = points @ _weights(np.array(cells, dtype=float))
-    return change / points[..., 0] if option(check, "scale") == "relative" else change
+    return change / points[..., 0] if check.relative else change
 
 
-def _gradient(check: dict, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
-    reference = ours[0] if option(check, "scale") == "relative" else 1.0
+def _gradient(check: Options, ours: np.ndarray, cells: tuple) -> np.ndarray | None:
+    reference = ours[0] if check.relative else 1.0
     return _weights(np.array(cells, dtype=float)) / reference if reference else None
 
 
 EFFECT = Effect(_change, _gradient, on_claimed_side, reference=0)
 
 
-def find(check: dict, comparison: Comparison, name: str) -> Finding:
+def find(check: Options, comparison: Comparison, name: str) -> Finding:
     """Test whether a metric changes with x as claimed."""
     from scipy import stats
 
@@ -94,14 +94,14 @@ def find(check: dict, comparison: Comparison, name: str) -> Finding:
     slopes = _slopes(x, stratum)
     n, statistic = len(slopes), point_statistic(check)
     if n < LEAST_RUNS:
-        return Finding(n=n, mark="?", reason=f"fewer than {LEAST_RUNS} units with at least 3 values of {check['x']}")
+        return Finding(n=n, mark="?", reason=f"fewer than {LEAST_RUNS} units with at least 3 values of {check.x}")
     # A unit counts wherever it has a value, even if not at every x.
     each = comparison._replace(paired=False)
     ours = points(each, statistic)
     if statistic == "mean":
         slope = float(slopes.mean())
         changes = slopes * np.ptp(x)
-        if option(check, "scale") == "relative":
+        if check.relative:
             changes = changes / ours[0] if ours[0] else np.full(n, np.nan)
         change = float(changes.mean())
         if n > MOST_RESAMPLED:
@@ -120,7 +120,7 @@ def find(check: dict, comparison: Comparison, name: str) -> Finding:
     linear = known.sum() >= 3 and np.ptp(ours[known]) > 0
     return Finding(
         *(change, "slope", slope, low, high, n, p),
-        toward=0 if abs(change) < margin else int(np.sign(SIDES[check["direction"]] * np.nan_to_num(change))),
+        toward=0 if abs(change) < margin else int(np.sign(SIDES[check.direction] * np.nan_to_num(change))),
         margin=margin,
         negligible=is_negligible(low, high, margin, n),
         least_detectable=least_detectable(low, high, n),

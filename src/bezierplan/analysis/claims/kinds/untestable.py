@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from typing import NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 from pydantic import Field
 
 from bezierplan.analysis.claims.kinds import Check
 from bezierplan.analysis.claims.material import Material, Untestable
 from bezierplan.schema.model import Line
+
+if TYPE_CHECKING:
+    from bezierplan.analysis.claims.claim import Claim
 
 
 class Options(Check):
@@ -17,6 +20,6 @@ class Options(Check):
     reason: Line = Field(description="why nothing here can test it, one line")
 
 
-def findings(check: dict, claim: dict, material: Material) -> NoReturn:
+def findings(check: Options, claim: Claim, material: Material) -> NoReturn:
     """None. Raises Untestable with the reason."""
-    raise Untestable(check["reason"])
+    raise Untestable(check.reason)

@@ -1,0 +1,68 @@
+"""The model of a sentence of a paper: its checks, each a model of its own kind (`kinds`)."""
+
+import math
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from bezierplan.analysis.claims.kinds import Check, kinds
+from bezierplan.schema.model import Line, Model, Name, Names, Values, at_most, line, listed, matching, one_of, one_or_list, wrong
+
+MOST_CHECKS = 100
+"""Checks of one claim."""
+MOST_VARIANTS = 100
+"""Combinations of the values of a claim's variants, each a row of its own."""
+
+ClaimId = Annotated[str, matching(r"C[1-9][0-9]*", "C and a number, such as C1")]
+
+
+class Claim(Model):
+    """A sentence of the paper."""
+
+    id: ClaimId = Field(description="C and a number, such as C1")
+    place: Line = Field(description="where the paper says it")
+    statement: Annotated[str, line(160)] = Field(description="one plain sentence of at most 160 characters, in words of one's own")
+    artefact: listed(Annotated[Name, Names("artefact")], least=2, single=True) = Field(
+        [],
+        description="the table or figure that shows it, or a list of them; the groups that `rest` and the metric rank range over "
+        "are theirs",
+    )
+    finding: Literal[True] = Field(None, description="true: our own finding, no sentence of the paper; left out otherwise")
+    criterion: Literal["ours"] = Field(
+        None, description="ours: the paper gives no number, and the threshold or margin that decides is ours; left out otherwise"
+    )
+    note: Line = Field(None, description="one line that is shown with the reason for the verdict")
+    holds: Literal["all", "any", "together"] = Field(
+        "all",
+        description="`all` comparisons of the primary checks (left out: this), or `any` of them; `together`: all as one "
+        "sentence, such as that one is the best, which a single comparison can refute",
+    )
+    variants: dict[str, listed(Values, least=2)] = Field(
+        {},
+        description="column → list of values: the claim is judged with the first one, and once more, in a row of its own, with each of the "
+        "others in its place",
+        min_length=1,
+    )
+    checks: Annotated[list[Annotated[Check, one_of("test", kinds())]], at_most(MOST_CHECKS)] = Field(
+        description="a list of checks, at least one of them primary", min_length=1
+    )
+
+    @model_validator(mode="after")
+    def _check_decides(self) -> "Claim":
+        if not any(check.primary for check in self.checks):
+            raise wrong("checks: every check has secondary: true; expected one that decides")
+        if math.prod(map(len, self.variants.values())) > MOST_VARIANTS:
+            raise wrong(f"variants: expected at most {MOST_VARIANTS} combinations of values")
+        for column, values in self.variants.items():
+            if len({len(one_or_list(each)) for each in values}) > 1:
+                raise wrong(f"variants: {column}: expected values, or lists of them that are equally long")
+        return self
+
+    def in_primary_variant(self) -> Self:
+        """The same claim without its other variants."""
+        return self.but(variants={column: values[:1] for column, values in self.variants.items()})
+
+    @property
+    def artefacts(self) -> list[str]:
+        """Tables and figures that show it."""
+        return one_or_list(self.artefact)

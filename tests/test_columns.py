@@ -1,0 +1,73 @@
+"""Columns of runs are declared once: rows, files, what is read and the tables in results/README.md follow."""
+
+import numpy as np
+import pyarrow as pa
+import pytest
+
+from bezierplan.planners import PLACE
+from bezierplan.running import columns, execution, problems, rows
+from bezierplan.study import keys
+from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.problem import Problem
+
+CIRCLES = Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 5.0]]), np.array([1.0]), "m")
+BLOCKED = {"blocked": Problem("blocked", CIRCLES, (1.0, 5.0), (9.0, 5.0))}
+JOB = {
+    "study": "s",
+    "experiment": "e",
+    "method": "line",
+    "planner": "straight_line",
+    "settings": {},
+    "problems": {"blocked": {"workspace": "field", "layout": 1}},
+    "vary": {},
+    "presets": {},
+    "seeds": "own",
+    "repeats": [0, 2],
+}
+
+
+def test_tables_of_columns_are_those_of_the_declarations():
+    """`python -m bezierplan.study.keys` renews them."""
+    text = keys.RESULTS_README.read_text(encoding="utf-8")
+    assert keys.renewed_columns(text) == text
+    assert all(f"<!-- columns of {name} -->" in text and f"<!-- columns of {name} of drives -->" in text for name in columns.TABLES)
+
+
+def test_a_row_has_the_declared_columns_and_no_other():
+    runs, times = execution.run_chunk(BLOCKED, JOB)
+    assert set(runs.column_names) == {*columns.PLANNED, *columns.RESULTS, "layout"}
+    assert "layout" in PLACE
+    assert rows.fault(runs.schema, *columns.TABLES["runs"].every) == ""
+    assert rows.fault(times.schema, *columns.TABLES["times"].every) == ""
+    assert rows.fault(problems.bounds_of(BLOCKED).schema, *columns.TABLES["bounds"].every) == ""
+
+
+ROW = {"id": "a", "cpu_s": 1.0, "wall_s": 2.0}
+
+
+def test_a_table_has_declared_types_whatever_its_values():
+    """Without a path, points are an empty list, and whole seconds are no integers."""
+    table = rows.table([ROW | {"cpu_s": 1, "setting": 3}, ROW], columns.Times)
+    assert [str(each.type) for each in table.schema] == ["string", "double", "double", "int64"]
+    empty = columns.Bound("a", 1.0, np.inf, np.inf, [], np.nan)._asdict()
+    assert rows.table([empty], columns.Bound).schema.field("bound_path").type == pa.list_(pa.float64())
+
+
+def test_a_table_without_a_declared_column_or_with_another_type_is_refused():
+    with pytest.raises(KeyError, match="wall_s"):
+        rows.table([ROW, {"id": "b", "cpu_s": 1.0}], columns.Times)
+    with pytest.raises((pa.ArrowInvalid, pa.ArrowTypeError)):
+        rows.table([ROW | {"cpu_s": "fast"}], columns.Times)
+
+
+def test_a_digest_does_not_depend_on_the_type_of_no_values():
+    """Files of version 1.0.0 hold lists of nothing where no run has a path."""
+    untyped = pa.table({"path_points": [[], []]})
+    assert rows.rows_digest(untyped) == rows.rows_digest(untyped.cast(pa.schema({"path_points": pa.list_(pa.float64())})))
+
+
+def test_every_column_says_what_it_means():
+    for kind in columns.TABLES.values():
+        for _, about in columns.declared(*kind.every, kind.drives).values():
+            assert about.meaning
+            assert about.unit in ("", columns.UNITS, columns.STEPS, columns.SECONDS)
