@@ -5,16 +5,16 @@ import math
 import pandas as pd
 import pytest
 
-from bezierplan.analysis import headline
+from bezierplan.analysis import comparison, headline
 
 
 def numbers(*rows):
     """rows: study, verdict, published, ours, and further columns."""
     made = [
-        {"study": study, "verdict": verdict, "value_published": printed, "value_ours": ours, **more}
+        {"study": study, "verdict": verdict, "value_published": printed, "value_ours_scaled": ours, **more}
         for study, verdict, printed, ours, more in rows
     ]
-    usual = {"statistic": "mean", "n_published": 10, "n_asked": 10, "counted": True}
+    usual = {"counted": True, "why": ""}
     return pd.DataFrame([usual | row for row in made])
 
 
@@ -61,9 +61,9 @@ def test_verdicts_that_hold_under_every_interpretation_are_counted():
     assert found.table.loc["one", "robust"] == "1 of 2"
 
 
-def test_deviation_is_relative_and_counts_are_taken_for_the_papers_number_of_runs():
-    count = {"statistic": "count", "n_published": 100, "n_asked": 4000}
-    assert headline.deviation(numbers(("one", "agrees", 5.0, 274.0, count))) == pytest.approx(0.37)
+def test_deviation_is_relative_and_of_quantities_that_the_paper_defines():
+    undefined = ("one", "inconclusive", 5.0, 50.0, {"why": comparison.UNDEFINED})
+    assert headline.deviation(numbers(("one", "agrees", 5.0, 6.85, {}), undefined)) == pytest.approx(0.37)
     assert headline.deviation(numbers(("one", "agrees", 100.0, 90.0, {}), ("one", "agrees", 0.0, 1.0, {}))) == pytest.approx(0.1)
     assert math.isnan(headline.deviation(numbers(("one", "agrees", 0.0, 1.0, {}))))
 

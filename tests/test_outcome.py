@@ -20,7 +20,15 @@ def test_readme_shows_the_outcome_that_is_kept():
 
 def comparison(values, ours, methods=("plain", "other")):
     in_range = [abs(a - b) < 1 for a, b in zip(values, ours, strict=True)]
-    frame = {"primary": True, "problem": "a", "method": methods, "metric": "length", "value_published": values, "value_ours": ours}
+    frame = {
+        "primary": True,
+        "problem": "a",
+        "method": methods,
+        "metric": "length",
+        "value_published": values,
+        "value_ours_scaled": ours,
+        "why": "",
+    }
     verdict = ["agrees" if each else "disagrees" for each in in_range]
     return pd.DataFrame(frame | {"statistic": "mean", "n_published": 10, "in_range": in_range, "verdict": verdict, "possible": True})
 

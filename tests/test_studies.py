@@ -1,6 +1,7 @@
 """What only one study needs: its functions for claims, its data for figures, and its audit; and that its files name what exists."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -155,6 +156,11 @@ def surface_of(values):
     return pd.DataFrame({"x": x.ravel(), "y": y.ravel(), "fitness": values.ravel()})
 
 
+def on_maps(where):
+    """A check on the experiment `maps`, as far as a function of the study asks it."""
+    return SimpleNamespace(experiment="maps", where=where)
+
+
 @pytest.mark.parametrize(("world", "minima", "correlation"), [("equal", 7, -0.30), ("public", 5, -0.15)])
 def test_landscape(world, minima, correlation):
     """Numbers of an independent computation; the correlation is that of `bowl_with_local_minima`."""
@@ -170,7 +176,7 @@ def test_landscape(world, minima, correlation):
     path = np.array([[(0, 0), *points, (4, 6)]], dtype=float)
     assert tharwat2018.fitness(path, problem(world), SAMPLES, BETA)[0] == pytest.approx(place["fitness"].iloc[0], rel=1e-12)
     runs = pd.DataFrame([{"planner": "chaotic_pso", "problem": world, "workspace": world, "samples": SAMPLES, "beta": BETA}])
-    check = {"experiment": "maps", "where": {"workspace": world}}
+    check = on_maps({"workspace": world})
     found = Results(runs, {world: problem(world)}, pd.DataFrame())
     mark, effect, interval, nodes = tharwat2018.bowl_with_local_minima(check, {"maps": found}, {})
     assert (mark, interval, nodes) == ("-", None, side**2)
@@ -189,9 +195,7 @@ def test_a_bowl_holds_only_with_several_minima(monkeypatch, waves, mark):
     values = np.add.outer(side**2 - waves * np.cos(3 * side), side**2)
     monkeypatch.setattr(tharwat2018, "landscape", lambda *given: surface_of(values))
     runs = pd.DataFrame([{"planner": "chaotic_pso", "problem": "p", "workspace": "p", "samples": SAMPLES, "beta": BETA}])
-    answer = tharwat2018.bowl_with_local_minima(
-        {"experiment": "maps", "where": {}}, {"maps": Results(runs, {"p": None}, pd.DataFrame())}, {}
-    )
+    answer = tharwat2018.bowl_with_local_minima(on_maps({}), {"maps": Results(runs, {"p": None}, pd.DataFrame())}, {})
     assert answer[0] == mark
     assert answer[1] > 0.5
 
@@ -225,7 +229,7 @@ def test_homotopy_class():
     ],
 )
 def test_several_homotopy_classes(runs, mark, classes, counted):
-    check = {"experiment": "maps", "where": {"feasible": True}}
+    check = on_maps({"feasible": True})
     found = Results(pd.DataFrame(runs), {"equal": problem("equal")}, pd.DataFrame())
     assert tharwat2018.several_homotopy_classes(check, {"maps": found}, {}) == (mark, classes, None, counted)
 

@@ -117,10 +117,10 @@ def test_the_section_has_a_sentence_for_each_study():
 
 def test_the_section_stands_in_the_summary():
     comparison = pd.DataFrame(
-        {"method": ["tried"], "metric": ["length"], "statistic": ["mean"], "value_published": [1.0], "value_ours": [1.0]}
+        {"method": ["tried"], "metric": ["length"], "statistic": ["mean"], "value_published": [1.0], "value_ours_scaled": [1.0]}
     )
     numbers = summary.numbers(
-        {("one", "table1"): comparison.assign(in_range=True, possible=True, n_published=1, verdict="agrees", n_asked=1, primary=True)}
+        {("one", "table1"): comparison.assign(in_range=True, possible=True, n_published=1, verdict="agrees", why="", primary=True)}
     )
     claims = pd.DataFrame(columns=["study", "id", "primary", "finding", "verdict"])
     text = summary.report(numbers, claims, pd.DataFrame([described()]), {"one": "The first"}, "full")
