@@ -3,7 +3,7 @@ for those that are always part of their caller.
 """
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypeVar
 
 from numba import njit
 from numba.core import config
@@ -14,8 +14,11 @@ from bezierplan.running.kernel_cache import Kernel
 # of the time to compile.
 _OPTIONS = {"nopython": True, "boundscheck": None, "no_cfunc_wrapper": True}
 
+# A kernel keeps the signature of its function.
+K = TypeVar("K", bound=Callable[..., Any])
 
-def _kernel(function: Callable[..., Any], **options: Any) -> Callable[..., Any]:
+
+def _kernel(function: K, **options: Any) -> K:
     """A function with the options of all kernels and some more, kept in this package's own cache; itself where numba compiles nothing."""
     if config.DISABLE_JIT:
         return function
@@ -24,12 +27,12 @@ def _kernel(function: Callable[..., Any], **options: Any) -> Callable[..., Any]:
     return kernel
 
 
-def compiled(kernel: Callable[..., Any]) -> Callable[..., Any]:
+def compiled(kernel: K) -> K:
     """`njit` with the options of all kernels."""
     return _kernel(kernel)
 
 
-def allocation_free(kernel: Callable[..., Any]) -> Callable[..., Any]:
+def allocation_free(kernel: K) -> K:
     """`compiled` for a kernel that creates no array or list, returns none, and calls only kernels like it.
 
     Otherwise numba counts the references to every array that is passed to a kernel, with instructions that lock memory: in small kernels
@@ -39,6 +42,6 @@ def allocation_free(kernel: Callable[..., Any]) -> Callable[..., Any]:
     return _kernel(kernel, _nrt=False)
 
 
-def inlined(kernel: Callable[..., Any]) -> Callable[..., Any]:
+def inlined(kernel: K) -> K:
     """A kernel that is compiled as part of each of its callers, and kept with them."""
     return njit(inline="always")(kernel)
