@@ -1,6 +1,6 @@
 """The results of one experiment, read back for tables and figures."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import PurePath
 from typing import NamedTuple
 
@@ -10,6 +10,7 @@ import pyarrow as pa
 import pyarrow.parquet as parquet
 
 from bezierplan.running import problems as problem_files
+from bezierplan.running import rows as chunk_files
 from bezierplan.running import worlds
 from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.problem import Path, Problem
@@ -53,7 +54,7 @@ def _chunks(files: list[str]) -> Iterator[pd.DataFrame]:
     """The rows of each chunk file with their times. Raises ValueError for a file that is not the one that belongs in its place."""
     seen: set[str] = set()
     for file in files:
-        rows, place = _table(file), PurePath(file).parts
+        rows, place = _table(file, chunk_files.edited), PurePath(file).parts
         for column, wanted in zip(("experiment", "method"), place[-3:-1]):
             others = set(rows[column]) - {wanted} if column in rows else {"no runs"}
             if others:
@@ -68,12 +69,15 @@ def _chunks(files: list[str]) -> Iterator[pd.DataFrame]:
         yield rows.merge(times, on="id", validate="one_to_one")
 
 
-def _table(file: str) -> pd.DataFrame:
-    """The rows of a Parquet file. Raises ValueError, naming it, for one that is cut off or none."""
+def _table(file: str, edited: Callable[[pa.Table], bool] = lambda table: False) -> pd.DataFrame:
+    """The rows of a Parquet file. Raises ValueError, naming it, for one that is cut off or none, or was edited."""
     try:
-        return parquet.read_table(file).to_pandas()
+        table = parquet.read_table(file)
     except (OSError, pa.ArrowException):
         raise _misplaced(file, "not a whole Parquet file") from None
+    if edited(table):
+        raise _misplaced(file, "its rows are not those that were written")
+    return table.to_pandas()
 
 
 def _misplaced(file: str, what: str) -> ValueError:
