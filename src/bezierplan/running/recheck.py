@@ -28,6 +28,7 @@ from bezierplan.geometry.region import Region, region, walled
 from bezierplan.running import answer, columns, problems, rides, rows, worlds
 from bezierplan.running.digest import COMPUTING, library_version
 from bezierplan.running.log import end_with_parent
+from bezierplan.schema.words import plain
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import MovingCircles, World
@@ -49,7 +50,7 @@ class Fault(NamedTuple):
     recomputed: Any
 
     def __str__(self) -> str:
-        return " ".join(f"{self.file}: {self.run}: {self.column}: stored {self.stored}, recomputed {self.recomputed}".split())
+        return plain(" ".join(f"{self.file}: {self.run}: {self.column}: stored {self.stored}, recomputed {self.recomputed}".split()))
 
 
 class Task(NamedTuple):
