@@ -322,6 +322,19 @@ FAULTS = {
         *panel(", ".join([f"{{kind: workspace, workspace: room, each: [{', '.join(['{title: a}'] * 20)}]}}"] * 2)),
         "figures: paths: panels: 45 panels; expected at most 26",
     ),
+    "a table without rows that are told apart": (*table("index: [], columns: [value]"), "lengths: index: []: expected at least one column"),
+    "a label of another method": (
+        A,
+        "labels: {mine: my walk}",
+        "labels: {mine: line}",
+        "labels: mine: line: mine and line of experiment first would both be printed so",
+    ),
+    "a label of two problems": (
+        A,
+        "labels: {mine: my walk}",
+        "labels: {across: way, back: way}",
+        "labels: back: way: across and back of experiment both would both be printed so",
+    ),
     "a label of 600 letters": (A, "my walk", "W" * 600, "artefacts.yaml: labels: mine: 'WWW"),
     "a label of blanks": (A, "my walk", "'   '", "artefacts.yaml: labels: mine: '   ': expected one line of text"),
     "a title of blanks": (E, "title: Walks in a room", "title: '   '", "experiments.yaml: title: '   ': expected one line"),
@@ -418,7 +431,12 @@ FAULTS = {
         "target_cell: 63, reference: 3}",
         "problems: across: reference: 3: expected",
     ),
-    "a tiny cell": (E, "cell: 1,", "cell: 1e-320,", "room: cell: 1e-320: expected the side of a cell, a number of at least 1e-6"),
+    "a tiny cell": (
+        E,
+        "cell: 1,",
+        "cell: 1e-320,",
+        "room: cell: 1e-320: expected the side of a cell, a number of at least 1e-6",
+    ),
     "a unit of nothing": (E, "cell: 1, unit: m", "cell: 1, unit: '-'", "workspaces: room: unit: '-': expected"),
     "a unit of blanks": (E, "cell: 1, unit: m", "cell: 1, unit: ' '", "workspaces: room: unit: ' ': expected"),
     "a unit that is a group": (E, "cell: 1, unit: m", "cell: 1, unit: '\\1'", "workspaces: room: unit: '\\\\1': expected"),
@@ -628,6 +646,13 @@ FAULTS = {
     "a negative length": (T, ROW, "mine,length,median,10,m,-13.1", "lengths.csv: line 2: value: -13.1: expected a number of at least 0"),
     "a share above 1": (T, ",0.9", ",90", "lengths.csv: line 4: value: 90: expected a number of at least 0, at most 1, as the share of"),
     "a negative share": (T, ",0.9", ",-0.1", "lengths.csv: line 4: value: -0.1: expected a number of at least 0"),
+    "half a count": (T, "count,10,-,9", "count,10,-,8.5", "line 5: value: 8.5: expected a whole number, as the count of feasible is"),
+    "a share of lengths": (
+        C,
+        "{test: share, experiment: first, metric: feasible",
+        "{test: share, experiment: first, metric: length",
+        "checks: 0: event: missing key; length is no truth: expected one of below, above, at_most, at_least, equals",
+    ),
     "a count above n": (T, "10,-,9\n", "10,-,11\n", "lengths.csv: line 5: value: 11: expected a number of at least 0, at most 10"),
     **{
         f"n {n[:12]}": (T, ROW, f"mine,length,median,{n},m,13.1", f"lengths.csv: line 2: n: {n[:30]!r}; expected how many runs")

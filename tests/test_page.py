@@ -463,7 +463,8 @@ def test_the_answer_counts_claims_that_would_show_again_and_keep_their_verdict()
 
 def test_what_was_judged_again_stands_on_the_page():
     assert "were judged again" not in build.html(page(), Path())
-    verified = content.Verified(files=2, runs=1234, paths=567, digest="0123abcd", versions={"numba": "1.2", "numpy": "3.4"})
+    verified = content.Verified(files=2, runs=1234, paths=567, bounds=89, digest="0123abcd", versions={"numba": "1.2", "numpy": "3.4"})
     told = " ".join(build.html(page().model_copy(update={"verified": verified}), Path()).split())
     assert "All 1,234 runs shown here, 567 different paths, were judged again" in told
+    assert "and 89 bounds computed again, without a difference" in told
     assert "digest 0123abcd, with numba 1.2, numpy 3.4." in told

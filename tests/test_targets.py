@@ -61,10 +61,10 @@ def test_folder_that_would_overwrite_results_of_a_study_is_told(tmp_path):
 
 def test_results_that_cannot_be_written_are_told(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    reading.check_folder()
+    reading.check_start(1)
     (tmp_path / "results").touch()
     with pytest.raises(Fault, match="results: cannot be written"):
-        reading.check_folder()
+        reading.check_start(1)
 
 
 HOSTILE = "a title\n\n.. include:: /etc/passwd\n\n.. raw:: html\n\n   <b>x</b> </script> `code`_ *bold* |sub| http://a.b {{ 7 * 7 }} \\"

@@ -8,9 +8,11 @@ import pyarrow.parquet as parquet
 import pytest
 
 from bezierplan.__main__ import main
-from bezierplan.running import execution, problems, rows
+from bezierplan.running import execution, problems, recheck, rides, rows, worlds
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
+from bezierplan.workspaces.worlds import ChangingCells, MovingCircles
 
 CIRCLES = Circles((0.0, 10.0, 0.0, 10.0), np.array([[5.0, 5.0]]), np.array([1.0]), "m")
 MADE = {
@@ -113,6 +115,125 @@ def test_a_bound_that_was_edited_is_told(results, capsys):
     assert lines[0].startswith(f"{results / BOUNDS}: blocked: bound: stored 5.0, recomputed 8.")
 
 
+FIELD = (0.0, 10.0, 0.0, 10.0)
+OPEN, SHUT = (from_lines([".........", ".........", row, row, "........."], 1.0, "m") for row in (".........", "....#...."))
+WORLDS = {
+    "circles": MovingCircles(FIELD, FIELD, np.array([[5.0, 8.0]]), np.array([[0.0, 0.1]]), np.array([1.0]), "circles", 1.0, 60, "m"),
+    "cells": ChangingCells((OPEN, SHUT), np.array([2.5]), 1.0, 60),
+}
+MET = {
+    "circles": Problem("circles", WORLDS["circles"].workspace(0), (1.0, 5.0), (9.0, 5.0)),
+    "cells": Problem("cells", WORLDS["cells"].workspace(0), (0.5, 2.5), (8.5, 2.5)),
+}
+MOVES = {"replan": "when_changed", "every": 1, "warm": False, "waits": False, "evades": False, "start": "position", "brake": 1.0}
+SEES = {"sees": "before", "knows": "positions", "check_margin": 0.0, "plan_margins": [0.0], "horizon": 2.0}
+POLICY = MOVES | SEES | {"spacing": 0.1, "step_seconds": 1.0}
+DRIVES, FIRST_DRIVES = "s/runs/d/line/0.parquet", "s/problems/d.bounds.parquet"
+
+
+@pytest.fixture(scope="module")
+def driven(tmp_path_factory):
+    """Results of a robot that drives along the shortest path that it sees, among circles and cells; bounds of the first repeat only."""
+    folder = tmp_path_factory.mktemp("drives") / "full"
+    (folder / DRIVES).parent.mkdir(parents=True)
+    (folder / FIRST_DRIVES).parent.mkdir(parents=True)
+    worlds.write(MET, dict.fromkeys(MET, "field"), WORLDS, str(folder / "s/problems/d.parquet"))
+    described = {name: {"workspace": "field"} for name in MET}
+    job = JOB | {"experiment": "d", "planner": "shortest_path", "problems": described, "policy": POLICY}
+    runs, _, traces = rides.run_chunk(MET, WORLDS, job)
+    rows.write(runs, str(folder / DRIVES))
+    parquet.write_table(traces, (folder / DRIVES).with_suffix(".traces.parquet"))
+    rides.write_bounds(MET, WORLDS, [str(folder / DRIVES)], 1, str(folder / FIRST_DRIVES))
+    return folder
+
+
+def test_drives_and_their_bounds_are_sound(driven, capsys):
+    status, lines, _ = verified(capsys, driven)
+    assert (status, lines[-1]) == (0, "sound")
+    assert lines[0] == "4 runs in 1 files: 0 different paths judged again, 2 bounds computed again"
+
+
+@pytest.mark.parametrize("column", ["arrival", "length", "feasible", "path_points"])
+def test_an_edit_of_a_drive_is_told(driven, tmp_path, capsys, column):
+    folder = shutil.copytree(driven, tmp_path / "full")
+    changes = {
+        "feasible": lambda values: [not value for value in values],
+        "path_points": lambda values: [[*points[:2], 5.0, 9.0, *points[2:]] for points in values],
+    }
+    edited(folder / DRIVES, column, changes.get(column, lambda values: [value - 1.0 for value in values]), digest=True)
+    status, lines, _ = verified(capsys, folder)
+    named = {"arrival": "objective", "path_points": "length"}.get(column, column)
+    assert status == 1
+    assert any(line.startswith(f"{folder / DRIVES}: s/d/") and f": {named}: stored " in line for line in lines)
+
+
+@pytest.mark.parametrize("column", ["best_arrival", "clairvoyant_arrival", "bound", "bound_path"])
+def test_an_edited_bound_of_a_moving_world_is_told(driven, tmp_path, capsys, column):
+    folder = shutil.copytree(driven, tmp_path / "full")
+    edited(folder / FIRST_DRIVES, column, lambda values: [np.multiply(value, 1.001).tolist() for value in values])
+    status, lines, _ = verified(capsys, folder)
+    assert status == 1
+    assert f"{folder / FIRST_DRIVES}: cells: {column}: stored " in "\n".join(lines)
+
+
+def test_a_drive_through_what_its_trace_meets_is_not_free(driven, tmp_path, capsys):
+    """Who edits the verdict, the collision and the clearance still has the trace against them."""
+    folder = shutil.copytree(driven, tmp_path / "full")
+    file = (folder / DRIVES).with_suffix(".traces.parquet")
+    for column in ("x", "y"):
+        edited(file, column, lambda values: [[-1.0] * len(each) for each in values])
+    status, lines, _ = verified(capsys, folder)
+    assert status == 1
+    assert sum(": feasible: stored True, recomputed False" in line for line in lines) == len(lines) - 3 == 4
+
+
+FOREIGN = {
+    "other columns": (lambda table: pa.table({"a": [1]}), "no column id"),
+    "text for numbers": (
+        lambda table: table.set_column(table.column_names.index("length"), "length", pa.array(["1.0"] * len(table))),
+        "column length: expected numbers in every row",
+    ),
+    "a missing value": (
+        lambda table: table.set_column(table.column_names.index("feasible"), "feasible", pa.array([None, *[True] * (len(table) - 1)])),
+        "column feasible: expected truths in every row",
+    ),
+    "points that are numbers": (
+        lambda table: table.set_column(table.column_names.index("path_points"), "path_points", table["length"]),
+        "column path_points: expected lists of numbers in every row",
+    ),
+}
+
+
+@pytest.mark.parametrize("case", FOREIGN)
+def test_a_foreign_table_is_one_line_with_status_2(results, capsys, case):
+    change, told = FOREIGN[case]
+    parquet.write_table(change(parquet.read_table(results / RUNS)), results / RUNS)
+    expected = f"{results / RUNS}: {told}; delete it and start again: the workflow reproduces it"
+    assert verified(capsys, results) == (2, [], [expected])
+
+
+@pytest.mark.parametrize("name", [BOUNDS, "s/problems/e.parquet"])
+def test_foreign_bounds_and_problems_are_one_line_with_status_2(results, capsys, name):
+    parquet.write_table(pa.table({"a": [1]}), results / name)
+    status, lines, told = verified(capsys, results)
+    assert (status, lines) == (2, [])
+    what = "no column problem" if name == BOUNDS else "not a whole file of problems"
+    assert told == [f"{results / name}: {what}; delete it and start again: the workflow reproduces it"]
+
+
+def test_points_that_are_no_path_are_told(results, capsys):
+    edited(results / RUNS, "path_points", lambda values: [[1.0, 8.0, 9.0]] * 2 + [[float("nan")] * 4] * 2, digest=True)
+    status, lines, _ = verified(capsys, results)
+    assert status == 1
+    assert sum(": path_points: stored a path, recomputed " in line for line in lines) == 4
+
+
+def test_the_digest_of_results_is_that_of_the_workflow_whatever_the_tasks(results):
+    whole = recheck.tasks(results)
+    alone = [recheck.Task(task.problems, task.bounds, (file,)) for task in whole for file in task.runs]
+    assert recheck.verify(whole, 1).digest == recheck.verify(alone, 1).digest
+
+
 def test_wrong_input_is_one_line_with_status_2(results, capsys, tmp_path):
     assert verified(capsys, tmp_path / "nowhere") == (
         2,
@@ -127,4 +248,4 @@ def test_wrong_input_is_one_line_with_status_2(results, capsys, tmp_path):
     (results / BOUNDS).unlink()
     status, _, told = verified(capsys, results)
     assert status == 2
-    assert told == [f"{results / 's/problems/e.parquet'}: missing; expected the problems of {(results / RUNS).parent}"]
+    assert told == [f"{results / 's/problems/e.parquet'}: missing; expected the problems of {(results / RUNS).parents[1]}"]

@@ -63,10 +63,12 @@ def main(given: list[str]) -> None:
             raise
         print(f"{name}: needs {missing.name}, which is not installed; install it with: pip install 'bezierplan[workflow]'", file=sys.stderr)
         sys.exit(2)
-    except (ValueError, FileNotFoundError) as fault:
+    except (ValueError, OSError) as fault:
         from bezierplan.schema.checked import Fault
 
-        print(Fault(str(fault)), file=sys.stderr)
+        # What the operating system says names the file last, and an error number first.
+        system = isinstance(fault, OSError) and fault.filename and fault.strerror
+        print(Fault(f"{fault.filename}: {fault.strerror}" if system else str(fault)), file=sys.stderr)
         sys.exit(2)
 
 

@@ -43,7 +43,7 @@ def at_changes():
 
 try:
     STUDIES = reading.load(reading.read_config(config, alone=workflow.modifier.namespace is not None), at_changes)
-    reading.check_folder()
+    reading.check_start(workflow.resource_settings.cores)
 except checked.Fault as fault:
     print(fault, file=sys.stderr)
     sys.exit(2)

@@ -3,10 +3,7 @@
 from bezierplan.running import log
 
 with log.job(snakemake) as output:
-    import pyarrow.parquet as parquet
-
     from bezierplan.running import problems, rides, worlds
 
     file = snakemake.input.problems
-    arrivals = rides.first_arrivals(snakemake.input.runs, snakemake.params.repeats)
-    parquet.write_table(rides.bounds_of(problems.read(file), worlds.read(file), arrivals), output[0])
+    rides.write_bounds(problems.read(file), worlds.read(file), snakemake.input.runs, snakemake.params.repeats, output[0])

@@ -1,6 +1,6 @@
 """The results of one experiment, read back for tables and figures."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import PurePath
 from typing import NamedTuple
 
@@ -59,7 +59,7 @@ def _chunks(files: list[str]) -> Iterator[pd.DataFrame]:
     """
     seen: set[str] = set()
     for file in files:
-        table, place = _read(file), PurePath(file).parts
+        table, place = _read(file, row_files.edited), PurePath(file).parts
         rows = table.to_pandas()
         for column, wanted in zip(("experiment", "method"), place[-3:-1]):
             others = set(rows[column]) - {wanted} if column in rows else {"no runs"}
@@ -86,12 +86,15 @@ def _refuse_unlike(file: str, table: pa.Table, declared: Table, driven: str) -> 
         raise _misplaced(file, fault)
 
 
-def _read(file: str) -> pa.Table:
-    """The table of a Parquet file. Raises ValueError, naming it, for one that is cut off or none."""
+def _read(file: str, edited: Callable[[pa.Table], bool] = lambda table: False) -> pa.Table:
+    """The table of a Parquet file. Raises ValueError, naming it, for one that is cut off or none, or was edited."""
     try:
-        return parquet.read_table(file)
+        table = parquet.read_table(file)
     except (OSError, pa.ArrowException):
         raise _misplaced(file, "not a whole Parquet file") from None
+    if edited(table):
+        raise _misplaced(file, "its rows are not those that were written")
+    return table
 
 
 def _misplaced(file: str, what: str) -> ValueError:

@@ -1,6 +1,5 @@
 """A new study: `python -m bezierplan new FOLDER` copies one that runs at once, `--from MAP` puts a map of your own into it."""
 
-import re
 import shutil
 from argparse import ArgumentParser
 from pathlib import Path
@@ -9,6 +8,7 @@ import yaml
 
 from bezierplan.places import PACKAGE
 from bezierplan.schema.checked import Fault
+from bezierplan.study import reading
 from bezierplan.workspaces import files
 from bezierplan.workspaces.map_files import described, point
 
@@ -22,8 +22,7 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     parser.add_argument("--start", metavar="X,Y", help="where paths begin on that map, in its unit")
     parser.add_argument("--target", metavar="X,Y", help="where they end")
     given = parser.parse_args(words)
-    if not re.fullmatch("[A-Za-z][A-Za-z0-9_-]*", given.folder.name):
-        raise Fault(f"{given.folder}: not a name of a study; expected letters, digits, _ and -, a letter first")
+    reading.check_name(given.folder.name, str(given.folder))
     if given.folder.exists():
         raise Fault(f"{given.folder}: is there already; expected a new folder")
     if not given.folder.parent.is_dir():

@@ -27,9 +27,17 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     words = parser.parse_known_args(words)[0] and words
     if not words:
         raise Fault("expected at least one word, such as the folder of a study; bezierplan run --help shows examples")
-    import snakemake  # noqa: F401  # here its absence is told as that of the extra
+    from snakemake.cli import get_argument_parser, parse_cores  # here its absence is told as that of the extra
+    from snakemake.exceptions import CliException
 
-    ended = subprocess.run(command(words), check=False)
+    started = command(words)
+    theirs = get_argument_parser()
+    theirs.error = parser.error  # in one line, where Snakemake prints all its options
+    try:
+        parse_cores(theirs.parse_args(started[3:]).cores)
+    except CliException as fault:
+        raise Fault(f"--cores: {fault}") from None
+    ended = subprocess.run(started, check=False)
     sys.exit(ended.returncode)
 
 

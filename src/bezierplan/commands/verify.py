@@ -9,20 +9,17 @@ from pathlib import Path
 def main(parser: ArgumentParser, words: list[str]) -> None:
     """Print a line for each stored value that differs from what is computed again, and what was checked.
 
-    Ends with status 1 if anything differs, and with 2 and one line for a folder without results or a file that cannot be read.
+    Ends with status 1 if anything differs. Raises ValueError or FileNotFoundError for a folder without results or a file that cannot be
+    read.
     """
     from bezierplan.running import recheck
 
     parser.add_argument("folder", type=Path, help="the folder of a scale, such as results/full")
     parser.add_argument("--cores", type=int, default=len(os.sched_getaffinity(0)), metavar="N", help="processes (default: all cores)")
     given = parser.parse_args(words)
-    try:
-        if given.cores < 1:
-            raise ValueError(f"--cores: {given.cores}; expected a number of at least 1")
-        found = recheck.verify(recheck.tasks(given.folder), given.cores, lambda line: print(line, file=sys.stderr, flush=True))
-    except (ValueError, FileNotFoundError) as fault:
-        print(fault, file=sys.stderr)
-        sys.exit(2)
+    if given.cores < 1:
+        raise ValueError(f"--cores: {given.cores}; expected a number of at least 1")
+    found = recheck.verify(recheck.tasks(given.folder), given.cores, lambda line: print(line, file=sys.stderr, flush=True))
     for fault in found.faults:
         print(fault)
     print(f"{found.runs} runs in {found.files} files: {found.paths} different paths judged again, {found.bounds} bounds computed again")

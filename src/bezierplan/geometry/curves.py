@@ -185,9 +185,14 @@ def length(path: Path) -> float:
     >>> math.isclose(arc, math.sqrt(5) + math.asinh(2) / 2)
     True
     """
+    return length_of(bezier_pieces(path))
+
+
+def length_of(pieces: np.ndarray) -> float:
+    """`length` of a path, from its Bezier pieces (pieces, degree + 1, 2)."""
     from bezierplan.geometry.arc_length import piece_length
 
-    return math.fsum(piece_length(piece) for piece in bezier_pieces(path))
+    return math.fsum(map(piece_length, pieces))
 
 
 def curvature(path: Path, samples: int) -> tuple[np.ndarray, np.ndarray]:

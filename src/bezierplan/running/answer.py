@@ -101,7 +101,9 @@ def verdict(path: Path | None, blocked: Region) -> tuple[float, checker.Check]:
     """Length and verdict of a path; without one, not a number and `NO_PATH`."""
     if path is None:
         return math.nan, NO_PATH
-    return curves.length(path), checker.check(curves.bezier_pieces(path), blocked)
+    pieces = curves.bezier_pieces(path)
+    check = checker.check(pieces, blocked)  # which refuses what has no length
+    return curves.length_of(pieces), check
 
 
 # ---------------------------------------------------------------------------------------------------------------------

@@ -20,13 +20,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import pyarrow as pa
+import pyarrow.compute as compute
 import pyarrow.parquet as parquet
 
-from bezierplan.geometry import checker, curves
-from bezierplan.geometry.region import Region, blocks, region
-from bezierplan.running import answer, problems, rides, rows, worlds
+from bezierplan.geometry import curves
+from bezierplan.geometry.region import Region, region, walled
+from bezierplan.running import answer, columns, problems, rides, rows, worlds
 from bezierplan.running.digest import COMPUTING, library_version
 from bezierplan.running.log import end_with_parent
+from bezierplan.schema.words import plain
+from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.worlds import MovingCircles, World
 
@@ -47,11 +50,11 @@ class Fault(NamedTuple):
     recomputed: Any
 
     def __str__(self) -> str:
-        return " ".join(f"{self.file}: {self.run}: {self.column}: stored {self.stored}, recomputed {self.recomputed}".split())
+        return plain(" ".join(f"{self.file}: {self.run}: {self.column}: stored {self.stored}, recomputed {self.recomputed}".split()))
 
 
 class Task(NamedTuple):
-    """The files of one method in one experiment, or the bounds of an experiment without runs."""
+    """Runs of an experiment to be judged; or, with a file of bounds, that file, and the drives whose arrivals it takes into account."""
 
     problems: str
     bounds: str
@@ -60,7 +63,7 @@ class Task(NamedTuple):
 
 class Verdict(NamedTuple):
     """faults: in order of files. files, runs: how many files of runs, and rows in them. paths: different paths among these. bounds: how
-    many were computed again. undigested: files without a digest of their own. digest: of all files of runs.
+    many were computed again. undigested: files without a digest of their own. digests: by file of runs.
     """
 
     faults: list[Fault]
@@ -69,45 +72,55 @@ class Verdict(NamedTuple):
     paths: int
     bounds: int
     undigested: int
-    digest: str
+    digests: dict[str, str]
+
+    @property
+    def digest(self) -> str:
+        """One for all files of runs."""
+        lines = [f"{file} {digest}" for file, digest in sorted(self.digests.items())]
+        return hashlib.sha256("\n".join(lines).encode()).hexdigest()[:16]
 
 
 def tasks(folder: File) -> list[Task]:
     """What there is to check below the folder of a scale. Raises FileNotFoundError if there is no table of runs or of problems."""
-    found = []
-    for bounds in sorted(folder.glob("*/problems/*.bounds.parquet")):
-        found.append(Task(str(bounds).removesuffix(".bounds.parquet") + ".parquet", str(bounds), ()))
-    methods: dict[File, list[str]] = {}
+    experiments: dict[File, list[str]] = {}
     for file in sorted(folder.rglob("runs/*/*/*.parquet")):
         if file.stem.isdecimal():  # not the times and traces next to it
-            methods.setdefault(file.parent, []).append(str(file))
-    if not methods:
+            experiments.setdefault(file.parents[1], []).append(str(file))
+    if not experiments:
         raise FileNotFoundError(f"{folder}: no runs here; expected a folder of results, such as results/full")
-    for method, files in methods.items():
-        found.append(Task(str(_problems_of(method, folder)), "", tuple(files)))
+    found = [Task(str(_problems_of(experiment, folder)), "", tuple(files)) for experiment, files in experiments.items()]
+    for bounds in sorted(folder.glob("*/problems/*.bounds.parquet")):
+        experiment = bounds.name.removesuffix(".bounds.parquet")
+        drives = experiments.get(bounds.parents[1] / "runs" / experiment, [])
+        found.append(Task(str(bounds.with_name(f"{experiment}.parquet")), str(bounds), tuple(drives)))
     return found
 
 
-def _problems_of(method: File, folder: File) -> File:
-    """The file of the problems of a method's runs; at `extended` an experiment may be that of `full`."""
-    study, experiment = method.relative_to(folder).parts[0], method.parent.name
-    places = [scale / study / "problems" / f"{experiment}.parquet" for scale in (folder, folder.parent / "full")]
+def _problems_of(experiment: File, folder: File) -> File:
+    """The file of the problems of an experiment's runs; at `extended` an experiment may be that of `full`."""
+    study = experiment.relative_to(folder).parts[0]
+    places = [scale / study / "problems" / f"{experiment.name}.parquet" for scale in (folder, folder.parent / "full")]
     there = next((place for place in places if place.is_file()), None)
     if there is None:
-        raise FileNotFoundError(f"{places[0]}: missing; expected the problems of {method}")
+        raise FileNotFoundError(f"{places[0]}: missing; expected the problems of {experiment}")
     return there
 
 
 def verify(given: list[Task], processes: int, told: Callable[[str], None] = lambda line: None) -> Verdict:
     """The verdict on some tasks, in several processes. told: gets a line of progress now and then."""
-    # The largest first, so that no process ends long after the others.
-    largest = sorted(given, key=lambda task: -sum(os.path.getsize(file) for file in task.runs or (task.problems,)))
+    # The largest first, so that no process ends long after the others: bounds take longest.
+    largest = sorted(given, key=lambda task: (not task.bounds, -sum(_size(file) for file in (task.problems, *task.runs))))
     done = []
     for n, each in enumerate(_mapped(judged, largest, processes), start=1):
         done.append(each)
-        if n % 20 == 0 or n == len(given):
+        if n % 10 == 0 or n == len(given):
             told(f"{n} of {len(given)} tables checked, {sum(len(verdict.faults) for verdict in done)} faults")
     return merged(done)
+
+
+def _size(file: str) -> int:
+    return os.path.getsize(file) if os.path.isfile(file) else 0
 
 
 def _mapped(function: Callable[[Task], Verdict], given: list[Task], processes: int) -> Iterator[Verdict]:
@@ -122,16 +135,16 @@ def _mapped(function: Callable[[Task], Verdict], given: list[Task], processes: i
 def merged(verdicts: Iterable[Verdict]) -> Verdict:
     """Several verdicts as one."""
     all_of = list(verdicts)
-    digest = hashlib.sha256("\n".join(sorted(each.digest for each in all_of)).encode()).hexdigest()[:16]
     counts = (sum(getattr(each, name) for each in all_of) for name in Verdict._fields[1:-1])
-    return Verdict(sorted(fault for each in all_of for fault in each.faults), *counts, digest)
+    faults = sorted((fault for each in all_of for fault in each.faults), key=lambda fault: fault[:3])
+    return Verdict(faults, *counts, {file: digest for each in all_of for file, digest in each.digests.items()})
 
 
 def write(verdict: Verdict, file: str) -> None:
     """Write what was checked, and with which versions, as JSON. Raises ValueError with the first fault if there is any."""
     if verdict.faults:
         raise ValueError(f"{verdict.faults[0]} (one of {len(verdict.faults)} values that differ; delete the file and start again)")
-    counts = {name: getattr(verdict, name) for name in ("files", "runs", "paths", "digest")}
+    counts = {name: getattr(verdict, name) for name in ("files", "runs", "paths", "bounds", "digest")}
     File(file).write_text(json.dumps(counts | {"versions": versions()}, indent=1) + "\n")
 
 
@@ -141,129 +154,224 @@ def versions() -> dict[str, str]:
 
 
 def judged(task: Task) -> Verdict:
-    """The verdict on one task. Raises ValueError for a file that is no table."""
+    """The verdict on one task. Raises ValueError for a file that is not the table that belongs there."""
+    try:
+        made, moving = problems.read(task.problems), worlds.read(task.problems)
+    except (OSError, pa.ArrowException, KeyError, TypeError, ValueError):
+        raise _misplaced(task.problems, "not a whole file of problems") from None
     if task.bounds:
-        return _bounds_judged(task)
-    made, moving = problems.read(task.problems), worlds.read(task.problems)
-    known: dict[str, tuple[Problem, Region]] = {}
-    verdicts: dict[tuple, tuple[float, checker.Check]] = {}
-    faults, count, undigested, digests, ids = [], 0, 0, [], set()
-    for file in task.runs:
-        table = _read(file)
-        digest, kept = rows.rows_digest(table), rows.kept_digest(table)
-        digests.append(f"{'/'.join(File(file).parts[-5:])} {digest}")
-        undigested += kept is None
-        if kept not in (None, digest):
-            faults.append(Fault(file, "all rows", "digest", kept, digest))
-        traces = _traces(file) if moving else {}
-        for row in _rows(table):
-            count += 1
-            faults += _identity_faults(file, row, ids)
-            if row["problem"] not in made:
-                faults.append(Fault(file, row["id"], "problem", row["problem"], f"one of {task.problems}"))
-            elif moving:
-                faults += _drive_faults(file, row, made[row["problem"]], moving[row["problem"]], traces.get(row["id"]))
-            else:
-                faults += _path_faults(file, row, made[row["problem"]], known, verdicts)
-    return Verdict(faults, len(task.runs), count, len(verdicts), 0, undigested, "\n".join(digests))
+        return _bounds_judged(task, made, moving)
+    chunks = [_chunk(file, _DRIVE_COLUMNS if moving else _RUN_COLUMNS) for file in task.runs]
+    faults = [fault for chunk in chunks for fault in _chunk_faults(chunk, made, task.problems)] + _twice(chunks)
+    found, paths = (_drive_faults(chunks, made, moving), 0) if moving else _path_faults(chunks, made)
+    digests = {"/".join(File(chunk.file).parts[-5:]): chunk.digest for chunk in chunks}
+    undigested = sum(chunk.kept is None for chunk in chunks)
+    return Verdict(faults + found, len(chunks), sum(len(chunk.ids) for chunk in chunks), paths, 0, undigested, digests)
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Files
+
+
+class _Chunk(NamedTuple):
+    """A file of runs: its columns that are looked at, as lists or arrays by name; others are covered by digests.
+
+    points: (n,) arrays of control points, flat. rows: by problem, numbers of its rows. digest: of all rows; kept: that of the file itself,
+    if it has one.
+    """
+
+    file: str
+    ids: list[str]
+    words: dict[str, pa.Array]
+    numbers: dict[str, np.ndarray]
+    points: list[np.ndarray]
+    rows: dict[str, np.ndarray]
+    digest: str
+    kept: str | None
+
+
+_IDENTITY = ("id", "study", "experiment", "condition", "problem", "method", "repeat")
+_RUN_COLUMNS = (
+    *(*_IDENTITY, "length", "feasible", "collision_at", "collision_depth", "clearance", "clearance_error", "generations", "history"),
+    *("path_curve", "path_points"),
+)
+_DRIVE_COLUMNS = (
+    *(*_IDENTITY, "objective", "length", "claimed_feasible", "feasible", "collision_at", "clearance", "path_points"),
+    *("arrival", "travelled", "clearance_least"),
+)
+
+_TYPES: dict[str, tuple[str, Callable[[pa.DataType], bool]]] = {
+    "name": ("text", pa.types.is_string),
+    "word": ("text", pa.types.is_string),
+    "flag": ("truths", pa.types.is_boolean),
+    "number": ("numbers", lambda type_: pa.types.is_floating(type_) or pa.types.is_integer(type_)),
+    "list": ("lists of numbers", pa.types.is_list),
+}
+
+
+def _chunk(file: str, wanted: Iterable[str]) -> _Chunk:
+    """A file of runs. Raises ValueError for one without the columns wanted."""
+    table = _read(file)
+    known = columns.PLANNED | columns.RESULTS | columns.DRIVE_RESULTS
+    seen = {name: _column(file, table, name, known[name]) for name in wanted}
+    numbers = {name: seen[name].to_numpy(zero_copy_only=False).astype(float) for name in wanted if known[name] in ("number", "flag")}
+    if "history" in seen:
+        numbers["history"] = seen["history"].value_lengths().to_numpy().astype(float)
+    coded = seen["problem"].dictionary_encode()
+    codes = coded.indices.to_numpy()
+    return _Chunk(
+        file=file,
+        ids=seen["id"].to_pylist(),
+        words={name: seen[name] for name in wanted if known[name] in ("name", "word")} | {"repeat": seen["repeat"].cast(pa.string())},
+        numbers=numbers,
+        points=_arrays(seen["path_points"]),
+        rows={name: np.flatnonzero(codes == code) for code, name in enumerate(coded.dictionary.to_pylist())},
+        digest=rows.rows_digest(table),
+        kept=rows.kept_digest(table),
+    )
 
 
 def _read(file: str) -> pa.Table:
     try:
         return parquet.read_table(file)
     except (OSError, pa.ArrowException):
-        raise ValueError(f"{file}: not a whole Parquet file; delete it and start again: the workflow reproduces it") from None
+        raise _misplaced(file, "not a whole Parquet file") from None
 
 
-# Columns of a row that are looked at; the others are covered by digests.
-_SEEN = (
-    *("id", "study", "experiment", "condition", "problem", "method", "repeat", "length", "claimed_feasible", "feasible", "collision_at"),
-    *("collision_depth", "clearance", "clearance_error", "generations", "objective", "path_curve"),
-    *("arrival", "travelled", "clearance_least"),
-)
+def _misplaced(file: str, what: str) -> ValueError:
+    return ValueError(f"{file}: {what}; delete it and start again: the workflow reproduces it")
 
 
-def _rows(table: pa.Table) -> Iterator[dict[str, Any]]:
-    """The rows, with points as an array (n, 2), and the number of values of the history."""
-    seen = table.select([name for name in _SEEN if name in table.column_names]).to_pylist()
-    points = table["path_points"].combine_chunks()
-    flat, lengths = points.flatten().to_numpy(), points.value_lengths().to_numpy()
-    values = table["history"].combine_chunks().value_lengths().to_numpy()
-    ends = np.cumsum(lengths)
-    for row, begin, end, number in zip(seen, ends - lengths, ends, values, strict=True):
-        yield row | {"path_points": flat[begin:end], "history": int(number)}
+def _column(file: str, table: pa.Table, name: str, kind: str) -> pa.Array:
+    """A column, with a value in each row. Raises ValueError for one that is not there or holds other things."""
+    expected, fits = _TYPES[kind]
+    if name not in table.column_names:
+        raise _misplaced(file, f"no column {name}")
+    column = table[name].combine_chunks()
+    if not fits(column.type) or column.null_count:
+        raise _misplaced(file, f"column {name}: expected {expected} in every row")
+    return column
 
 
-def _identity_faults(file: str, row: dict[str, Any], ids: set[str]) -> list[Fault]:
-    """Whether a row stands in its file, and its id says what its columns say, once."""
-    *_, experiment, method, _ = File(file).parts
-    name = "/".join(str(row[part]) for part in ("study", "experiment", "condition", "method", "repeat"))
+def _arrays(column: pa.Array) -> list[np.ndarray]:
+    """The lists of numbers in a column, each as an array of floats."""
+    flat = column.flatten().cast(pa.float64()).to_numpy(zero_copy_only=False)
+    return np.split(flat, np.cumsum(column.value_lengths().to_numpy())[:-1])
+
+
+def _chunk_faults(chunk: _Chunk, made: dict[str, Problem], problems_file: str) -> list[Fault]:
+    """Whether rows stand in their file, their ids say what their columns say, and the file's digest is that of its rows."""
     found = []
-    if row["id"] != name:
-        found.append(Fault(file, row["id"], "id", row["id"], name))
-    for column, place in (("experiment", experiment), ("method", method)):
-        if row[column] != place:
-            found.append(Fault(file, row["id"], column, row[column], place))
-    if row["id"] in ids:
-        found.append(Fault(file, row["id"], "id", "twice", "once"))
-    ids.add(row["id"])
-    return found
-
-
-def _path_faults(
-    file: str,
-    row: dict[str, Any],
-    problem: Problem,
-    known: dict[str, tuple[Problem, Region]],
-    verdicts: dict[tuple, tuple[float, checker.Check]],
-) -> list[Fault]:
-    """What of a run differs from what its points say."""
-    if row["problem"] not in known:
-        known[row["problem"]] = problem, region(problem.workspace)
-    key = row["problem"], row["path_curve"], row["path_points"].tobytes()
-    try:
-        path = answer.restored(row["path_curve"], row["path_points"])
-        if key not in verdicts:
-            verdicts[key] = answer.verdict(path, known[row["problem"]][1])
-    except ValueError as error:
-        return [Fault(file, row["id"], "path_points", "a path", error)]
-    length, check = verdicts[key]
-    slack = 2 * check.tolerance + _SAME
-    recomputed = {
-        "length": (length, _SAME),
-        "feasible": (check.feasible, 0.0),
-        "collision_at": (check.collision_at, _SAME_PLACE),
-        "collision_depth": (check.depth, slack),
-        "clearance": (check.clearance, slack),
-        "clearance_error": (check.tolerance, slack),
-        "generations": (row["history"] - 1, 0.0),
+    if chunk.kept not in (None, chunk.digest):
+        found.append(Fault(chunk.file, "all rows", "digest", chunk.kept, chunk.digest))
+    *_, experiment, method, _ = File(chunk.file).parts
+    parts = [chunk.words[part] for part in ("study", "experiment", "condition", "method", "repeat")]
+    wanted = {
+        "id": compute.binary_join_element_wise(*parts, "/"),
+        "experiment": pa.array([experiment] * len(chunk.ids)),
+        "method": pa.array([method] * len(chunk.ids)),
+        # A condition's name begins with its problem's.
+        "problem": compute.list_element(compute.split_pattern(chunk.words["condition"], ",", max_splits=1), 0),
     }
-    found = [
-        Fault(file, row["id"], name, row[name], value) for name, (value, least) in recomputed.items() if not same(row[name], value, least)
-    ]
-    if path is not None:
-        found += _ends_faults(file, row, [path.points[place] for place in curves.ends(path.curve)], problem)
+    for column, values in wanted.items():
+        for row in np.flatnonzero(compute.not_equal(chunk.words[column], values).to_numpy(zero_copy_only=False)):
+            found.append(Fault(chunk.file, chunk.ids[row], column, chunk.words[column][row].as_py(), values[row].as_py()))
+    for name in chunk.rows.keys() - made.keys():
+        found += [Fault(chunk.file, chunk.ids[row], "problem", name, f"one of {problems_file}") for row in chunk.rows[name]]
     return found
 
 
-def _differing(file: str, row: dict[str, Any], recomputed: dict[str, tuple[Any, float]]) -> list[Fault]:
-    """The columns of a row that differ from values that were computed again, given with their tolerance."""
-    pairs = recomputed.items()
-    return [Fault(file, row["id"], name, row[name], value) for name, (value, least) in pairs if not same(row[name], value, least)]
+def _twice(chunks: list[_Chunk]) -> list[Fault]:
+    """The rows whose id another one has."""
+    seen: set[str] = set()
+    found = []
+    for chunk in chunks:
+        for name in chunk.ids:
+            if name in seen:
+                found.append(Fault(chunk.file, name, "id", "twice", "once"))
+            seen.add(name)
+    return found
 
 
-def _ends_faults(file: str, row: dict[str, Any], ends: Iterable[np.ndarray], problem: Problem) -> list[Fault]:
-    pairs = zip(("start", "target"), ends, (problem.start, problem.target))
-    return [Fault(file, row["id"], f"path_points ({end})", tuple(at.tolist()), to) for end, at, to in pairs if tuple(at.tolist()) != to]
+def _differing(chunk: _Chunk, again: dict[str, tuple[np.ndarray, Any]]) -> Iterator[Fault]:
+    """The values of a chunk that differ from those computed again, by column, given with their tolerance."""
+    for name, (values, tolerance) in again.items():
+        stored = chunk.numbers[name]
+        plain = bool if name in _FLAGS else float
+        for row in np.flatnonzero(~same(stored, values, tolerance)):
+            yield Fault(chunk.file, chunk.ids[row], name, plain(stored[row]), plain(values[row]))
 
 
-def same(stored: Any, recomputed: Any, tolerance: float) -> bool:
-    """Whether a stored value equals one that was computed again, up to a tolerance, relative and absolute; not a number equals itself."""
-    if isinstance(recomputed, bool | np.bool_) or isinstance(stored, bool | str) or stored is None:
-        return stored == recomputed and isinstance(stored, bool) == isinstance(recomputed, bool | np.bool_)
-    if math.isnan(stored) or math.isnan(recomputed):
-        return math.isnan(stored) and math.isnan(recomputed)
-    return math.isclose(stored, recomputed, rel_tol=tolerance, abs_tol=tolerance)
+_FLAGS = ("feasible", "claimed_feasible")
+
+
+def same(stored: np.ndarray, again: np.ndarray, tolerance: Any) -> np.ndarray:
+    """Whether numbers (n,) equal those computed again, up to a tolerance, relative and absolute; not a number equals itself."""
+    with np.errstate(invalid="ignore"):
+        close = np.abs(stored - again) <= tolerance * np.maximum(1.0, np.maximum(np.abs(stored), np.abs(again)))
+    finite = np.isfinite(stored) & np.isfinite(again)
+    return (stored == again) | (finite & close) | (np.isnan(stored) & np.isnan(again))
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Paths
+
+
+class _Judged(NamedTuple):
+    """What the points of a path say. verdict: length, feasible, collision_at, depth, clearance, tolerance. faults: column, stored value,
+    and what would be right.
+    """
+
+    verdict: tuple[float, ...]
+    faults: tuple[tuple[str, Any, Any], ...]
+
+
+def _path_faults(chunks: list[_Chunk], made: dict[str, Problem]) -> tuple[list[Fault], int]:
+    """What of runs differs from what their points say, and the number of different paths. Each problem's region is built once."""
+    found, count = [], 0
+    verdicts = [np.full((len(chunk.ids), 6), math.nan) for chunk in chunks]
+    for name, problem in made.items():
+        concerned = [(chunk, verdict) for chunk, verdict in zip(chunks, verdicts) if name in chunk.rows]
+        blocked = region(problem.workspace) if concerned else None
+        known: dict[tuple[str, bytes], _Judged] = {}
+        for chunk, verdict in concerned:
+            curves_of = chunk.words["path_curve"].take(pa.array(chunk.rows[name])).to_pylist()
+            for row, curve in zip(chunk.rows[name], curves_of):
+                points = chunk.points[row]
+                key = curve, points.tobytes()
+                if key not in known:
+                    known[key] = _path_judged(curve, points, problem, blocked)
+                verdict[row], faults = known[key]
+                found += [Fault(chunk.file, chunk.ids[row], *fault) for fault in faults]
+        count += len(known)
+    for chunk, verdict in zip(chunks, verdicts):
+        length, feasible, collision_at, depth, clearance, tolerance = verdict.T
+        slack = 2 * np.nan_to_num(tolerance) + _SAME
+        again = {
+            "length": (length, _SAME),
+            "feasible": (feasible, 0.0),
+            "collision_at": (collision_at, _SAME_PLACE),
+            "collision_depth": (depth, slack),
+            "clearance": (clearance, slack),
+            "clearance_error": (tolerance, slack),
+            "generations": (chunk.numbers["history"] - 1, 0.0),
+        }
+        found += _differing(chunk, again)
+    return found, count
+
+
+def _path_judged(curve: str, points: np.ndarray, problem: Problem, blocked: Region) -> _Judged:
+    """What the points of a path say. Points that are none, or of no path, are a fault."""
+    try:
+        path = answer.restored(curve, points)
+        length, check = answer.verdict(path, blocked)
+    except ValueError as error:
+        return _Judged((math.nan,) * 6, (("path_points", "a path", error),))
+    ends = [] if path is None else zip(("start", "target"), (path.points[at] for at in curves.ends(curve)), (problem.start, problem.target))
+    faults = [(f"path_points ({end})", tuple(at.tolist()), to) for end, at, to in ends if tuple(at.tolist()) != to]
+    if path is None and len(points):
+        faults.append(("path_points", f"{len(points)} numbers", "none without a curve"))
+    return _Judged((length, *check[:5]), tuple(faults))
 
 
 # ---------------------------------------------------------------------------------------------------------------------
@@ -278,66 +386,124 @@ class _Trace(NamedTuple):
 
 
 def _traces(file: str) -> dict[str, _Trace]:
-    table = _read(str(File(file).with_suffix(".traces.parquet"))).select(["id", "x", "y", "clearance"]).to_pydict()
-    columns = zip(table["id"], table["x"], table["y"], table["clearance"], strict=True)
-    return {name: _Trace(np.column_stack([x, y]), np.array(clearance)) for name, x, y, clearance in columns}
+    beside = str(File(file).with_suffix(".traces.parquet"))
+    table = _read(beside)
+    x, y, clearance = (_arrays(_column(beside, table, name, "list")) for name in ("x", "y", "clearance"))
+    names = _column(beside, table, "id", "name").to_pylist()
+    if not all(len(one) == len(other) > len(least) > 0 for one, other, least in zip(x, y, clearance)):
+        raise _misplaced(beside, "columns x, y and clearance: expected as many x as y, and one number less of clearance")
+    return {name: _Trace(np.column_stack(points), least) for name, *points, least in zip(names, x, y, clearance)}
 
 
-def _drive_faults(file: str, row: dict[str, Any], problem: Problem, world: World, trace: _Trace | None) -> list[Fault]:
-    """What of a drive differs from what its way and its trace say."""
-    if trace is None:
-        return [Fault(file, row["id"], "id", "a drive", "no trace of that id")]
-    points = row["path_points"].reshape(-1, 2)
-    length = float(np.hypot(*np.diff(points, axis=0).T).sum())
+def _drive_faults(chunks: list[_Chunk], made: dict[str, Problem], moving: dict[str, World]) -> list[Fault]:
+    """What of drives differs from what their ways and their traces say. Obstacles at whole steps are placed once for each problem."""
+    found = []
+    traces = {chunk.file: _traces(chunk.file) for chunk in chunks}
+    measured = [np.full((len(chunk.ids), 4), math.nan) for chunk in chunks]
+    for name, problem in made.items():
+        concerned = [(chunk, values) for chunk, values in zip(chunks, measured) if name in chunk.rows]
+        steps = max((len(trace.clearance) for chunk, _ in concerned for trace in traces[chunk.file].values()), default=0)
+        least_distance = _distances(moving[name], steps)
+        for chunk, values in concerned:
+            for row in chunk.rows[name]:
+                trace = traces[chunk.file].get(chunk.ids[row])
+                if trace is None:
+                    found.append(Fault(chunk.file, chunk.ids[row], "id", "a drive", "no trace of that id"))
+                else:
+                    values[row] = _measured(chunk.points[row], trace, problem, least_distance)
+    for chunk, values in zip(chunks, measured):
+        pace = np.array([moving[name].pace if name in moving else math.nan for name in chunk.words["problem"].to_pylist()])
+        length, joins, least, deepest = values.T
+        arrival, clearance_least = chunk.numbers["arrival"], chunk.numbers["clearance_least"]
+        arrived, low = ~np.isnan(arrival), np.minimum(clearance_least, 0.0) - _TRACE
+        free = np.isnan(chunk.numbers["collision_at"]) & (deepest >= low)
+        again = {
+            "length": (length, _SAME),
+            "travelled": (length, _SAME),
+            "claimed_feasible": (arrived, 0.0),
+            # What collides between two whole steps shows in `collision_at` alone.
+            "feasible": (arrived & (joins == 1.0) & free, 0.0),
+            "objective": (np.where(arrived, arrival * pace, math.inf), _SAME),
+            "clearance": (np.maximum(clearance_least, 0.0), _SAME),
+            "clearance_least": (least, _TRACE),
+        }
+        found += _differing(chunk, again)
+    return found
+
+
+def _measured(
+    flat: np.ndarray, trace: _Trace, problem: Problem, least_distance: Callable[[np.ndarray], float]
+) -> tuple[float, bool, float, float]:
+    """Of a drive: the length of its way, whether that joins start and target, the least clearance of its trace, and its least distance to
+    an obstacle at whole steps.
+    """
+    points = flat.reshape(-1, 2)
     joins = (tuple(points[0].tolist()), tuple(points[-1].tolist())) == (problem.start, problem.target)
-    arrived, least = not math.isnan(row["arrival"]), float(trace.clearance.min())
-    deepest = _least_distance(trace.points, world) if row["feasible"] else math.inf
-    recomputed = {
-        "length": (length, _SAME),
-        "travelled": (length, _SAME),
-        "claimed_feasible": (arrived, 0.0),
-        "feasible": (arrived and joins and math.isnan(row["collision_at"]) and deepest >= min(row["clearance_least"], 0.0) - _TRACE, 0.0),
-        "objective": (row["arrival"] * world.pace if arrived else math.inf, _SAME),
-        "clearance": (max(row["clearance_least"], 0.0), _SAME),
-        "clearance_least": (least, _TRACE),
-    }
-    return [
-        Fault(file, row["id"], name, row[name], value) for name, (value, least) in recomputed.items() if not same(row[name], value, least)
-    ]
+    return float(np.hypot(*np.diff(points, axis=0).T).sum()), joins, float(trace.clearance.min()), least_distance(trace.points)
 
 
-def _least_distance(points: np.ndarray, world: World) -> float:
-    """The least distance of a robot to an obstacle at whole steps, in units, negative inside one; of cells -inf inside one, or inf."""
-    steps = range(len(points) - 1)
+def _distances(world: World, steps: int) -> Callable[[np.ndarray], float]:
+    """A function that gives, of places (n + 1, 2) at step 0, 1, ..., up to some number of steps, and at the end, the least distance to an
+    obstacle or the border at whole steps, in units, negative inside; of cells -inf inside one, or inf.
+    """
     if isinstance(world, MovingCircles):
-        away = (np.hypot(*(world.at(step) - points[step]).T) - world.radii for step in steps)
-        return float(min((each.min(initial=math.inf) for each in away), default=math.inf))
-    seen = {world.index(step): region(world.workspace(step)) for step in steps}
-    inside = any(blocks(seen[world.index(step)], tuple(points[step].tolist()), _TRACE) for step in steps)
-    return -math.inf if inside else math.inf
+        centres = np.array([world.at(step) for step in range(steps)]).reshape(steps, -1, 2)
+        low, high = np.reshape(world.bounds, (2, 2)).T
+
+        def least(points: np.ndarray) -> float:
+            at = points[:-1]
+            away = np.hypot(*(centres[: len(at)] - at[:, None]).T).T - world.radii
+            return float(min(away.min(initial=math.inf), (at - low).min(), (high - at).min()))
+
+        return least
+    maps = [walled(each.occupied) for each in world.maps]
+    index = np.searchsorted(world.moments, np.arange(steps), side="right")
+
+    def outside(points: np.ndarray) -> float:
+        numbers = index[: len(points) - 1]
+        inside = any(_inside(maps[n], world.maps[n], points[:-1][numbers == n]) for n in np.unique(numbers))
+        return -math.inf if inside else math.inf
+
+    return outside
+
+
+def _inside(cells: np.ndarray, grid: Grid, points: np.ndarray) -> bool:
+    """Whether any of some points (n, 2), in units, lies in occupied cells or outside, by more than the tolerance of a trace.
+
+    Such a point lies in no free cell, nor at the edge or corner of one. cells: those of the grid, `walled`.
+    """
+    shifts = np.array([[-_TRACE, -_TRACE], [-_TRACE, _TRACE], [_TRACE, -_TRACE], [_TRACE, _TRACE]])
+    near = np.floor(grid.in_cells(points[:, None] + shifts)).astype(int) + 1
+    column, row = (np.clip(near[..., axis], 0, cells.shape[1 - axis] - 1) for axis in (0, 1))
+    return bool(cells[row, column].all(axis=1).any())
 
 
 # ---------------------------------------------------------------------------------------------------------------------
 # Bounds
 
 
-def _bounds_judged(task: Task) -> Verdict:
-    made, moving = problems.read(task.problems), worlds.read(task.problems)
-    again = (rides.bounds_of(made, moving) if moving else problems.bounds_of(made)).to_pylist()
-    stored = {row["problem"]: row for row in _read(task.bounds).to_pylist()}
+def _bounds_judged(task: Task, made: dict[str, Problem], moving: dict[str, World]) -> Verdict:
+    kept = _read(task.bounds)
+    again = rides.bounds_again(made, moving, kept, task.runs) if moving else problems.bounds_of(made)
+    for field in again.schema:
+        _column(task.bounds, kept, field.name, _kind(field.type))
+    stored = {row["problem"]: row for row in kept.to_pylist()}
     faults = [Fault(task.bounds, name, "problem", name, "no problem of that name") for name in stored.keys() - made.keys()]
-    for row in again:
+    for row in again.to_pylist():
         faults += _bound_faults(task.bounds, stored.get(row["problem"]), row)
-    return Verdict(faults, 0, 0, 0, len(again), 0, "")
+    return Verdict(faults, 0, 0, 0, len(again), 0, {})
 
 
-def _bound_faults(file: str, stored: dict[str, Any] | None, row: dict[str, Any]) -> list[Fault]:
+def _kind(type_: pa.DataType) -> str:
+    return next(kind for kind, (_, fits) in _TYPES.items() if fits(type_))
+
+
+def _bound_faults(file: str, stored: dict[str, Any] | None, row: dict[str, Any]) -> Iterator[Fault]:
     if stored is None:
-        return [Fault(file, row["problem"], "problem", "nothing", row["problem"])]
-    found = []
+        yield Fault(file, row["problem"], "problem", "nothing", row["problem"])
+        return
     for name, value in row.items():
-        pairs = zip(stored[name], value) if isinstance(value, list) else [(stored[name], value)]
-        alike = not isinstance(value, list) or len(stored[name]) == len(value)
-        if not alike or not all(same(one, other, _SAME) if name != "problem" else one == other for one, other in pairs):
-            found.append(Fault(file, row["problem"], name, stored[name], value))
-    return found
+        if name != "problem":
+            one, other = (np.atleast_1d(np.array(each, dtype=float)) for each in (stored[name], value))
+            if len(one) != len(other) or not same(one, other, _SAME).all():
+                yield Fault(file, row["problem"], name, stored[name], value)

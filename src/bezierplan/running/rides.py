@@ -5,8 +5,12 @@ A job is as in `execution`, with one more key: policy, the values of a `simulati
 `columns.DriveTimes`.
 """
 
+import json
 import math
+import sys
+from collections.abc import Iterable
 from functools import partial
+from pathlib import PurePath
 from typing import Any
 
 import numpy as np
@@ -184,7 +188,30 @@ def bounds_of(problems: dict[str, Problem], worlds: dict[str, World], arrivals: 
     return rows.table(bounds, Bound, DriveBound)
 
 
-def first_arrivals(files: list[str], repeats: int) -> dict[str, float]:
+def write_bounds(problems: dict[str, Problem], worlds: dict[str, World], runs: list[str], repeats: int, file: str) -> None:
+    """Write the bounds of problems with the first arrivals of the drives in some files, up to a number of repeats, and whose they are."""
+    table = bounds_of(problems, worlds, first_arrivals(runs, repeats))
+    drives = {"methods": sorted({_method(run) for run in runs}), "repeats": repeats}
+    parquet.write_table(table.replace_schema_metadata({_DRIVES: json.dumps(drives)}), file)
+
+
+_DRIVES = b"bezierplan_drives"
+
+
+def bounds_again(problems: dict[str, Problem], worlds: dict[str, World], kept: pa.Table, runs: Iterable[str]) -> pa.Table:
+    """The bounds of problems with the first arrivals of those drives in some files that a file of bounds takes into account."""
+    drives = json.loads((kept.schema.metadata or {}).get(_DRIVES, "null"))
+    if drives is None:
+        return bounds_of(problems, worlds, first_arrivals(runs, sys.maxsize))
+    return bounds_of(problems, worlds, first_arrivals([run for run in runs if _method(run) in drives["methods"]], drives["repeats"]))
+
+
+def _method(run: str) -> str:
+    """The method of a file of runs."""
+    return PurePath(run).parts[-2]
+
+
+def first_arrivals(files: Iterable[str], repeats: int) -> dict[str, float]:
     """The first arrival without a collision, in steps, of the drives in some files, up to a number of repeats, by problem."""
     first: dict[str, float] = {}
     for file in files:

@@ -64,6 +64,11 @@ def kept_digest(table: pa.Table) -> str | None:
     return kept and kept.decode()
 
 
+def edited(table: pa.Table) -> bool:
+    """Whether a table that was read has other rows than when it was written."""
+    return kept_digest(table) not in (None, rows_digest(table))
+
+
 def rows_digest(table: pa.Table) -> str:
     """A hash over the content of a table, column by column in order of name: to the last bit, whatever the layout of the file."""
     found = hashlib.sha256()

@@ -143,6 +143,8 @@ class Pivot(Table):
 
     @model_validator(mode="after")
     def _check_places(self) -> "Pivot":
+        if not self.index:
+            raise wrong("index: []: expected at least one column")
         for key in self.columns:
             if key in self.index:
                 raise wrong(f"columns: {key}: in index already; expected it in one of the two")

@@ -47,6 +47,7 @@ def check(study: Study) -> None:
     design, functions = Design(study), _functions(study)
     published.check_files(study)
     place = relative(study.folder / "artefacts.yaml")
+    _check_labels(study, f"{place}: labels")
     for name, table in study.tables.items():
         _check_table(design, functions, table, f"{place}: tables: {name}")
     for name, figure in study.figures.items():
@@ -65,6 +66,19 @@ def check(study: Study) -> None:
     _check_ids(study.assumptions, f"{place}: assumptions")
     for assumption in study.assumptions:
         check_assumption(study, assumption, f"{place}: assumptions: {assumption.id}")
+
+
+def _check_labels(study: Study, place: str) -> None:
+    """Methods of an experiment are printed by different names, and so are its problems."""
+    for experiment, content in study.experiments.items():
+        for names in (study.methods_of(experiment), content.problems):
+            owners: dict[str, str] = {}
+            for name in names:
+                printed = study.labels.get(name, name)
+                owner = owners.setdefault(printed, name)
+                if owner != name:
+                    labelled = name if name in study.labels else owner
+                    raise Fault(f"{place}: {labelled}: {printed}: {owner} and {name} of experiment {experiment} would both be printed so")
 
 
 def _check_ids(entries: Sequence[Claim] | Sequence[Assumption], place: str) -> None:

@@ -1,5 +1,6 @@
 """What the page of a scale shows: its input files, its params, and the file itself."""
 
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -38,19 +39,30 @@ def inputs(given: Studies, scale: str) -> dict[str, list[str]]:
 
 
 def verified_inputs(given: Studies, scale: str) -> dict[str, list[str]]:
-    """Input files of the check of all runs that the page shows."""
+    """Input files of the check of all runs and bounds that the page shows. drives: those behind the bounds of worlds that move."""
     found = inputs(given, scale)
-    return {name: found[name] for name in ("runs", "problems", "traces")}
+    shown = {name: found[name] for name in ("runs", "problems", "bounds", "traces")}
+    return shown | {"drives": list(dict.fromkeys(drive for *_, drives in _verified(given, scale) for drive in drives))}
 
 
 def verified_params(given: Studies, scale: str, root: str = "") -> dict[str, Any]:
-    """Params of the check: `job`, the file of problems and the files of runs of each experiment. root: as in `params`."""
-    job = []
+    """Params of the check: `job`, for each experiment its files of problems, of bounds, of runs, of all drives. root: as in `params`."""
+    job = [
+        [root + problems, root + bounds, *([root + file for file in files] for files in (runs, drives))]
+        for problems, bounds, runs, drives in _verified(given, scale)
+    ]
+    return {"job": job, "code": versioned_digest(str(targets.SCRIPTS / "verified.py"))}
+
+
+def _verified(given: Studies, scale: str) -> Iterator[tuple[str, str, list[str], list[str]]]:
+    """The files of problems, of bounds, of the runs that the page shows, and of all drives, of each experiment."""
     for key, names in _artefacts(given, scale).items():
         found = _runs(given, scale, key, names)
-        for problems in found["problems"]:
-            job.append([root + problems, [root + run for run in found["runs"] if _of(run) == Path(problems).stem]])
-    return {"job": job, "code": versioned_digest(str(targets.SCRIPTS / "verified.py"))}
+        for problems, bounds in zip(found["problems"], found["bounds"], strict=True):
+            experiment = Path(problems).stem
+            runs = [run for run in found["runs"] if _of(run) == experiment]
+            drives = targets.drives(given, scale, key, experiment) if given[key].moves(experiment) else []
+            yield problems, bounds, runs, drives
 
 
 def params(given: Studies, scale: str, root: str = "") -> dict[str, Any]:

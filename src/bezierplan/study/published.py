@@ -185,6 +185,8 @@ def _check_numbers(row: dict[str, str], place: str) -> None:
     if not least <= value <= most:
         limits = f"a number of at least {least:g}" + (f", at most {most:g}" if most < LARGEST else "")
         raise Fault(f"{place}: value: {row['value']}: expected {limits}, as the {statistic} of {row['metric']} is")
+    if statistic == "count" and not value.is_integer():
+        raise Fault(f"{place}: value: {row['value']}: expected a whole number, as the count of {row['metric']} is")
 
 
 def _check_value(text: str, place: str, empty: bool = False) -> None:

@@ -130,9 +130,7 @@ def check_names(given: Mapping[str, Study], taken: Iterable[str]) -> None:
     owners = dict.fromkeys(taken, "the workflow")
     for key, study in given.items():
         place = relative(study.folder)
-        if not re.fullmatch("[A-Za-z][A-Za-z0-9_-]*", key) or len(key) > LONGEST_NAME or key.lower() in DEVICES:
-            wanted = f"at most {LONGEST_NAME} letters, digits, _ and -, a letter first, and not the name of a device"
-            raise Fault(f"{place}: {key}: not a name of a study; expected {wanted}; rename the folder")
+        check_name(key, f"{place}: {key}")
         if {"{", "}"} & set(place):
             raise Fault(f"{place}: Snakemake reads braces as a pattern; expected a folder without them; rename it")
         if (STUDIES / key).is_dir() and not (STUDIES / key).samefile(study.folder):
@@ -143,8 +141,17 @@ def check_names(given: Mapping[str, Study], taken: Iterable[str]) -> None:
             owners[target] = f"study {key}"
 
 
-def check_folder() -> None:
-    """Raise Fault unless results can be written below the working folder."""
+def check_name(key: str, place: str) -> None:
+    """Raise Fault, beginning with a place, unless a study can have this name."""
+    if not re.fullmatch("[A-Za-z][A-Za-z0-9_-]*", key) or len(key) > LONGEST_NAME or key.lower() in DEVICES:
+        wanted = f"at most {LONGEST_NAME} letters, digits, _ and -, a letter first, and not the name of a device"
+        raise Fault(f"{place}: not a name of a study; expected {wanted}; choose another name for its folder")
+
+
+def check_start(cores: int | None) -> None:
+    """Raise Fault unless there is a core to work on, if their number is given, and results can be written below the working folder."""
+    if cores is not None and cores < 1:
+        raise Fault(f"--cores: {cores}; expected a number of at least 1")
     for place in (Path(), Path("results")):
         if place.exists() and not (place.is_dir() and os.access(place, os.W_OK | os.X_OK)):
             raise Fault(f"{place.resolve()}: cannot be written; the workflow writes its results into results/ of the working folder")

@@ -304,6 +304,7 @@ class Verified(Record):
     files: int = Field(description="files of runs")
     runs: int
     paths: int = Field(description="different paths among those of the runs")
+    bounds: int = Field(description="exact bounds that were computed again")
     digest: str = Field(description="of all runs")
     versions: dict[str, str] = Field(description="library that computes -> its version")
 

@@ -15,6 +15,7 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis.claims.effects import LEAST_WITHOUT_EXAMPLE, SIDES, Comparison, Effect, Finding, counted
 from bezierplan.analysis.claims.kinds import FAILURES, POOL, SECONDARY, Columns, OfRuns
+from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.statistics import LEAST_RUNS
 from bezierplan.schema.model import Metric, Model, Number, is_number, value, wrong
 
@@ -72,6 +73,13 @@ class Options(OfRuns):
             raise wrong(f"threshold: {self.threshold}: {needed}")
         return self
 
+    @model_validator(mode="after")
+    def _check_truth(self) -> Options:
+        metric = METRICS.get(self.metric)
+        if metric and self.event is None and (metric.unit != "-" or metric.step is None):
+            raise wrong(f"event: missing key; {self.metric} is no truth: expected one of below, above, at_most, at_least, equals")
+        return self
+
 
 def cells(check: Options, rows: pd.DataFrame) -> Iterator[tuple[str, list]]:
     """One cell, of all runs."""
@@ -101,6 +109,8 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
     n, k = len(happened), int(happened.sum())
     if not n:
         return Finding(mark="?", reason="no run counts")
+    if not np.isin(happened, (0.0, 1.0)).all():
+        raise ValueError(f"{name}: {check['metric']} has values other than true and false; its check needs an event")
     found = Finding(k / n, "share", k / n, n=n)
     holds = bool(claimed(check, np.array(k / n), math.nan))
     if check.pick:
