@@ -2,6 +2,7 @@
 alternative, and a wrong published number.
 """
 
+import json
 import math
 import re
 from pathlib import Path
@@ -9,6 +10,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 import starts
+
+from bezierplan.running import recheck
 
 ROOT = Path(__file__).parents[1]
 
@@ -173,6 +176,16 @@ def test_words_of_a_title_are_no_markup_in_the_report(results):
     report = (folder / "report.html").read_text()
     assert "Lengths &lt;/script&gt;&lt;b&gt; `x`_ .. include:: bend.py" in report
     assert "Lengths </script>" not in report
+
+
+def test_the_command_judges_what_the_workflow_judged_and_what_it_tried(results):
+    judged = json.loads((results.parent / "verified.json").read_text())
+    tasks = recheck.tasks(results.parent)
+    found = recheck.verify([task for task in tasks if "sensitivity" not in "".join(task.runs)], 1)
+    counts = {name: getattr(found, name) for name in ("files", "runs", "paths", "bounds", "digest")}
+    assert counts | {"versions": recheck.versions()} == judged
+    assert not recheck.verify(tasks, 1).faults
+    assert len(tasks) > judged["bounds"] + 2  # the alternative's runs as well
 
 
 def test_figure_shows_the_own_planner(results):

@@ -63,7 +63,7 @@ class Task(NamedTuple):
 
 class Verdict(NamedTuple):
     """faults: in order of files. files, runs: how many files of runs, and rows in them. paths: different paths among these. bounds: how
-    many were computed again. undigested: files without a digest of their own. digests: by file of runs.
+    many were computed again. undigested: files without a digest of their own. digests: a line for each file of runs.
     """
 
     faults: list[Fault]
@@ -72,13 +72,12 @@ class Verdict(NamedTuple):
     paths: int
     bounds: int
     undigested: int
-    digests: dict[str, str]
+    digests: tuple[str, ...]
 
     @property
     def digest(self) -> str:
         """One for all files of runs."""
-        lines = [f"{file} {digest}" for file, digest in sorted(self.digests.items())]
-        return hashlib.sha256("\n".join(lines).encode()).hexdigest()[:16]
+        return hashlib.sha256("\n".join(sorted(self.digests)).encode()).hexdigest()[:16]
 
 
 def tasks(folder: File) -> list[Task]:
@@ -137,7 +136,7 @@ def merged(verdicts: Iterable[Verdict]) -> Verdict:
     all_of = list(verdicts)
     counts = (sum(getattr(each, name) for each in all_of) for name in Verdict._fields[1:-1])
     faults = sorted((fault for each in all_of for fault in each.faults), key=lambda fault: fault[:3])
-    return Verdict(faults, *counts, {file: digest for each in all_of for file, digest in each.digests.items()})
+    return Verdict(faults, *counts, tuple(line for each in all_of for line in each.digests))
 
 
 def write(verdict: Verdict, file: str) -> None:
@@ -164,7 +163,7 @@ def judged(task: Task) -> Verdict:
     chunks = [_chunk(file, _DRIVE_COLUMNS if moving else _RUN_COLUMNS) for file in task.runs]
     faults = [fault for chunk in chunks for fault in _chunk_faults(chunk, made, task.problems)] + _twice(chunks)
     found, paths = (_drive_faults(chunks, made, moving), 0) if moving else _path_faults(chunks, made)
-    digests = {"/".join(File(chunk.file).parts[-5:]): chunk.digest for chunk in chunks}
+    digests = tuple(f"{'/'.join(File(chunk.file).parts[-5:])} {chunk.digest}" for chunk in chunks)
     undigested = sum(chunk.kept is None for chunk in chunks)
     return Verdict(faults + found, len(chunks), sum(len(chunk.ids) for chunk in chunks), paths, 0, undigested, digests)
 
@@ -491,7 +490,7 @@ def _bounds_judged(task: Task, made: dict[str, Problem], moving: dict[str, World
     faults = [Fault(task.bounds, name, "problem", name, "no problem of that name") for name in stored.keys() - made.keys()]
     for row in again.to_pylist():
         faults += _bound_faults(task.bounds, stored.get(row["problem"]), row)
-    return Verdict(faults, 0, 0, 0, len(again), 0, {})
+    return Verdict(faults, 0, 0, 0, len(again), 0, ())
 
 
 def _kind(type_: pa.DataType) -> str:
