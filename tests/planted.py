@@ -72,7 +72,12 @@ class Surface:
         error = generator(f"{self.name}/{task.part}/{name_of(task.reading)}").normal(0.0, ERROR, NUMBERS)
         away = self.printed[task.part] - self._means(task.part, task.reading) - error
         score = -0.5 * (FREEDOM + NUMBERS) * math.log1p(float(away @ away) / FREEDOM)
-        frame = {"method": self.parts[task.part].methods[0], "metric": "length", "statistic": "mean", "value_published": self.printed[task.part]}
+        frame = {
+            "method": self.parts[task.part].methods[0],
+            "metric": "length",
+            "statistic": "mean",
+            "value_published": self.printed[task.part],
+        }
         bounds = {"low": self.printed[task.part] - away - 2, "high": self.printed[task.part] - away + 2}
         numbers = pd.DataFrame(frame | bounds | {"in_range": np.abs(away) < 2, "possible": True, "table": "table1"})
         return Evaluated(task.reading, numbers, {"table1": score})

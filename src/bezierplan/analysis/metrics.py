@@ -258,7 +258,13 @@ METRICS: dict[str, Metric] = {
         on=("grid",),
     ),
     "cells": Metric(
-        "-", "number of cells that the path touches; none for a path that touches an occupied cell", True, partial(measures.of_path_on_grid, measures.cells_touched), least=0.0, step=1.0, on=("grid",)
+        "-",
+        "number of cells that the path touches; none for a path that touches an occupied cell",
+        True,
+        partial(measures.of_path_on_grid, measures.cells_touched),
+        least=0.0,
+        step=1.0,
+        on=("grid",),
     ),
     "octile_bound": Metric("u", "least length of a path of free cells, 1.5 for a diagonal step", False, on=("grid",)),
     "homotopy": Metric(

@@ -114,10 +114,13 @@ class Assumption(Model):
     setting: Name = Field(None, description="the planner's setting that it governs")
     problems: listed(ProblemName) = Field([], description="the problems on which alone the alternatives of a setting are tried")
     workspace: dict[Name, Name] = Field(
-        {}, description="workspace → its key that it governs, instead of a setting: `snakemake readings` draws the workspace anew", min_length=1
+        {},
+        description="workspace → its key that it governs, instead of a setting: `snakemake readings` draws the workspace anew",
+        min_length=1,
     )
     table: Literal["within"] = Field(
-        None, description="within: it governs this key of the tables, instead of a setting; the default is then `all`, and each alternative a column"
+        None,
+        description="within: it governs this key of the tables, instead of a setting; the default is then `all`, and each alternative a column",
     )
     along: dict[Name, dict[Name, Setting]] = Field(
         {}, alias="with", description="method → further settings that go along with every alternative", min_length=1
