@@ -6,13 +6,14 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import planted
 import pytest
 
 from bezierplan.analysis import explained, readings, statistics
 from bezierplan.analysis.explained import Evaluated
 from bezierplan.analysis.results import Results
+from bezierplan.analysis.search import Part, confirm, search
 from bezierplan.figures import specification
-from bezierplan.running import problems
 from bezierplan.study import choices, reading
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
@@ -63,7 +64,7 @@ def test_what_the_paper_does_not_define_has_no_vote(studies):
 
 @pytest.mark.parametrize("key", KEYS)
 def test_every_study_has_a_grid_of_plain_values(studies, key):
-    job = choices.readings_job(studies[key], "full")
+    job = choices.readings_job(studies[key], 1)
     assert json.loads(json.dumps(job)) == job
     assert job["tables"]
     assert job["choices"]
@@ -73,7 +74,7 @@ def test_every_study_has_a_grid_of_plain_values(studies, key):
 
 
 def test_a_reading_changes_the_settings_of_its_methods_and_nothing_else(studies):
-    job = choices.readings_job(studies["meledje"], "full")
+    job = choices.readings_job(studies["meledje"], 1)
     chunk = job["tables"]["table2"]["jobs"]["proposed"]
     changed = readings.job_under(chunk, {"M5": 1, "M18": "path"}, job["choices"])
     assert changed["settings"] == chunk["settings"] | {"elitism": 1}
@@ -82,7 +83,7 @@ def test_a_reading_changes_the_settings_of_its_methods_and_nothing_else(studies)
 
 @pytest.mark.parametrize("key", KEYS)
 def test_every_choice_can_be_made_in_every_job(studies, key):
-    job = choices.readings_job(studies[key], "full")
+    job = choices.readings_job(studies[key], 1)
     for choice in job["choices"]:
         for value in choice["values"][1:]:
             chosen = {choice["id"]: value}
@@ -91,12 +92,12 @@ def test_every_choice_can_be_made_in_every_job(studies, key):
                 for table in job["tables"].values()
                 for chunk in table["jobs"].values()
             ]
-            # A metric and a world change how runs are read, a setting changes runs.
+            # A metric and a world change how runs are read, a workspace what they are made in, a setting changes runs.
             assert any(changes) == ("setting" in choice), chosen
 
 
 def test_a_choice_wins_over_the_settings_of_a_problem(studies):
-    job = choices.readings_job(studies["ma2020"], "full")
+    job = choices.readings_job(studies["ma2020"], 1)
     chunk = job["tables"]["table2"]["jobs"]["aco"]
     assert chunk["problems"]["environment2"]["settings"]["iterations"] == 100
     changed = readings.job_under(chunk, {"O12d": 200}, job["choices"])
@@ -105,7 +106,7 @@ def test_a_choice_wins_over_the_settings_of_a_problem(studies):
 
 
 def test_only_the_world_of_the_reading_is_run(studies):
-    table = choices.readings_job(studies["tharwat2018"], "full")["tables"]["table3"]
+    table = choices.readings_job(studies["tharwat2018"], 1)["tables"]["table3"]
     chunk = table["jobs"]["cpso1_gauss"]
     for chosen, world in (({}, ("equal", "default")), ({"workspace": "public", "profile": "tuned"}, ("public", "tuned"))):
         spec, job = readings.in_world(table["spec"], chunk, chosen)
@@ -182,7 +183,44 @@ def test_the_length_that_a_fitness_uses_is_not_the_length_that_is_printed(studie
     assert found["O2"].keys() & {"metric", "setting"} == {"setting"}
 
 
+def test_a_choice_for_some_problems_leaves_the_others_alone(studies):
+    job = choices.readings_job(studies["meledje"], 1)
+    first, second = (job["tables"][name]["jobs"]["ref12"] for name in ("table2", "table4"))
+    changed = [readings.job_under(chunk, {"M15": 50, "M15b": 200}, job["choices"]) for chunk in (first, second)]
+    assert all(chunk["settings"]["generations"] == 50 for chunk in changed)
+    found = {name: place["settings"].get("generations") for chunk in changed for name, place in chunk["problems"].items()}
+    assert found["env1_initial"] is None
+    assert found["env2_initial"] == found["env2_modified"] == 200
+
+
+def test_methods_that_no_metric_compares_are_parts(studies):
+    job = choices.search_job(studies["elhoseny2017"])
+    parts = {part["methods"][0]: part["choices"] for part in job["parts"]}
+    assert list(parts) == ["mga", "prm", "abc_ep", "ga"]
+    assert parts["prm"] == ["O1", "O1b", "O15b", "O15c", "O15d", "O25b"]
+    # Mean ranks are those of all methods together.
+    assert len(choices.search_job(studies["tharwat2018"])["parts"]) == 1
+
+
+@pytest.mark.parametrize("method", ["prm", "abc_ep", "ga"])
+def test_every_rival_has_forty_settings_to_try(studies, method):
+    found = {
+        choice["id"]: len(choice["values"]) for choice in choices.choices(studies["elhoseny2017"]) if choice.get("methods") == [method]
+    }
+    assert math.prod(found.values()) >= 40
+
+
+def test_a_share_of_the_runs_screens_readings(studies):
+    job = choices.search_job(studies["elhoseny2017"])
+    layouts = [{place["layout"] for place in job[name]["worlds"]["fields100"]["problems"].values()} for name in ("screened", "confirmed")]
+    assert list(map(len, layouts)) == [statistics.LEAST_RUNS, 20]
+    job = choices.search_job(studies["ma2020"])
+    assert [job[name]["tables"]["table1"]["jobs"]["aco"]["repeats"] for name in ("screened", "confirmed")] == [[0, 25], [0, 100]]
+
+
 # The search.
+
+ALONE = [Part(["a"], [choice["id"] for choice in CHOICES])]
 
 
 def evaluated(chosen: dict, planted: dict) -> Evaluated:
@@ -191,17 +229,34 @@ def evaluated(chosen: dict, planted: dict) -> Evaluated:
     return Evaluated(chosen, numbers(agree), {"table1": float(sum(agree))})
 
 
+def evaluating(planted: dict):
+    return lambda tasks: [evaluated(task.reading, planted) for task in tasks]
+
+
 def test_a_small_grid_is_searched_completely():
-    tried = readings.search(CHOICES[:3], lambda chosen: evaluated(chosen, {}), "study", most=27)
-    assert len({explained.name_of(each.reading) for each in tried}) == 27
-    assert tried[0].reading == {}
+    found = search(CHOICES[:3], [Part(["a"], ["O0", "O1", "O2"])], evaluating({}), "study", most=27)
+    assert len(found.of_parts[0]) == 27
+    assert found.readings[0].reading == {}
 
 
 def test_a_large_grid_is_climbed_to_the_planted_reading():
     planted = {"O1": 2, "O3": 1, "O4": 2}
-    tried = readings.search(CHOICES, lambda chosen: evaluated(chosen, planted), "study", most=60)
-    assert len(tried) <= 60
-    assert max(tried, key=lambda each: each.rank).reading == planted
+    found = search(CHOICES, ALONE, evaluating(planted), "study", most=60)
+    assert max(found.readings, key=lambda each: each.rank).reading == planted
+
+
+def test_a_change_is_paid_only_by_the_parts_that_it_concerns():
+    asked = []
+
+    def evaluate(tasks):
+        asked.extend(tasks)
+        return [evaluated(task.reading, {"O1": 2, "O5": 1}) for task in tasks]
+
+    parts = [Part(["a"], ["O0", "O1", "O2"]), Part(["b"], ["O0", "O3", "O4", "O5"])]
+    found = search(CHOICES, parts, evaluate, "study", most=200)
+    assert len({(task.part, explained.name_of(task.reading)) for task in asked}) == len(asked) == 27 + 81
+    assert all(task.reading.keys() <= set(parts[task.part].choices) for task in asked)
+    assert max(found.readings, key=lambda each: each.rank).reading == {"O1": 2, "O5": 1}
 
 
 def test_a_reading_names_no_choice_that_its_world_makes_itself():
@@ -218,16 +273,42 @@ def test_a_reading_names_no_choice_that_its_world_makes_itself():
 def test_readings_that_exclude_themselves_are_left_out_and_the_budget_is_kept():
     asked = []
 
-    def evaluate(chosen):
-        asked.append(explained.name_of(chosen))
-        return None if chosen.get("O2") == 1 else evaluated(chosen, {})
+    def evaluate(tasks):
+        asked.extend(explained.name_of(task.reading) for task in tasks)
+        return [None if task.reading.get("O2") == 1 else evaluated(task.reading, {}) for task in tasks]
 
-    tried = readings.search(CHOICES, evaluate, "study", most=20)
-    assert len(asked) == len(set(asked)) == 20
-    assert all(each.reading.get("O2") != 1 for each in tried)
-    assert [explained.name_of(each.reading) for each in readings.search(CHOICES, evaluate, "study", most=20)] == [
-        explained.name_of(each.reading) for each in tried
-    ]
+    found = search(CHOICES, ALONE, evaluate, "study", most=20)
+    assert len(asked) == len(set(asked))
+    assert 20 <= len(asked) < 20 + 3  # a batch is finished
+    assert all(each.reading.get("O2") != 1 for each in found.readings)
+    again = search(CHOICES, ALONE, evaluate, "study", most=20)
+    assert [each.reading for each in again.readings] == [each.reading for each in found.readings]
+
+
+def test_the_best_are_judged_again():
+    found = search(CHOICES, ALONE, evaluating({"O1": 2}), "study", most=60)
+    confirmed = confirm(found, ALONE, evaluating({"O1": 1}), 5)
+    assert confirmed[0].reading == {}
+    assert len({explained.name_of(each.reading) for each in confirmed}) == 6
+    assert max(confirmed, key=lambda each: each.rank).reading.get("O1") != 2
+
+
+PLANTED = [("song2016", 0), ("ma2020", 0), ("meledje", 0), ("meledje", 1), ("ma2020", 1)]
+
+
+@pytest.mark.parametrize(("key", "number"), PLANTED)
+def test_a_planted_reading_is_found(studies, key, number):
+    job = choices.search_job(studies[key])
+    surface = planted.Surface(f"{key}/{number}", job["screened"]["choices"], [Part(**part) for part in job["parts"]])
+    assert planted.found_by(surface, 100) >= -planted.NEAR
+
+
+def test_noise_is_not_explained(studies):
+    job = choices.search_job(studies["ma2020"])
+    surface = planted.Surface("ma2020/noise", job["screened"]["choices"], [Part(**part) for part in job["parts"]], noise=True)
+    found = search(surface.choices, surface.parts, surface.evaluate, "study", most=60)
+    best = max(found.readings, key=lambda each: each.rank)
+    assert best.numbers["in_range"].mean() < 0.5
 
 
 # What is reported.
@@ -244,20 +325,22 @@ def test_tables_of_readings_numbers_and_tables_left_out():
     tables = ["table1", "table1", "table2"]
     in_force = Evaluated({}, numbers([True, False, True], tables), {"table1": -1.0, "table2": -1.0})
     other = Evaluated({"O1": 2}, numbers([True, True, False], tables), {"table1": 0.0, "table2": -5.0})
-    found = explained.readings_table("study", [in_force, other], CHOICES)
+    found = explained.readings_table("study", [in_force, other], [in_force, other], CHOICES)
     assert found["reading"].to_list() == ["in force", "O1=2"]
     assert found[["in_range", "in_range_table1", "in_range_table2"]].to_numpy().tolist() == [[2, 1, 1], [2, 2, 0]]
-    numbers_found = explained.explained_table("study", [in_force, other])
+    numbers_found = explained.explained_table("study", [in_force, other], [[in_force, other]], set())
     assert numbers_found["readings"].to_list() == [1, 1, 2]
     assert numbers_found["in_force"].to_list() == [False, True, True]
-    held_out = explained.held_out_table("study", [in_force, other]).set_index("table")
+    held_out = explained.held_out_table("study", [in_force, other], {}).set_index("table")
     # The other one is best on the first table, and is wrong on the second.
     assert held_out.loc["table2", ["reading", "chosen", "in_force", "most"]].to_list() == ["O1=2", 0, 1, 1]
 
 
-def told(*tried):
-    tables = explained.readings_table("one", list(tried), CHOICES), explained.explained_table("one", list(tried))
-    (*_, text) = explained.section(*tables, explained.held_out_table("one", list(tried)), {"one": "The first"})
+def told(*tried, lines=None):
+    confirmed = list(tried)
+    numbers_found = explained.explained_table("one", confirmed, [confirmed], set())
+    held_out = explained.held_out_table("one", confirmed, lines or {})
+    (*_, text) = explained.section(explained.readings_table("one", confirmed, [], CHOICES), numbers_found, held_out, {"one": "The first"})
     return text
 
 
@@ -266,14 +349,15 @@ def test_summary_says_what_no_reading_gives_and_what_the_best_one_does():
     in_force = Evaluated({}, numbers([True, False, False, False], tables), {"table1": -1.0, "table2": -5.0})
     better = Evaluated({"O1": 2}, numbers([True, True, True, False], tables), {"table1": 0.0, "table2": -1.0})
     text = told(in_force, better)
-    assert text.startswith("**The first.** No reading gives 1 of the numbers (1 of table2). Of 4 numbers, 1 are in range")
-    assert "The most likely of 2 readings, O1=2, has a likelihood 10^2 times that of the one in force, and brings 3 into range" in text
-    assert text.endswith("readings bring 3, that in force 1: the tables held out agree with a change.")
-    assert "None of 1 readings is more likely." in told(in_force)
+    assert "are most likely from an experiment in which these choices differ from ours: : 2 (O1=2)" in text
+    assert "log-likelihood ratio against the one in force +5.0 (10^2 times as likely)" in text
+    assert "No reading explains 1 of the numbers: 1 of table2 for d." in text
+    assert text.endswith("readings bring 3 into range, that in force 1: the tables held out agree with a change.")
+    assert "none of 1 readings is more likely" in told(in_force)
     assert "explains their level" not in text
     # Ranges so wide that each holds every printed number of its kind say nothing about how these differ.
-    wide = Evaluated({"O1": 2}, better.numbers.assign(low=-10.0, high=10.0, in_range=True), better.likelihoods)
-    assert "brings 4 into range (4 when exchanged: it explains their level, not how they differ)" in told(in_force, wide)
+    wide = Evaluated({"O1": 2}, better.numbers.assign(low=-10.0, high=10.0, in_range=True, method="a"), better.likelihoods)
+    assert "4 of 4 numbers in range (4 if those of one kind in one table were exchanged): it explains their level" in told(in_force, wide)
 
 
 def test_summary_does_not_follow_a_reading_that_other_tables_refuse():
@@ -281,7 +365,7 @@ def test_summary_does_not_follow_a_reading_that_other_tables_refuse():
     in_force = Evaluated({}, numbers([False, False, True], tables), {"table1": -9.0, "table2": -1.0})
     fitted = Evaluated({"O1": 2}, numbers([True, True, False], tables), {"table1": 0.0, "table2": -9.0})
     text = told(in_force, fitted)
-    assert text.startswith("**The first.** Each number is in range under some reading.")
+    assert "Each number is in range under some reading." in text
     assert text.endswith("held out, table2 (0 instead of 1) speaks against a change.")
     assert explained.section(pd.DataFrame(), pd.DataFrame(), pd.DataFrame(), {}) == []
 
@@ -290,41 +374,57 @@ def test_a_reading_under_which_a_printed_number_is_impossible_is_ruled_out_whate
     in_force = Evaluated({}, numbers([True, False]), {"table1": -9.0})
     likely = Evaluated({"O1": 2}, numbers([True, True]).assign(possible=[True, False]), {"table1": 0.0})
     assert max([in_force, likely], key=lambda each: each.rank) is in_force
-    found = explained.readings_table("study", [in_force, likely], CHOICES)
+    found = explained.readings_table("study", [in_force, likely], [], CHOICES)
     assert found[["reading", "impossible"]].to_numpy().tolist() == [["in force", 0], ["O1=2", 1]]
     text = told(in_force, likely)
     assert "1 of 2 readings is ruled out: under it a printed mean or extreme lies below the exact bound of its map." in text
-    assert "None of 2 readings is more likely." in text
+    assert "none of 2 readings is more likely" in text
+    # Ruled out, it is no place to climb from either.
+    found = search(CHOICES, ALONE, lambda tasks: [likely if task.reading else in_force for task in tasks], "study", most=30)
+    assert found.readings[0].reading == {}
+
+
+def test_a_line_that_describes_the_numbers_better_is_told():
+    own = Evaluated({}, numbers([True, False]), {"table1": -9.0})
+    assert "below that of the most likely reading: so the reading describes them better" in told(
+        own, lines={"table1": ("obstacles", -20.0)}
+    )
+    text = told(own, lines={"table1": ("obstacles", -2.0)})
+    assert "A straight line in the column obstacles" in text
+    assert "has a log-likelihood 7.0 above that of the most likely reading: so the reading describes them worse" in text
+
+
+def test_a_line_predicts_numbers_on_it_and_not_others():
+    frame = {"method": "a", "obstacles": [5, 10, 15, 20, 25], "metric": "length", "statistic": "mean", "n": 10, "unit": "m"}
+    near, far = (
+        explained.yardstick(pd.DataFrame(frame | {"value": values}), "obstacles") for values in ([1, 2.1, 2.9, 4, 5], [1, 4, 2, 9, 3])
+    )
+    assert near > far
 
 
 def test_figure_shows_every_choice_that_some_reading_makes():
-    table = explained.readings_table("study", [evaluated({}, {}), evaluated({"O1": 2}, {}), evaluated({"O3": 1}, {})], CHOICES)
+    table = explained.readings_table("study", [evaluated(chosen, {}) for chosen in ({}, {"O1": 2}, {"O3": 1})], [], CHOICES)
     above, below = specification.draw(table, [choice["id"] for choice in CHOICES]).axes
     assert [label.get_text() for label in below.get_yticklabels()] == ["O1 = 2", "O3 = 1"]
     assert above.lines[0].get_ydata().tolist() == sorted(table["in_range"])
 
 
-def test_a_search_goes_on_with_the_runs_that_it_kept(studies, tmp_path, monkeypatch):
+def test_a_search_goes_on_with_the_runs_that_it_kept_in_any_number_of_processes(studies, tmp_path, monkeypatch):
     study = studies["song2016"]
-    job = choices.readings_job(study, "smoke")
-    for table in job["tables"].values():
-        for chunk in table["jobs"].values():
-            if "generations" in chunk["settings"]:
+    job = choices.search_job(study) | {"most": 2}
+    for part in ("screened", "confirmed"):
+        for table in job[part]["tables"].values():
+            for chunk in table["jobs"].values():
                 chunk["settings"] = chunk["settings"] | {"generations": 5, "population": 20}
-    described = {
-        "study": study.key,
-        "problems": study.problems_of("routes", "smoke"),
-        "workspaces": {"figure2": study.workspaces["figure2"].plain()},
-    }
-    made, _ = problems.build_all(described, study.folder)
-    bounds = pd.DataFrame({"problem": list(made), "bound": 1.0, "least_length": 0.0, "octile_bound": 1.0})
-    files = {"table1": study.published_file("table1")}
+                chunk["repeats"] = [0, statistics.LEAST_RUNS]
     monkeypatch.chdir(ROOT)
+    files = {"table1": study.published_file("table1")}
 
-    def search():
-        evaluate = readings.Evaluator(job, {"routes": made}, {"routes": bounds}, files, tmp_path)
-        return explained.readings_table(study.key, readings.search(job["choices"], evaluate, study.key, most=2), job["choices"])
+    def found(processes):
+        return readings.found_by(job, files, study.folder, tmp_path, processes)
 
-    first = search()
-    monkeypatch.setattr(readings.execution, "run_chunk", lambda *_: pytest.fail("run again"))
-    pd.testing.assert_frame_equal(search(), first)
+    first = found(2)
+    assert first["explained"]["tried"].min() >= 2
+    monkeypatch.setattr(readings.execution, "run_chunk", lambda *_, **__: pytest.fail("run again"))
+    for name, table in found(1).items():
+        pd.testing.assert_frame_equal(table, first[name])

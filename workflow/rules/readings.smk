@@ -1,5 +1,6 @@
 # Which reading of what a paper leaves open explains its published numbers? One job per study, which keeps the runs of each reading, so that
-# an interrupted search goes on where it was.
+# an interrupted search goes on where it was. A search is a hundred steps, each of which follows from the one before and is a batch of runs: the
+# threads of the job share it, and the result does not depend on their number.
 
 
 rule readings_of:
@@ -23,8 +24,9 @@ rule readings_of:
         png=f"{RESULTS}/readings.png",
     log:
         f"{RESULTS}/logs/readings.log",
+    threads: 4
     params:
-        **params(targets.readings_params, "job", "published", "code"),
+        **params(targets.readings_params, "job", "folder", "published", "code"),
         kept=f"{RESULTS}/readings",
     script:
         "../scripts/readings.py"

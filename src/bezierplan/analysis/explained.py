@@ -1,10 +1,12 @@
-"""What the search for a reading found (`analysis.readings`): three tables and a section of the summary.
+"""What the search for a reading found (`analysis.search`): three tables and a section of the summary.
 
 Columns of readings.csv, one row per reading, the best first:
 
 | column | meaning |
 | --- | --- |
 | study, reading | its changes, such as `O2=0.9, O7=clamp`; `in force` without any |
+| in_words | what the paper's experiment would have been: each choice made, in words |
+| confirmed | whether it was one of the best, which are judged by more runs; only these are compared in what follows |
 | one column per choice | its value, empty for the one in force |
 | in_range, numbers | how many of the published numbers lie in range, and of how many |
 | by_chance | how many would if each printed number were exchanged with another of its kind in the same table (expected value) |
@@ -13,13 +15,17 @@ Columns of readings.csv, one row per reading, the best first:
 | in_range_<table> | the same by table |
 
 Columns of explained.csv, one row per published number, those that no reading gives first: study, table, the table's keys, metric,
-statistic, value_published; in_force and best, whether it lies in range under the reading in force and under the best one; readings, under
-how many of those tried.
+statistic, value_published; in_force and best, whether it lies in range under the reading in force and under the best one; tried, how many
+readings of the choices that concern it were tried, and readings, in how many of these it is in range; settings, how many different settings
+of its methods alone were among them.
 
 Columns of held_out.csv, one row per table: the reading that is best on all other tables, and how many of this table's numbers lie in range
-under that reading (`chosen`), under the one in force (`in_force`) and at most (`most`), of how many (`numbers`).
+under that reading (`chosen`), under the one in force (`in_force`) and at most (`most`), of how many (`numbers`); the logarithm of the
+likelihood of the table under the best reading (`score_best`) and under the one in force (`score_in_force`); and, where the paper says that
+its numbers rise or fall along a column, that of a straight line there (`score_line`, along `line_along`; see `yardstick`).
 """
 
+import itertools
 import math
 from typing import Any, NamedTuple
 
@@ -44,9 +50,14 @@ class Evaluated(NamedTuple):
         return int((~self.numbers["possible"]).sum())
 
     @property
+    def score(self) -> float:
+        """Sum of the logarithms of the likelihoods."""
+        return sum(self.likelihoods.values())
+
+    @property
     def rank(self) -> tuple[bool, float]:
         """By which readings are compared, the higher, the better: whether it is not ruled out, and its score."""
-        return not self.impossible, sum(self.likelihoods.values())
+        return not self.impossible, self.score
 
 
 def name_of(reading: Reading) -> str:
@@ -54,17 +65,35 @@ def name_of(reading: Reading) -> str:
     return ", ".join(f"{choice}={value}" for choice, value in sorted(reading.items())) or IN_FORCE
 
 
-def readings_table(study: str, tried: list[Evaluated], choices: list[dict]) -> pd.DataFrame:
-    """readings.csv."""
-    rows = []
-    for each in sorted(tried, key=lambda each: each.rank, reverse=True):
+def together(reading: Reading, parts: list[Evaluated]) -> Evaluated:
+    """A reading from what is known of its parts, whose numbers follow each other."""
+    likelihoods: dict[str, float] = {}
+    for each in parts:
+        for table, likelihood in each.likelihoods.items():
+            likelihoods[table] = likelihoods.get(table, 0.0) + likelihood
+    return Evaluated(reading, pd.concat([each.numbers for each in parts], ignore_index=True), likelihoods)
+
+
+def in_words(reading: Reading, choices: list[dict]) -> str:
+    """The choices that a reading makes, each with what the paper leaves open."""
+    made = [f"{choice['detail']}: {reading[choice['id']]}" for choice in choices if choice["id"] in reading]
+    return "; ".join(made)
+
+
+def readings_table(study: str, confirmed: list[Evaluated], screened: list[Evaluated], choices: list[dict]) -> pd.DataFrame:
+    """readings.csv. confirmed: the best, judged by more runs. screened: all, of which those confirmed are left out."""
+    rows, again = [], {name_of(each.reading) for each in confirmed}
+    rest = [each for each in screened if name_of(each.reading) not in again]
+    ordered = [sorted(given, key=lambda each: each.rank, reverse=True) for given in (confirmed, rest)]
+    for each in itertools.chain(*ordered):
         numbers = each.numbers
         by_table = numbers.groupby("table")["in_range"].sum()
         rows.append(
-            {"study": study, "reading": name_of(each.reading)}
+            {"study": study, "reading": name_of(each.reading), "in_words": in_words(each.reading, choices)}
+            | {"confirmed": name_of(each.reading) in again}
             | {choice["id"]: each.reading.get(choice["id"], "") for choice in choices}
             | {"in_range": int(numbers["in_range"].sum()), "numbers": len(numbers), "by_chance": by_chance(numbers)}
-            | {"impossible": each.impossible, "score": sum(each.likelihoods.values())}
+            | {"impossible": each.impossible, "score": each.score}
             | {f"in_range_{table}": int(count) for table, count in by_table.items()}
         )
     return pd.DataFrame(rows)
@@ -81,27 +110,66 @@ def by_chance(numbers: pd.DataFrame) -> float:
     return float(expected)
 
 
-def explained_table(study: str, tried: list[Evaluated]) -> pd.DataFrame:
-    """explained.csv."""
-    best, in_force = max(tried, key=lambda each: each.rank), tried[0]
+def explained_table(study: str, confirmed: list[Evaluated], of_parts: list[list[Evaluated]], shared: set[str]) -> pd.DataFrame:
+    """explained.csv. confirmed: that in force first. of_parts: as from the search, in whose order the numbers stand. shared: ids of the
+    choices that concern several parts.
+    """
+    best, in_force = max(confirmed, key=lambda each: each.rank), confirmed[0]
     described = in_force.numbers.drop(columns=["low", "high", "in_range", "possible"])
-    counts = np.sum([each.numbers["in_range"].to_numpy(dtype=int) for each in tried], axis=0)
-    found = {"in_force": in_force.numbers["in_range"].to_numpy(), "best": best.numbers["in_range"].to_numpy(), "readings": counts}
-    table = described.assign(study=study, **found)[["study", *described.columns, *found]]
+    found = {"in_force": in_force.numbers["in_range"].to_numpy(), "best": best.numbers["in_range"].to_numpy()}
+    counts: dict[str, list[int]] = {"readings": [], "tried": [], "settings": []}
+    for tried in of_parts:
+        inside = np.sum([each.numbers["in_range"].to_numpy(dtype=int) for each in tried], axis=0)
+        own = {name_of({choice: value for choice, value in each.reading.items() if choice not in shared}) for each in tried}
+        counts["readings"] += inside.tolist()
+        counts["tried"] += [len(tried)] * len(inside)
+        counts["settings"] += [len(own)] * len(inside)
+    table = described.assign(study=study, **found, **counts)[["study", *described.columns, *found, *counts]]
     return table.sort_values("readings", kind="stable")
 
 
-def held_out_table(study: str, tried: list[Evaluated]) -> pd.DataFrame:
-    """held_out.csv."""
-    rows = []
-    for table in tried[0].likelihoods:
-        own = [int(each.numbers.loc[each.numbers["table"] == table, "in_range"].sum()) for each in tried]
-        others = [(each.rank[0], each.rank[1] - each.likelihoods[table]) for each in tried]
-        chosen = max(range(len(tried)), key=lambda n: others[n])
-        numbers = int((tried[0].numbers["table"] == table).sum())
-        row = {"study": study, "table": table, "reading": name_of(tried[chosen].reading), "chosen": own[chosen]}
-        rows.append(row | {"in_force": own[0], "most": max(own), "numbers": numbers})
+def held_out_table(study: str, confirmed: list[Evaluated], lines: dict[str, tuple[str, float]]) -> pd.DataFrame:
+    """held_out.csv. confirmed: that in force first. lines: of some tables, along which column a line is laid, and how likely it makes them
+    (`yardstick`).
+    """
+    rows, best = [], max(confirmed, key=lambda each: each.rank)
+    for table in confirmed[0].likelihoods:
+        own = [int(each.numbers.loc[each.numbers["table"] == table, "in_range"].sum()) for each in confirmed]
+        others = [(each.rank[0], each.score - each.likelihoods[table]) for each in confirmed]
+        chosen = max(range(len(confirmed)), key=lambda n: others[n])
+        numbers = int((confirmed[0].numbers["table"] == table).sum())
+        row = {"study": study, "table": table, "reading": name_of(confirmed[chosen].reading), "chosen": own[chosen]}
+        scores = {"score_best": best.likelihoods[table], "score_in_force": confirmed[0].likelihoods[table]}
+        along, score = lines.get(table, ("", math.nan))
+        rows.append(row | {"in_force": own[0], "most": max(own), "numbers": numbers} | scores | {"score_line": score, "line_along": along})
     return pd.DataFrame(rows)
+
+
+def yardstick(published: pd.DataFrame, along: str) -> float:
+    """How likely printed numbers are by a straight line alone: the logarithm of the likelihood of each, as predicted from the others of its
+    row by least squares, summed. No interpretation explains numbers that it does not make more likely than this.
+
+    published: as from `comparison.read_published`. along: the column that the line runs along. Rows with fewer than four numbers, which
+    leave no degree of freedom to predict one from, and seconds are left out.
+    """
+    from scipy.stats import t
+
+    keys = [key for key in published.columns[: published.columns.get_loc("metric")] if key != along]
+    total = 0.0
+    for _, row in published[published["unit"] != "s"].groupby([*keys, "metric", "statistic"], sort=False):
+        if len(row) < 4:
+            continue
+        x, y = row[along].to_numpy(dtype=float), row["value"].to_numpy(dtype=float)
+        for place in range(len(row)):
+            rest = np.arange(len(row)) != place
+            design = np.column_stack([np.ones(rest.sum()), x[rest]])
+            line, *_ = np.linalg.lstsq(design, y[rest], rcond=None)
+            freedom = rest.sum() - 2
+            variance = ((y[rest] - design @ line) ** 2).sum() / freedom
+            at = np.array([1.0, x[place]])
+            spread = math.sqrt(max(variance * (1 + at @ np.linalg.solve(design.T @ design, at)), (1e-3 * y[place]) ** 2))
+            total += float(t.logpdf(y[place], freedom, at @ line, spread))
+    return total
 
 
 def section(readings: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFrame, titles: dict[str, str]) -> list[str]:
@@ -113,10 +181,11 @@ def section(readings: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFr
         return []
     parts = [
         "## Readings that explain the printed numbers",
-        "What a paper leaves open is varied together, and each such reading is scored by the joint likelihood of the printed numbers. How "
-        "many lie in the central 95 % of what experiments of the paper's size would print is shown, too; but a reading whose runs vary "
-        "widely refuses nothing, so beside it stands how many would if printed numbers were exchanged. Numbers of a quantity that the "
-        "paper does not define have no vote. `<study>_readings.csv` has a row for each reading, `<study>_explained.csv` for each printed "
+        "What a paper leaves open is varied together, and each such reading is scored by the joint likelihood of the printed numbers among "
+        "what experiments of the paper's size would print, by a search that judges the best ones by more runs. A number is in range if it "
+        "lies in the central 95 % of these; but a reading whose runs vary widely refuses nothing, so beside the count stands how many "
+        "would be in range if printed numbers were exchanged. Numbers of a quantity that the paper does not define have no vote. "
+        "`<study>_readings.csv` has a row for each reading, `<study>_explained.csv` for each printed "
         "number, `<study>_held_out.csv` for each table.",
     ]
     for study, own in readings.groupby("study", sort=False):
@@ -125,47 +194,117 @@ def section(readings: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFr
 
 
 def sentences(readings: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFrame) -> str:
-    """What follows from the tables of one study."""
-    best = readings.iloc[0]
-    in_force = readings[readings["reading"] == IN_FORCE].iloc[0]
-    never = explained[explained["readings"] == 0]
-    parts = [f"No reading gives {_by_table(never)}." if len(never) else "Each number is in range under some reading."]
-    parts.append(
-        f"Of {in_force['numbers']} numbers, {in_force['in_range']} are in range under the reading in force; {in_force['by_chance']:.0f} "
-        "would be if numbers of one kind in one table were exchanged."
+    """The verdict, from the tables of one study."""
+    best, in_force = readings.iloc[0], readings[readings["reading"] == IN_FORCE].iloc[0]
+    return " ".join(
+        filter(
+            None,
+            [
+                _most_likely(best, in_force, len(readings)),
+                _beside_a_line(held_out),
+                _never(explained),
+                _searched(explained),
+                _ruled_out(readings),
+                _held_out(held_out),
+            ],
+        )
     )
-    ruled_out = int((readings["impossible"] > 0).sum())
-    if ruled_out:
-        parts.append(
-            f"{ruled_out} of {len(readings)} readings {'is' if ruled_out == 1 else 'are'} ruled out: under "
-            f"{'it' if ruled_out == 1 else 'them'} a printed mean or extreme lies below the exact bound of its map."
-        )
+
+
+def _most_likely(best: pd.Series, in_force: pd.Series, tried: int) -> str:
+    """Which experiment the numbers are most likely from, and how much more likely than from the one in force."""
+    if best["impossible"]:
+        return f"Under each of {tried} readings some printed number is impossible."
     if best["reading"] == IN_FORCE:
-        parts.append(f"None of {len(readings)} readings is more likely.")
-    else:
-        level = ": it explains their level, not how they differ" if best["in_range"] <= best["by_chance"] + 0.5 else ""
-        parts.append(
-            f"The most likely of {len(readings)} readings, {best['reading']}, has a likelihood {_times(best['score'] - in_force['score'])} "
-            f"that of the one in force, and brings {best['in_range']} into range ({best['by_chance']:.0f} when exchanged{level})."
+        return (
+            f"The printed numbers are most likely from the experiment as it is in force: none of {tried} readings is more likely. It has "
+            f"{_counted(in_force)}."
         )
-    if len(held_out) > 1:
-        parts.append(
-            f"Chosen for each table on the others alone, readings bring {held_out['chosen'].sum()}, that in force "
-            f"{held_out['in_force'].sum()}: {_advice(held_out)}."
-        )
-    return " ".join(parts)
+    level = ": it explains their level, not how they differ" if best["in_range"] <= best["by_chance"] + 0.5 else ""
+    against = "under the one in force, some printed number is impossible" if in_force["impossible"] else _ratio(best, in_force)
+    return (
+        f"Of {tried} readings, the printed numbers are most likely from an experiment in which these choices differ from ours: "
+        f"{best['in_words']} ({best['reading']}); {against}. It has {_counted(best)}{level}; that in force has {_counted(in_force)}."
+    )
+
+
+def _ratio(best: pd.Series, in_force: pd.Series) -> str:
+    """How much more likely than under the reading in force the numbers are."""
+    difference = best["score"] - in_force["score"]
+    return f"log-likelihood ratio against the one in force {difference:+.1f} ({_times(difference)} as likely)"
+
+
+def _counted(row: pd.Series) -> str:
+    """How many numbers are in range under a reading."""
+    return (
+        f"{row['in_range']} of {row['numbers']} numbers in range ({row['by_chance']:.0f} if those of one kind in one table were exchanged)"
+    )
+
+
+def _beside_a_line(held_out: pd.DataFrame) -> str:
+    """The best reading beside a description that explains nothing."""
+    told = held_out[held_out["score_line"].notna()]
+    if told.empty:
+        return ""
+    along = " and ".join(dict.fromkeys(told["line_along"]))
+    difference = told["score_best"].sum() - told["score_line"].sum()
+    verdict = (
+        "so the reading describes them worse than a line that explains nothing"
+        if difference < 0
+        else "so the reading describes them better than such a line"
+    )
+    return (
+        f"A straight line in the column {along}, which predicts each number from the others of its row, has a log-likelihood "
+        f"{abs(difference):.1f} {'above' if difference < 0 else 'below'} that of the most likely reading: {verdict}."
+    )
+
+
+def _never(explained: pd.DataFrame) -> str:
+    """Which numbers no reading explains, by table and method."""
+    never = explained[(explained["readings"] == 0) & ~explained[["in_force", "best"]].any(axis=1)]
+    if never.empty:
+        return "Each number is in range under some reading."
+    keys = ["table", "method"] if "method" in never else ["table"]
+    counts = never.groupby(keys, sort=False).size()
+    named = ", ".join(f"{count} of {' for '.join(map(str, key if isinstance(key, tuple) else (key,)))}" for key, count in counts.items())
+    return f"No reading explains {len(never)} of the numbers: {named}."
+
+
+def _searched(explained: pd.DataFrame) -> str:
+    """How widely each method was tried."""
+    if "method" not in explained:
+        return ""
+    settings = explained.groupby("method", sort=True)["settings"].max()
+    if settings.nunique() == 1:
+        return f"Each method was tried under {settings.iloc[0]} different settings of its own."
+    return f"Different settings tried of each method alone: {', '.join(f'{method} {count}' for method, count in settings.items())}."
+
+
+def _ruled_out(readings: pd.DataFrame) -> str:
+    """How many readings are impossible."""
+    ruled_out = int((readings["impossible"] > 0).sum())
+    if not ruled_out:
+        return ""
+    return (
+        f"{ruled_out} of {len(readings)} readings {'is' if ruled_out == 1 else 'are'} ruled out: under "
+        f"{'it' if ruled_out == 1 else 'them'} a printed mean or extreme lies below the exact bound of its map."
+    )
+
+
+def _held_out(held_out: pd.DataFrame) -> str:
+    """Whether the tables that a reading was not chosen on agree with it."""
+    if len(held_out) < 2:
+        return ""
+    return (
+        f"Chosen for each table on the others alone, readings bring {held_out['chosen'].sum()} into range, that in force "
+        f"{held_out['in_force'].sum()}: {_advice(held_out)}."
+    )
 
 
 def _times(difference: float) -> str:
     """A ratio of likelihoods in words, from the difference of their logarithms."""
     power = difference / math.log(10)
     return f"{10**power:.1f} times" if power < 2 else f"10^{power:.0f} times"
-
-
-def _by_table(never: pd.DataFrame) -> str:
-    """How many numbers no reading gives, by table."""
-    counts = never.groupby("table", sort=False).size()
-    return f"{len(never)} of the numbers ({', '.join(f'{count} of {table}' for table, count in counts.items())})"
 
 
 def _advice(held_out: pd.DataFrame) -> str:

@@ -486,6 +486,19 @@ def length_in_cells(name: str, runs: pd.DataFrame, problems: dict[str, Problem])
     return lengths
 
 
+def cells_touched(path: Path, grid: Grid) -> float:
+    """Number of cells that a path touches; NaN for one that touches an occupied cell."""
+    from bezierplan.geometry import cell_length
+
+    columns, rows = cell_length.touched_cells(*cell_length.samples(path, grid))
+    return np.nan if cell_length.occupied_cells(columns, rows, grid.occupied) else float(len(columns))
+
+
+def polygon_length(path: Path) -> float:
+    """Length of a path's control polygon, in units."""
+    return float(np.hypot(*np.diff(path.points, axis=0).T).sum())
+
+
 def straight_blocked(runs: pd.DataFrame, problems: dict[str, Problem]) -> pd.Series:
     """Whether (n,) the straight line of a run's problem, which lies on a grid, touches an occupied cell."""
     from bezierplan.geometry import cell_length

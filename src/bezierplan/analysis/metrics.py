@@ -136,6 +136,7 @@ _CELLS8 = {"bound": "octile_bound", "gap": "gap8"}
 METRICS: dict[str, Metric] = {
     "objective": Metric("u", "the planner's own final value, in its own rule", False),
     "length": Metric("u", "exact arc length", True, least="bound"),
+    "polygon_length": Metric("u", "length of the control polygon", True, partial(measures.of_path, measures.polygon_length), least="bound"),
     "certified_length": Metric(
         "u", "exact arc length, infinite unless the certified checker accepts the path", False, running_time.certified_length, least="bound"
     ),
@@ -305,6 +306,15 @@ METRICS: dict[str, Metric] = {
         partial(measures.length_in_cells, "length8"),
         least="octile_bound",
         **_CELLS8,
+        on=("grid",),
+    ),
+    "cells": Metric(
+        "-",
+        "number of cells that the path touches; none for a path that touches an occupied cell",
+        True,
+        partial(measures.of_path_on_grid, measures.cells_touched),
+        least=0.0,
+        step=1.0,
         on=("grid",),
     ),
     "octile_bound": Metric("u", "least length of a path of free cells, 1.5 for a diagonal step", False, on=("grid",)),

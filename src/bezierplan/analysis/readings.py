@@ -1,17 +1,23 @@
-"""Which reading of what a paper leaves open explains its published numbers? A search over the choices of `study.choices`.
+"""How likely are a paper's published numbers under a reading of what it leaves open? `search` looks for the best reading.
 
-A reading assigns a value to some choices, by id; all others keep the value in force. It is scored by the joint likelihood of the numbers of
-each table: whole experiments are drawn from our runs, so that numbers from the same runs stay correlated, and the published numbers are
-placed in the multivariate t distribution of these draws. Beside the score stands how many published numbers lie in the central 95 % of what
-experiments of the paper's size would print (`statistics.prediction`). A reading under which a printed mean or extreme lies below the exact
-bound of its map is ruled out, whatever its score: no runs at all could have it.
+A reading assigns a value to some choices (`study.choices`), by id; all others keep the value in force. It is scored by the joint likelihood
+of the numbers of each table and part: whole experiments are drawn from our runs, so that numbers from the same runs stay correlated, and
+the published numbers are placed in the multivariate t distribution of these draws. Numbers of different parts, which are methods that no
+metric compares with each other, count as independent given the reading. Beside the score stands how many published numbers lie in the
+central 95 % of what experiments of the paper's size would print (`statistics.prediction`). A reading under which a printed mean or extreme
+lies below the exact bound of its map is ruled out, whatever its score: no runs at all could have it.
 """
 
 import hashlib
 import json
 import logging
 import math
-from collections.abc import Callable, Iterator
+import multiprocessing
+import os
+import sys
+from collections.abc import Iterator
+from concurrent.futures import ProcessPoolExecutor
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -19,22 +25,25 @@ import numpy as np
 import pandas as pd
 import pyarrow.parquet as parquet
 
-from bezierplan.analysis import comparison, metrics, statistics, tables
-from bezierplan.analysis.explained import Evaluated, Reading, name_of
+from bezierplan.analysis import comparison, explained, metrics, statistics, tables
+from bezierplan.analysis.explained import Evaluated, Reading, name_of, together
 from bezierplan.analysis.results import Results, joined, select
+from bezierplan.analysis.search import Evaluate, Part, Task, confirm, search
 from bezierplan.planners import planner_module
 from bezierplan.running import execution
+from bezierplan.running import problems as problem_files
 from bezierplan.running.digest import source_digest
+from bezierplan.running.log import end_with_parent
 from bezierplan.workspaces.seeds import generator
 
 logger = logging.getLogger(__name__)
 
-# Starts of the search where the grid is too large to be searched completely.
-STARTS = 3
 # Statistics that cannot lie below the least value of a run, but for a relative rounding error.
 _BOUNDED, _ROUNDING = ("mean", "median", "min", "max"), 1e-9
 # Draws of whole experiments.
 EXPERIMENTS = 500
+# Readings that are judged by more runs.
+FINALISTS = 10
 
 
 # One reading.
@@ -42,18 +51,21 @@ EXPERIMENTS = 500
 
 def job_under(job: dict, reading: Reading, choices: list[dict]) -> dict:
     """A job of runs under a reading: with its settings, and only in the world that it names."""
-    settings, worlds = dict(job["settings"]), {}
-    for choice in choices:
-        if "column" in choice:
-            worlds[choice["column"]] = reading.get(choice["id"])
-        elif choice["id"] in reading and job["method"] in choice.get("methods", []):
-            settings |= {choice["setting"]: reading[choice["id"]]} | choice["along"].get(job["method"], {})
-    changed = {choice["setting"] for choice in choices if choice["id"] in reading and job["method"] in choice.get("methods", [])}
-    problems = {}
-    for name, place in job["problems"].items():
-        own = {key: value for key, value in place.get("settings", {}).items() if key not in changed}
-        problems[name] = {key: value for key, value in place.items() if key != "settings"} | ({"settings": own} if own else {})
-    return job | {"settings": settings, "problems": problems}
+    settings, problems = dict(job["settings"]), {name: dict(place.get("settings", {})) for name, place in job["problems"].items()}
+    # Choices for some problems alone are stronger than those for all.
+    for choice in sorted(choices, key=lambda choice: "problems" in choice):
+        if choice["id"] in reading and job["method"] in choice.get("methods", []):
+            made = {choice["setting"]: reading[choice["id"]]} | choice["along"].get(job["method"], {})
+            if "problems" in choice:
+                for name in problems.keys() & set(choice["problems"]):
+                    problems[name] |= made
+                continue
+            settings |= made
+            for own in problems.values():
+                own.pop(choice["setting"], None)
+    bare = {name: {key: value for key, value in place.items() if key != "settings"} for name, place in job["problems"].items()}
+    met = {name: place | ({"settings": problems[name]} if problems[name] else {}) for name, place in bare.items()}
+    return job | {"settings": settings, "problems": met}
 
 
 def in_world(spec: dict, job: dict, reading: Reading) -> tuple[dict, dict]:
@@ -75,14 +87,16 @@ def in_world(spec: dict, job: dict, reading: Reading) -> tuple[dict, dict]:
 
 
 def under_metrics(spec: dict, published: pd.DataFrame, reading: Reading, choices: list[dict]) -> tuple[dict, pd.DataFrame]:
-    """A table's description and its published numbers with the metrics that a reading assigns to printed words.
+    """A table's description and its published numbers, with the metrics that a reading assigns to printed words, and the keys that it
+    changes.
 
     A metric that the table has in another entry already stays once.
     """
     metric = {choice["metric"]: reading[choice["id"]] for choice in choices if "metric" in choice and choice["id"] in reading}
     renamed = [entry | {"metric": metric.get(entry["metric"], entry["metric"])} for entry in spec["values"]]
     entries = {(entry["metric"], str(entry["statistic"])): entry for entry in renamed}
-    return spec | {"values": [*entries.values()]}, published.assign(metric=published["metric"].replace(metric))
+    keys = {choice["table"]: reading[choice["id"]] for choice in choices if "table" in choice and choice["id"] in reading}
+    return spec | keys | {"values": [*entries.values()]}, published.assign(metric=published["metric"].replace(metric))
 
 
 def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str) -> tuple[pd.DataFrame, float]:
@@ -174,48 +188,128 @@ def _likelihood(published: np.ndarray, draws: np.ndarray, results: Results) -> f
 
 
 class Evaluator:
-    """Evaluates readings on the runs that they need. Runs are kept in a folder under the digest of their job, so that an interrupted search
-    continues, and readings that agree on a method share its runs.
+    """Evaluates parts of readings on the runs that they need. Runs are kept in a folder under the digest of their job, so that an
+    interrupted search continues, and readings that agree on a method share its runs.
     """
 
-    def __init__(self, job: dict, problems: dict[str, dict], bounds: dict[str, pd.DataFrame], files: dict[str, str], folder: Path) -> None:
-        """job: as from `study.choices.readings_job`. problems, bounds: by experiment. files: published numbers, by table."""
-        self.job, self.problems, self.bounds, self.folder = job, problems, bounds, folder
+    def __init__(self, job: dict, files: dict[str, str], maps: Path, folder: Path) -> None:
+        """job: as from `study.choices.readings_job`. files: published numbers, by table. maps: where map files are looked up."""
+        self.job, self.maps, self.folder = job, maps, folder
         self.published = {name: comparison.read_published(files[name], table["spec"]) for name, table in job["tables"].items()}
+        self.worlds: dict[str, tuple[dict, pd.DataFrame]] = {}
 
-    def __call__(self, reading: Reading) -> Evaluated | None:
-        """The reading, evaluated; None if its settings exclude each other."""
-        frames, likelihoods = [], {}
+    def __call__(self, methods: list[str], reading: Reading) -> Evaluated | None:
+        """The part of a reading that some methods' numbers decide; None if its settings exclude each other or no workspace is like that."""
+        found = []
         for name, table in self.job["tables"].items():
-            runs = []
-            for job in table["jobs"].values():
-                spec, chunk = in_world(table["spec"], job_under(job, reading, self.job["choices"]), reading)
-                if _excluded(chunk):
-                    return None
-                runs.append(self._runs(chunk))
-            experiment = table["experiment"]
-            results = joined(pd.concat(runs, ignore_index=True), self.problems[experiment], self.bounds[experiment])
-            spec, published = under_metrics(spec, self._printed(name, reading), reading, self.job["choices"])
-            numbers, likelihoods[name] = numbers_of(results, spec, published, f"{self.job['study']}/{name}")
-            frames.append(numbers.assign(table=name))
-        numbers = pd.concat(frames, ignore_index=True)
-        logger.info("%s: %d of %d", name_of(reading), numbers["in_range"].sum(), len(numbers))
-        return Evaluated(reading, numbers, likelihoods)
+            jobs = [job for method, job in table["jobs"].items() if method in methods]
+            if not jobs:
+                continue
+            placed = [in_world(table["spec"], job_under(job, reading, self.job["choices"]), reading) for job in jobs]
+            if any(_excluded(chunk) for _, chunk in placed):
+                return None
+            try:
+                problems, bounds, changes = self._world(table["experiment"], [*placed[0][1]["problems"]], reading)
+            except ValueError as error:  # no such workspace can be drawn
+                logger.info("%s: %s", name_of(reading), error)
+                return None
+            runs = pd.concat([self._runs(chunk, problems, changes) for _, chunk in placed], ignore_index=True)
+            spec, published = under_metrics(placed[0][0], self._printed(name, reading), reading, self.job["choices"])
+            if len(jobs) < len(table["jobs"]):
+                spec = spec | {"where": spec["where"] | {"method": [job["method"] for job in jobs]}}
+                published = published[published["method"].isin(spec["where"]["method"])]
+            numbers, likelihood = numbers_of(joined(runs, problems, bounds), spec, published, f"{self.job['study']}/{name}")
+            found.append(Evaluated(reading, numbers.assign(table=name), {name: likelihood}))
+        whole = together(reading, found)
+        logger.info("%s: %s: %.2f, %d of %d", ", ".join(methods), name_of(reading), whole.score, *_in_range(whole))
+        return whole
 
     def _printed(self, name: str, reading: Reading) -> pd.DataFrame:
         """The published numbers of a table; a column that names the world in force names that of the reading."""
         published = self.published[name]
         return published.assign(**{column: value for column, value in reading.items() if column in published})
 
-    def _runs(self, job: dict) -> pd.DataFrame:
-        key = source_digest(_planner(job["planner"])) + json.dumps(job, sort_keys=True)
+    def _world(self, experiment: str, names: list[str], reading: Reading) -> tuple[dict, pd.DataFrame, list]:
+        """Some problems of an experiment under a reading, their bounds, and what the reading changes in their workspaces."""
+        described = self.job["worlds"][experiment]
+        wanted = {name: described["problems"][name] for name in names}
+        used = {problem["workspace"] for problem in wanted.values()}
+        changes = [
+            (workspace, key, reading[choice["id"]])
+            for choice in self.job["choices"]
+            for workspace, key in choice.get("workspace", {}).items()
+            if choice["id"] in reading and workspace in used
+        ]
+        place = json.dumps([experiment, names, changes])
+        if place not in self.worlds:
+            workspaces = {name: dict(described["workspaces"][name]) for name in sorted(used)}
+            for workspace, key, value in changes:
+                workspaces[workspace][key] = value
+            made, _ = problem_files.build_all(described | {"problems": wanted, "workspaces": workspaces}, self.maps)
+            self.worlds[place] = made, problem_files.bounds_of(made).to_pandas()
+        return *self.worlds[place], changes
+
+    def _runs(self, job: dict, problems: dict, changes: list) -> pd.DataFrame:
+        key = source_digest(_planner(job["planner"])) + self.job["maps"] + json.dumps([job, changes], sort_keys=True)
         file = self.folder / f"{hashlib.sha256(key.encode()).hexdigest()[:24]}.parquet"
         if not file.exists():
-            table, times = execution.run_chunk(self.problems[job["experiment"]], job)
+            table, times = execution.run_chunk(problems, job, timed_alike=False)
             file.parent.mkdir(parents=True, exist_ok=True)
-            parquet.write_table(table.append_column("cpu_s", times["cpu_s"]), f"{file}.part")
-            Path(f"{file}.part").replace(file)
+            # Two processes may make the same runs.
+            part = Path(f"{file}.{os.getpid()}.part")
+            parquet.write_table(table.append_column("cpu_s", times["cpu_s"]), part)
+            part.replace(file)
         return parquet.read_table(file).to_pandas()
+
+
+def _in_range(found: Evaluated) -> tuple[int, int]:
+    return int(found.numbers["in_range"].sum()), len(found.numbers)
+
+
+@contextmanager
+def evaluating(evaluator: Evaluator, parts: list[Part], processes: int) -> Iterator[Evaluate]:
+    """Evaluates the tasks of a search, in several processes if there are to be several: on Linux, for elsewhere they would begin with the
+    job's script anew.
+    """
+    if processes == 1 or sys.platform != "linux":
+        yield lambda tasks: [evaluator(parts[task.part].methods, task.reading) for task in tasks]
+        return
+    with ProcessPoolExecutor(processes, multiprocessing.get_context("fork"), _begin, (evaluator, parts)) as pool:
+        yield lambda tasks: [*pool.map(_evaluated, tasks)]
+
+
+_of_process: dict[str, Any] = {}
+"""The evaluator of a process of the pool, which keeps the worlds that it has built, and the parts."""
+
+
+def _begin(evaluator: Evaluator, parts: list[Part]) -> None:
+    end_with_parent()
+    _of_process.update(evaluator=evaluator, parts=parts)
+
+
+def _evaluated(task: Task) -> Evaluated | None:
+    return _of_process["evaluator"](_of_process["parts"][task.part].methods, task.reading)
+
+
+def found_by(job: dict, files: dict[str, str], maps: Path, folder: Path, processes: int) -> dict[str, pd.DataFrame]:
+    """The three tables of `explained`, by name, after the search for a study's best reading; the best are judged again by more runs.
+
+    job: as from `study.choices.search_job`.
+    """
+    parts = [Part(**part) for part in job["parts"]]
+    choices, study = job["screened"]["choices"], job["study"]
+    with evaluating(Evaluator(job["screened"], files, maps, folder), parts, processes) as evaluate:
+        found = search(choices, parts, evaluate, study, job["most"])
+    more = Evaluator(job["confirmed"], files, maps, folder)
+    with evaluating(more, parts, processes) as evaluate:
+        confirmed = confirm(found, parts, evaluate, FINALISTS)
+    shared = {choice["id"] for choice in choices if sum(choice["id"] in part.choices for part in parts) > 1}
+    lines = {name: (along, explained.yardstick(more.published[name], along)) for name, along in job["along"].items()}
+    return {
+        "readings": explained.readings_table(study, confirmed, found.readings, choices),
+        "explained": explained.explained_table(study, confirmed, found.of_parts, shared),
+        "held_out": explained.held_out_table(study, confirmed, lines),
+    }
 
 
 def _excluded(job: dict) -> bool:
@@ -233,71 +327,3 @@ def _excluded(job: dict) -> bool:
 def _planner(planner: str) -> str:
     """A planner as an argument of `source_digest`."""
     return planner if planner.endswith(".py") else f"bezierplan.planners.{planner}"
-
-
-# The search.
-
-
-def search(choices: list[dict], evaluate: Callable[[Reading], Evaluated | None], name: str, most: int) -> list[Evaluated]:
-    """The readings tried, in the order of trial, that in force first.
-
-    All of them if there are at most `most`; otherwise by coordinate ascent from the reading in force and from random ones, until `most`
-    are tried. evaluate: None for a reading whose settings exclude each other. name: seeds the random starts.
-    """
-    tried: dict[str, Evaluated | None] = {}
-
-    def rank(reading: Reading) -> tuple[bool, float]:
-        key = name_of(reading)
-        if key not in tried and len(tried) < most:
-            tried[key] = evaluate(reading)
-        found = tried.get(key)
-        return found.rank if found else (False, -math.inf)
-
-    rank({})
-    if math.prod(len(choice["values"]) for choice in choices) <= most:
-        for reading in _all(choices):
-            rank(reading)
-    else:
-        for start in _starts(choices, name):
-            _ascend(start, choices, rank, lambda: len(tried) >= most)
-    return [found for found in tried.values() if found]
-
-
-def _all(choices: list[dict]) -> Iterator[Reading]:
-    readings: list[Reading] = [{}]
-    for choice in choices:
-        readings = [_with(reading, choice["id"], value, choices) for reading in readings for value in choice["values"]]
-    yield from readings
-
-
-def _starts(choices: list[dict], name: str) -> Iterator[Reading]:
-    yield {}
-    for number in range(1, STARTS):
-        rng = generator(f"{name}/start/{number}")
-        drawn = {choice["id"]: choice["values"][rng.integers(len(choice["values"]))] for choice in choices}
-        yield _settled({choice: value for choice, value in drawn.items() if value is not None}, choices)
-
-
-def _with(reading: Reading, choice: str, value: Any, choices: list[dict]) -> Reading:
-    """A reading with one choice made; None stands for the value in force."""
-    rest = {other: kept for other, kept in reading.items() if other != choice}
-    return rest if value is None else _settled(rest | {choice: value}, choices)
-
-
-def _settled(reading: Reading, choices: list[dict]) -> Reading:
-    """A reading without the choices that its world makes itself: with another value they would name runs that are not made."""
-    worlds = [choice["overrules"].get(str(reading.get(choice["id"])), []) for choice in choices if "column" in choice]
-    return {choice: value for choice, value in reading.items() if choice not in set().union(*worlds)}
-
-
-def _ascend(reading: Reading, choices: list[dict], rank: Callable, spent: Callable[[], bool]) -> None:
-    """Change one choice after the other for the better, until none does."""
-    best, improved = rank(reading), True
-    while improved and not spent():
-        improved = False
-        for choice in choices:
-            for value in choice["values"]:
-                other = _with(reading, choice["id"], value, choices)
-                found = rank(other)
-                if found > best:
-                    reading, best, improved = other, found, True

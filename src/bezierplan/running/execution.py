@@ -162,11 +162,12 @@ def row(job: dict, condition: Condition, repeat: int, plan: Any, problem: Proble
     return identity(job, condition, repeat) | outcome._asdict() | plan.extra
 
 
-def run_chunk(problems: dict[str, Problem], job: dict) -> tuple[pa.Table, pa.Table]:
+def run_chunk(problems: dict[str, Problem], job: dict, timed_alike: bool = True) -> tuple[pa.Table, pa.Table]:
     """The runs of a job (columns as in `columns`) and, in a separate table because they are never reproducible, their times.
 
-    Planners get copies of the problems, and these stay here to judge by. Raises PlannerFailure, naming the run, if a planner fails, does
-    not return a valid plan for the problem (`row`), changes a workspace, or gives another plan when its first run is repeated.
+    Planners get copies of the problems, and these stay here to judge by. timed_alike: whether a warm-up makes times comparable, whose runs
+    must repeat themselves. Raises PlannerFailure, naming the run, if a planner fails, does not return a valid plan for the problem (`row`),
+    changes a workspace, or gives another plan when its first run is repeated.
     """
     met = {name: problem for name, problem in problems.items() if name in job["problems"]}
     blocked = {name: region(problem.workspace) for name, problem in met.items()}
@@ -184,7 +185,7 @@ def run_chunk(problems: dict[str, Problem], job: dict) -> tuple[pa.Table, pa.Tab
             if not found:
                 # What needs no random numbers must not be changed by others.
                 again = partial(run, job, condition, repeat + 1, loan.problem) if deterministic else once
-                warm = _warm_up(partial(timed, again, job, condition, repeat, watch))
+                warm = _warm_up(partial(timed, again, job, condition, repeat, watch)) if timed_alike else []
             plan, cpu, wall = timed(once, job, condition, repeat, watch)
             refuse_changed(loan, job, condition, repeat)
             found[k, repeat] = made(plan)

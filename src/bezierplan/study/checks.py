@@ -21,7 +21,7 @@ from bezierplan.running import columns, interface, problems, worlds
 from bezierplan.running.execution import conditions, settings_in
 from bezierplan.running.interface import check_settings
 from bezierplan.schema.checked import Fault, closest
-from bezierplan.schema.model import Model, first_fault, named, one_or_list
+from bezierplan.schema.model import Model, first_fault, named, one_or_list, parsed
 from bezierplan.study import published
 from bezierplan.study.alternatives import alternatives, concerned, methods_changed, with_alternative
 from bezierplan.study.artefacts import Comparison, Pivot, Table
@@ -495,6 +495,10 @@ def check_assumption(study: Study, assumption: Assumption, place: str) -> None:
         drives = [name for each in claim.checks for name in each.experiments if study.moves(name)]
         if drives:
             raise Fault(f"{place}: claims: {identity}: is about drives ({drives[0]}), which alternatives do not repeat")
+    for name in assumption.problems:
+        _known(name, study.problems, f"{place}: problems")
+    for name, key in assumption.workspace.items():
+        _check_key(study, assumption, name, key, place)
     if not assumption.setting:
         return
     if isinstance(assumption.default, dict):
@@ -515,6 +519,20 @@ def check_assumption(study: Study, assumption: Assumption, place: str) -> None:
             for method in methods_changed(study, name):
                 module = planner_module(study.planner(method))
                 check_settings(module, changed.resolved(method), f"{place}: alternatives: {value}: {method}: settings")
+
+
+def _check_key(study: Study, assumption: Assumption, name: str, key: str, place: str) -> None:
+    """The key of a workspace that an assumption governs has the default, and can have every alternative."""
+    _known(name, study.workspaces, f"{place}: workspace")
+    workspace = study.workspaces[name]
+    _known(key, workspace.plain(), f"{place}: workspace: {name}")
+    if workspace.plain()[key] != assumption.default:
+        raise Fault(f"{place}: default: {assumption.default}: not in force; the {key} of {name} is {workspace.plain()[key]}")
+    for value in assumption.alternatives:
+        changed = parsed(type(workspace), workspace.plain() | {key: value}, f"{place}: alternatives: {value}: {name}")
+        for file in files_of(changed).values():
+            if not (study.folder / file).is_file():
+                raise Fault(f"{place}: alternatives: {file}: no such file in {relative(study.folder)}")
 
 
 def _check_in_force(study: Study, assumption: Assumption, methods: list[str], place: str) -> None:

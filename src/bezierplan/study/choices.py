@@ -2,21 +2,31 @@
 
 A choice is a mapping of plain values: id; detail; values, the one in force first (None, as methods may differ in it); and what it governs:
 
-    setting, methods, along   a setting of some methods, and further settings that go with it, method -> settings
+    setting, methods, along   a setting of some methods, and further settings that go with it, method -> settings; with `problems`, on these
+                              problems alone
+    workspace                 workspace -> its key
+    table                     a key of the tables
     column, overrules         the column of the tables whose value is the paper's world, and value -> ids of the choices of settings that it
                               makes itself
     metric                    the metric with which a printed word is compared
 """
 
 import csv
+import math
 from pathlib import Path
 from typing import Any
 
 from bezierplan.analysis.metrics import METRICS
+from bezierplan.analysis.statistics import LEAST_RUNS
+from bezierplan.running.digest import content_digest
 from bezierplan.schema.model import one_or_list
 from bezierplan.study import alternatives, jobs
 from bezierplan.study.artefacts import Pivot
-from bezierplan.study.definition import Study
+from bezierplan.study.definition import Study, relative
+from bezierplan.workspaces.kinds import file_keys
+
+SCREENED = 4
+"""The search judges readings by one of so many of the runs by which the best are judged."""
 
 
 def printed_tables(study: Study) -> dict[str, Pivot]:
@@ -47,6 +57,11 @@ def choices(study: Study) -> list[dict[str, Any]]:
         if methods:
             along = {method: assumption.along[method] for method in methods if method in assumption.along}
             governs |= {"setting": assumption.setting, "methods": methods, "along": along}
+            governs |= {"problems": assumption.problems} if assumption.problems else {}
+        if assumption.workspace:
+            governs["workspace"] = assumption.workspace
+        if assumption.table:
+            governs["table"] = assumption.table
         values = [value for value in assumption.alternatives if value not in assumption.not_searched]
         if governs and values:
             found.append({"id": assumption.id, "detail": assumption.detail, "values": [None, *values]} | governs)
@@ -55,7 +70,10 @@ def choices(study: Study) -> list[dict[str, Any]]:
         for column, value in table.primary.items():
             values = worlds.setdefault(column, [value])
             values += [other for other in one_or_list(table.where.get(column, [])) if other not in values]
-    return found + [_world(study, column, values, found) for column, values in worlds.items()]
+    governed = {"workspace"} if any(assumption.workspace for assumption in study.assumptions) else set()
+    # Workspaces of which a key is varied already are not exchanged as well.
+    open_worlds = {column: values for column, values in worlds.items() if column not in governed and len(values) > 1}
+    return found + [_world(study, column, values, found) for column, values in open_worlds.items()]
 
 
 def _world(study: Study, column: str, values: list, settings: list[dict[str, Any]]) -> dict[str, Any]:
@@ -67,23 +85,92 @@ def _world(study: Study, column: str, values: list, settings: list[dict[str, Any
 
 
 def _methods(study: Study, name: str, table: Pivot) -> list[str]:
-    """Methods of a table that are the paper's own: no baselines and no variants."""
+    """Methods of a table that are the paper's own: no baselines, no variants, none without a printed number unless all are compared."""
     methods = one_or_list(table.where.get("method", study.experiments[table.experiment].methods))
-    return [method for method in methods if method not in study.baselines and not study.methods[method].variant_of]
+    own = [method for method in methods if method not in study.baselines and not study.methods[method].variant_of]
+    rows = _published(study, name)
+    return [method for method in own if method in {row["method"] for row in rows}] if _apart(table, rows) else own
 
 
-def readings_job(study: Study, scale: str) -> dict[str, Any]:
-    """What the search for a reading depends on, in addition to problems, bounds and the files of published numbers."""
-    tables = {}
+def _apart(table: Pivot, rows: list[dict[str, str]]) -> bool:
+    """Whether each published number is one method's alone, whatever the others do."""
+    compared = any(METRICS[table.reads.get(row["metric"], row["metric"])].among_rows for row in rows)
+    return "method" in rows[0] and not compared
+
+
+def search_job(study: Study) -> dict[str, Any]:
+    """What the search for a reading depends on, in addition to the files of maps and published numbers.
+
+    screened, confirmed: `readings_job` for the search and for the best that it finds. parts: as `analysis.search.Part`. along: of some
+    tables, the column along which the paper says that its numbers rise or fall.
+    """
+    tables = printed_tables(study)
+    along = {name: table.monotone[0].along for name, table in tables.items() if table.monotone}
+    found = {"study": study.key, "most": study.readings_tried, "parts": _parts(study), "along": along}
+    return found | {"screened": readings_job(study, SCREENED), "confirmed": readings_job(study, 1)}
+
+
+def readings_job(study: Study, share: int) -> dict[str, Any]:
+    """What readings are judged by: the jobs of their runs, and the problems of these.
+
+    share: a share of 1 / share of the runs that judge a reading, though at least as many as are judged at all. Where there is one run in
+    each layout, it is a share of the layouts, of which twice those of scale full judge a reading.
+    """
+    tables, worlds = {}, {}
     for name, table in printed_tables(study).items():
         content = study.experiments[table.experiment]
+        drawn = [study.problems[each].layouts for each in content.problems if study.problems[each].layouts]
+        by_layout = bool(drawn) and content.readings is None
+        repeats = content.readings or content.repeats["full"]
+        scale = "extended" if by_layout else "full"
+        layouts = _share(min(2 * drawn[0]["full"], drawn[0]["extended"]), share, LEAST_RUNS) if by_layout else math.inf
         methods = _methods(study, name, table)
         chunk_jobs = {method: jobs.job(study, table.experiment, method, scale, 0) for method in methods}
+        world = jobs.problems_job(study, table.experiment, scale)
+        for given in (world, *chunk_jobs.values()):
+            given["problems"] = {key: place for key, place in given["problems"].items() if place.get("layout", 0) < layouts}
         for job in chunk_jobs.values():
-            job["repeats"] = [0, content.readings or content.repeats[scale]]
+            job["repeats"] = [0, repeats if by_layout else _share(repeats, share, 1 if drawn else LEAST_RUNS)]
         # What the paper does not define has no vote.
         voting = [entry.plain() for entry in table.values if entry.defined]
         spec = table.plain() | {"where": table.where | {"method": methods}, "values": voting}
         tables[name] = {"experiment": table.experiment, "spec": spec, "jobs": chunk_jobs}
-    experiments = list(dict.fromkeys(table["experiment"] for table in tables.values()))
-    return {"study": study.key, "tables": tables, "choices": choices(study), "most": study.readings_tried, "experiments": experiments}
+        worlds[table.experiment] = world
+    return {"study": study.key, "tables": tables, "choices": choices(study), "worlds": worlds, "maps": content_digest(*maps(study))}
+
+
+def _share(whole: int, share: int, least: int) -> int:
+    return min(whole, max(least, -(-whole // share)))
+
+
+def maps(study: Study) -> list[str]:
+    """Map files of the problems on which readings are judged, under any of them."""
+    experiments = {table.experiment for table in printed_tables(study).values()}
+    names = {problem["workspace"] for name in sorted(experiments) for problem in study.problems_of(name, "full").values()}
+    other = [
+        relative(study.folder / value)
+        for assumption in study.assumptions
+        for workspace, key in assumption.workspace.items()
+        for value in assumption.alternatives
+        if key in file_keys(type(study.workspaces[workspace]))
+    ]
+    return sorted({*study.maps(names), *other})
+
+
+def _parts(study: Study) -> list[dict[str, list[str]]]:
+    """Methods that no metric of a table compares with each other, and for each such part the choices that it depends on."""
+    groups: list[set[str]] = []
+    for name, table in printed_tables(study).items():
+        methods = _methods(study, name, table)
+        for group in [{method} for method in methods] if _apart(table, _published(study, name)) else [set(methods)]:
+            joined = [other for other in groups if other & group]
+            groups = [other for other in groups if not other & group] + [group.union(*joined)]
+    found = choices(study)
+    order = list(study.methods)
+    return [
+        {
+            "methods": sorted(group, key=order.index),
+            "choices": [choice["id"] for choice in found if group & set(choice.get("methods", group))],
+        }
+        for group in sorted(groups, key=lambda group: min(map(order.index, group)))
+    ]

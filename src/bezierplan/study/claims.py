@@ -24,7 +24,7 @@ from bezierplan.schema.model import (
     shown,
     wrong,
 )
-from bezierplan.study.experiments import PART, PART_EXPECTED
+from bezierplan.study.experiments import PART, PART_EXPECTED, ProblemName
 
 MOST_ALTERNATIVES = 100
 """Alternatives of one assumption."""
@@ -52,6 +52,16 @@ class Assumption(Model):
     reason: Line = Field(description="why the default was chosen, one or two lines")
     source: Literal["published", "inferred", "assumed"] = Field(description="where the default comes from: published, inferred or assumed")
     setting: Name = Field(None, description="the planner's setting that it governs")
+    problems: listed(ProblemName) = Field([], description="the problems on which alone the alternatives of a setting are tried")
+    workspace: dict[Name, Name] = Field(
+        {},
+        description="workspace → its key that it governs, instead of a setting: `snakemake readings` draws the workspace anew",
+        min_length=1,
+    )
+    table: Literal["within"] = Field(
+        None,
+        description="within: it governs this key of tables, instead of a setting; the default is then `all`, and each alternative a column",
+    )
     along: dict[Name, dict[Name, Setting]] = Field(
         {}, alias="with", description="method → further settings that go along with every alternative", min_length=1
     )
@@ -71,6 +81,12 @@ class Assumption(Model):
                 raise wrong(f"alternatives: {each}: is the default; expected the other values")
             if self.setting is not None and not re.fullmatch(PART, str(each)):
                 raise wrong(f"alternatives: {each!r}: is part of a file's name; expected {PART_EXPECTED}, or a number")
+        if self.setting and (self.workspace or self.table):
+            raise wrong("setting: beside workspace or table; expected one of them")
+        if self.table and self.default != "all":
+            raise wrong(f"default: {shown(self.default)}: expected all, since table: {self.table} is not in force")
+        if self.setting is None and self.problems:
+            raise wrong("problems: without setting; expected the planner's setting that is governed there")
         if self.setting is None and self.model_fields_set & {"along", "claims"}:
             raise wrong("setting: missing key; with and claims need the planner's setting that is governed")
         return self

@@ -372,19 +372,22 @@ def sensitivity_params(given: Studies, scale: str, study: str) -> dict:
 
 
 def readings_inputs(given: Studies, scale: str, study: str) -> dict[str, list[str]]:
-    """Input files of the search for a reading."""
+    """Input files of the search for a reading, which makes problems and runs of its own."""
     own = given[study]
-    job = choices.readings_job(own, scale)
-    problems, bounds = _problems(own, scale, job["experiments"]), _bounds(own, scale, job["experiments"])
-    return {"problems": problems, "bounds": bounds, "published": [own.published_file(name) for name in job["tables"]]}
+    return {"maps": choices.maps(own), "published": [own.published_file(name) for name in choices.printed_tables(own)]}
 
 
 def readings_params(given: Studies, scale: str, study: str) -> dict:
     """Params of the search for a reading."""
-    job = choices.readings_job(given[study], scale)
-    planners = {_planner(each["planner"]) for table in job["tables"].values() for each in table["jobs"].values()}
-    published = content_digest(*(given[study].published_file(name) for name in job["tables"]))
-    return {"job": job, "published": published, "code": _code("readings", *sorted(planners))}
+    job = choices.search_job(given[study])
+    planners = {_planner(each["planner"]) for table in job["screened"]["tables"].values() for each in table["jobs"].values()}
+    kinds = {module for world in job["screened"]["worlds"].values() for module in _kinds_of_workspace(world)}
+    return {
+        "job": job,
+        "folder": definition.relative(given[study].folder),
+        "published": content_digest(*(given[study].published_file(name) for name in choices.printed_tables(given[study]))),
+        "code": _code("readings", *sorted(planners), *sorted(kinds)),
+    }
 
 
 # ---------------------------------------------------------------------------------------------------------------------
