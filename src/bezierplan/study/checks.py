@@ -46,6 +46,8 @@ def check(study: Study) -> None:
     design, functions = Design(study), _functions(study)
     published.check_files(study)
     place = relative(study.folder / "artefacts.yaml")
+    for method in study.looks:
+        _known(method, study.methods, f"{place}: looks")
     for name, table in study.tables.items():
         _check_table(design, functions, table, f"{place}: tables: {name}")
     for name, figure in study.figures.items():
