@@ -59,10 +59,16 @@ def test_ranks_and_critical_difference_are_demsars():
     assert tested["chi2"] == pytest.approx(9.28 / (1 - ties / (14 * 4 * (4**2 - 1))), abs=0.02), "his formula does not correct for ties"
 
 
-def test_what_cannot_be_told_apart_is_joined():
-    assert critical_difference._alike(np.array([1.0, 1.5, 2.2, 4.0]), 1.0) == [(1.0, 1.5), (1.5, 2.2)]
-    assert critical_difference._alike(np.array([1.0, 3.0]), 1.0) == []
-    assert critical_difference._alike(np.array([1.0, 1.2, 1.4]), 1.0) == [(1.0, 1.4)]
+def test_bars_overlap_where_ranks_differ_by_at_most_the_critical_difference():
+    frame = critical_difference.data(results(DEMSAR))
+    axes = Figure().subplots()
+    critical_difference.draw(axes, frame, sheet.Scene({}, {}, {}, "m"), critical_difference.Options.complete({}))
+    bars = [line.get_xdata() for line in axes.lines if line.get_label() == "critical difference"]
+    ranks = frame.loc[frame["part"] == "rank", "value"].to_numpy()
+    for one in range(4):
+        for other in range(one):
+            apart = abs(ranks[one] - ranks[other]) > frame["difference"].iloc[0]
+            assert apart == (bars[one][0] > bars[other][1] or bars[other][0] > bars[one][1])
 
 
 def test_ranks_need_three_methods_in_every_repeat():
@@ -90,11 +96,13 @@ def printed(metric: str, values: dict[str, float]) -> pd.DataFrame:
 def test_published_ranks_stand_beside_ours(tmp_path):
     found = results(DEMSAR, pd.concat([printed("rank", {"c45": 2.5}), printed("rank", {"c45": 9.9}).assign(table="table3")]))
     panel = {"kind": "critical_difference", "experiment": "routes", "printed": "table5"}
-    words = drawn(found, panel, tmp_path)
-    assert any("C4.5 3.14 (2.5)" in text for text in words)
-    assert any("in parentheses" in text for text in words)
-    assert not any("9.9" in text for text in words)
-    assert not any("parentheses" in text for text in drawn(found, {key: panel[key] for key in ("kind", "experiment")}, tmp_path))
+    assert "published mean rank" in drawn(found, panel, tmp_path)
+    assert "published mean rank" not in drawn(found, {key: panel[key] for key in ("kind", "experiment")}, tmp_path)
+    axes = Figure().subplots()
+    frame = critical_difference.data(found, printed="table5")
+    critical_difference.draw(axes, frame, sheet.Scene({}, {}, {}, "m"), critical_difference.Options.complete(panel))
+    (mark,) = [line for line in axes.lines if line.get_label() == "published mean rank"]
+    assert (mark.get_xdata().tolist(), mark.get_ydata()) == ([2.5], [3]), "in the row of its method, the last one"
 
 
 def test_far_published_means_stand_at_the_edge(tmp_path):

@@ -3,11 +3,10 @@
 import numpy as np
 import pandas as pd
 import pytest
-from matplotlib.collections import PathCollection
 from matplotlib.figure import Figure
 
 from bezierplan.figures import sheet
-from bezierplan.figures.panels import along_path, bars, boxes, convergence, lines
+from bezierplan.figures.panels import along_path, boxes, convergence, dots, lines
 from bezierplan.workspaces.grid import from_lines
 from bezierplan.workspaces.problem import Problem
 
@@ -46,8 +45,10 @@ def test_a_line_is_the_statistic_in_the_band_of_its_interval():
     repeats = pd.DataFrame({"points": [2, 3, 5], "value": [20.0, 30.0, 50.0], "part": "repeat", "repeat": 1})
     frame = pd.concat([statistics("a").drop(columns="method"), repeats])
     axes = drawn(lines, frame, x="points", metric="length", statistic="median")
-    assert labelled(axes, "median") == [[2, 3, 5], [4, 5, 7]]
-    assert labelled(axes, "repeat 1") == [[2, 3, 5], [20, 30, 50]]
+    (single,) = [line for line in axes.lines if line.get_label() == "single runs"]
+    assert [each.tolist() for each in single.get_data()] == [[2, 3, 5], [20, 30, 50]]
+    (line,) = [line for line in axes.lines if line is not single]
+    assert [each.tolist() for each in line.get_data()] == [[2, 3, 5], [4, 5, 7]]
     assert band(axes) == ([2, 3, 5], [1, 2, 3], [8, 9, 10])
 
 
@@ -94,19 +95,20 @@ def test_a_box_has_its_parts_where_they_lie():
     assert sorted(along) == [[1, 3], [7, 9]]
     assert labelled(axes, "mean") == [[5], [0]]
     assert labelled(axes, "published mean") == [[6], [0]]
-    assert labelled(axes, "beyond 1.5 interquartile ranges") == [[20], [0]]
+    assert labelled(axes, "outlier") == [[20], [0]]
 
 
-def test_a_bar_is_as_high_as_its_statistic():
-    frame = pd.concat(map(statistics, "ab")).drop(columns="part").assign(bound=0.5)
-    axes = drawn(bars, frame, x="points", hue="method", metric="length")
-    assert [bar.get_height() for bar in axes.patches] == [4, 5, 7, 104, 105, 107]
-    spans = [
-        path.vertices[:, 1].tolist() for drawn in axes.collections if not isinstance(drawn, PathCollection) for path in drawn.get_paths()
-    ]
+def test_a_dot_stands_at_its_statistic():
+    frame = pd.concat(map(statistics, "ab")).drop(columns="part").assign(bound=0.5, published=[np.nan] * 5 + [104.5], feasible_runs=10)
+    axes = drawn(dots, frame, x="points", hue="method", metric="length")
+    (a, rows_a), (b, rows_b) = (labelled(axes, name) for name in "ab")
+    assert (a, b) == ([4, 5, 7], [104, 105, 107])
+    assert [round((low + high) / 2, 9) for low, high in zip(rows_a, rows_b)] == [0, 1, 2], "side by side about their row"
+    assert labelled(axes, "published") == [[104.5], [rows_b[2]]] or np.isnan(labelled(axes, "published")[0][0])
+    spans = [sorted(path.vertices[:, 0].tolist()) for drawn in axes.collections for path in drawn.get_paths()]
     for low, high in [(1, 8), (2, 9), (3, 10), (101, 108), (102, 109), (103, 110)]:
         assert [low, high] in spans
-    assert spans.count([0.5, 0.5]) == 6
+    assert spans.count([0.5, 0.5]) == 3
 
 
 def test_a_quantity_along_a_path_stands_over_the_parameter(monkeypatch):

@@ -1,7 +1,6 @@
 """Figures: what is drawn stands in the table beside them, and can be read in print."""
 
 import inspect
-import itertools
 import subprocess
 import sys
 from dataclasses import replace
@@ -12,6 +11,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.text import Text
 
@@ -19,7 +19,7 @@ from bezierplan.analysis import metrics
 from bezierplan.analysis.results import Results
 from bezierplan.figures import panels as kinds_of_panel
 from bezierplan.figures import sheet, style
-from bezierplan.figures.panels import along_path, bars, boxes, convergence, drawing, lines, paths, workspace
+from bezierplan.figures.panels import along_path, boxes, convergence, dots, drawing, lines, paths, workspace
 from bezierplan.geometry import curves
 from bezierplan.workspaces import ground, random_field
 from bezierplan.workspaces.circles import Circles
@@ -156,7 +156,7 @@ def comparing_panels() -> list[dict]:
         {"kind": "lines", "title": "points", **smooth, "x": "points", "metric": "objective", "repeats": [0, 1]},
         {"kind": "lines", "title": "methods", **runs, "x": "points", "metric": "length", "hue": "method"},
         {"kind": "lines", "title": "sequence", "data": "sequence", "where": {"map": "long"}, "x": "k", "metric": "value"},
-        {"kind": "bars", "title": "points", **runs, "x": "points", "hue": "method", "metric": "length"},
+        {"kind": "dots", "title": "points", **runs, "x": "points", "hue": "method", "metric": "length"},
         {"kind": "paths", "title": "explicit", "explicit": {"curve": "bezier", "points": [[0, 0], [1, 2], [3, 0]]}},
         {"kind": "boxes", "title": "methods", **runs, "metric": "objective"},
         {"kind": "drawing", "title": "marks", "data": "marks"},
@@ -177,7 +177,8 @@ def drawn(found: Results, own: list[dict], columns: int, folder: File) -> Figure
 
 
 def words(figure: Figure) -> list[str]:
-    return [text.get_text() for text in figure.findobj(Text) if text.get_text()]
+    """All texts of a figure, and its caption."""
+    return [text.get_text() for text in figure.findobj(Text) if text.get_text()] + [figure.get_label()]
 
 
 def test_csv_keeps_every_number(tmp_path):
@@ -365,24 +366,37 @@ def test_convergence_marks_the_printed_means_of_one_table(tmp_path):
     marked = frame[frame["printed"].notna()]
     assert marked[["method", "generation", "printed"]].to_numpy().tolist() == [["smooth", 5, 36.5]]
     panel = {"kind": "convergence", "experiment": "routes", "hue": "method", "printed": "table3"}
-    assert "published final mean, with the mark of its line" in words(drawn(found, [panel], 1, tmp_path))
+    figure = drawn(found, [panel], 1, tmp_path)
+    assert "published final mean" in words(figure)
+    (strip,) = figure.axes[0].child_axes
+    (mark,) = [line for line in strip.lines if line.get_label() == "published final mean"]
+    assert mark.get_ydata() == [36.5]
     assert "printed" not in convergence.data(comparison(), hue="method", printed="table3")
 
 
-def test_names_beside_lines_are_in_the_order_of_the_last_values(tmp_path):
-    figure = drawn(comparison(), comparing_panels()[:2], 2, tmp_path)
-    figure.draw_without_rendering()
-    for axes, names in zip(figure.axes, (["random", "smooth (quadratic pieces)", "coarse"], ["points = 5", "points = 3", "points = 2"])):
-        places = [next(text for text in axes.texts if text.get_text() == name).get_window_extent() for name in names]
-        assert all(upper.y0 >= lower.y1 - 1 for upper, lower in itertools.pairwise(places)), "names neither overlap nor swap"
+def test_last_values_stand_beside_the_lines_with_their_intervals(tmp_path):
+    panel = comparing_panels()[0]
+    figure = drawn(comparison(), [panel], 1, tmp_path)
+    frame = convergence.data(comparison(), hue="method").groupby("method").last()
+    (strip,) = figure.axes[0].child_axes
+    marks = [line for line in strip.lines if line.get_marker() not in ("", "None")]
+    assert [line.get_ydata()[0] for line in marks] == pytest.approx(list(frame.loc[panel["where"]["method"], "objective"]))
+    spans = [sorted(line.get_ydata()) for line in strip.lines if len(line.get_ydata()) == 2]
+    assert spans == [pytest.approx(list(ends)) for ends in frame.loc[panel["where"]["method"], ["low95", "high95"]].to_numpy()]
+    assert strip.get_ylim() == figure.axes[0].get_ylim()
 
 
-def test_names_beside_lines_stay_where_there_is_room():
-    np.testing.assert_allclose(convergence._apart(np.array([0.1, 0.5, 0.9])), [0.1, 0.5, 0.9])
-    equal = convergence._apart(np.full(5, 0.02))
-    assert equal[0] == 0
-    assert (np.diff(equal) > 0.05).all()
-    assert convergence._apart(np.full(40, 0.9)).max() <= 1 + 1e-9
+def test_at_most_five_bands_lie_on_each_other():
+    runs = comparison().runs
+    many = pd.concat([runs.assign(method=f"m{n}", objective=runs["objective"] + n, history=runs["history"]) for n in range(6)])
+    for count, banded in ((5, True), (6, False)):
+        own = comparison()._replace(runs=many[many["method"].isin([f"m{n}" for n in range(count)])].reset_index(drop=True))
+        for kind, options in ((convergence, {"hue": "method"}), (lines, {"x": "points", "metric": "objective", "hue": "method"})):
+            axes = Figure().subplots()
+            panel = kind.Options.complete({"experiment": "routes", **options})
+            kind.draw(axes, kind.data(own, **options), sheet.Scene({}, {}, {}, "m"), panel)
+            bands = [each for each in axes.collections if isinstance(each, PolyCollection)]
+            assert len(bands) == (count if banded else 0)
 
 
 @pytest.mark.parametrize("options", [{}, {"pick": LOWEST, "hue": "method"}])
@@ -407,7 +421,7 @@ def test_lines_have_intervals_and_single_repeats():
 def test_order_of_runs_changes_no_bit():
     found = comparison()
     other = found._replace(runs=found.runs.sample(frac=1, random_state=1).reset_index(drop=True))
-    for kind, options in ((lines, {"x": "points", "hue": "method"}), (bars, {"x": "points", "hue": "method"}), (boxes, {})):
+    for kind, options in ((lines, {"x": "points", "hue": "method"}), (dots, {"x": "points", "hue": "method"}), (boxes, {})):
         pd.testing.assert_frame_equal(kind.data(found, metric="objective", **options), kind.data(other, metric="objective", **options))
     pd.testing.assert_frame_equal(convergence.data(found, hue="method"), convergence.data(other, hue="method"))
 
@@ -466,7 +480,8 @@ def test_boxes_end_at_the_last_value_within_reach():
 def test_boxes_show_the_published_means_of_their_runs(tmp_path):
     found = comparison(printed_means())
     frame = boxes.data(found, metric="objective")
-    assert frame.loc[frame["part"] == "published", ["method", "value"]].to_numpy().tolist() == [["smooth", 36.5], ["smooth", 38.0]]
+    shown = frame.loc[frame["part"] == "published", ["method", "value"]].to_numpy().tolist()
+    assert shown == [["smooth", 36.5]], "not that of one of their conditions"
     three = found._replace(runs=found.runs[found.runs["points"] == 3])
     assert list(boxes.data(three, metric="objective").query("part == 'published'")["value"]) == [36.5]
     assert "published" not in set(boxes.data(comparison(), metric="objective")["part"])
@@ -491,26 +506,45 @@ def test_published_means_off_the_scale_are_told_by_their_range(tmp_path):
     assert "published mean, off the scale" in told
 
 
-def test_bars_count_feasible_runs_and_know_the_bound(tmp_path):
+def test_dots_say_who_has_no_feasible_run_and_know_the_bound(tmp_path):
     found = comparison()
     found.runs.loc[found.runs["method"] == "random", "feasible"] = False
-    frame = bars.data(found, x="points", hue="method", metric="length")
+    frame = dots.data(found, x="points", hue="method", metric="length")
     assert len(frame) == 9
     assert set(frame.loc[frame["method"] != "random", "bound"]) == {18.5}
     assert frame.loc[frame["method"] == "random", "bound"].isna().all()
     assert frame.loc[frame["method"] == "random", "value"].isna().all()
-    assert bars.data(found, x="points", hue="method", metric="feasible", statistic="share")["bound"].isna().all()
-    figure = drawn(found, comparing_panels()[5:6], 1, tmp_path)
-    assert sum(text == "75 %" for text in words(figure)) == 6
-    assert sum(text == "0 %" for text in words(figure)) == 3
+    assert dots.data(found, x="points", hue="method", metric="feasible", statistic="share")["bound"].isna().all()
+    said = words(drawn(found, comparing_panels()[5:6], 1, tmp_path))
+    assert {"hollow: some runs are not feasible", "no feasible run"} <= set(said)
+    found.runs["feasible"] = True
+    assert not {"hollow: some runs are not feasible", "no feasible run"} & set(words(drawn(found, comparing_panels()[5:6], 1, tmp_path)))
 
 
-def test_bars_without_a_bound_name_none(tmp_path):
+def test_dots_without_a_bound_name_none(tmp_path):
     own = comparing_panels()[5] | {"metric": "feasible", "statistic": "share"}
     assert "exact shortest path" not in words(drawn(comparison(), [own], 1, tmp_path))
 
 
-def test_bars_and_lines_keep_the_order_of_where(tmp_path):
+def test_dots_show_what_the_paper_prints_of_their_runs():
+    frame = dots.data(comparison(printed_means().iloc[1:]), x="points", hue="method", metric="objective")
+    printed = frame.set_index(["method", "points"])["published"]
+    assert printed.dropna().to_dict() == {("smooth", 5): 38.0}
+
+
+def test_lines_show_what_the_paper_prints_where_it_belongs():
+    printed = printed_means().assign(table="table6").iloc[1:2]
+    options = {"x": "points", "metric": "objective", "hue": "method", "printed": "table6"}
+    frame = lines.data(comparison(pd.concat([printed, printed.assign(table="table7", value=1.0)])), **options)
+    shown = frame[frame["part"] == "published"]
+    assert shown[["method", "points", "value"]].to_numpy().tolist() == [["smooth", 5, 38.0]]
+    axes = Figure().subplots()
+    lines.draw(axes, frame, sheet.Scene({}, {}, {}, "m"), lines.Options.complete({"experiment": "routes", **options}))
+    (mark,) = [line for line in axes.lines if line.get_marker() == style.PUBLISHED_MARK["marker"] and len(line.get_xdata()) == 1]
+    assert (mark.get_xdata().tolist(), mark.get_ydata().tolist()) == ([5], [38.0])
+
+
+def test_dots_and_lines_keep_the_order_of_where(tmp_path):
     figure = drawn(comparison(), comparing_panels()[5:6], 1, tmp_path)
     named = [text for text in words(figure) if text in ("smooth (quadratic pieces)", "coarse", "random")]
     assert named == ["smooth (quadratic pieces)", "coarse", "random"]
@@ -549,7 +583,9 @@ def test_view_cuts_what_is_drawn_but_not_what_is_listed(tmp_path):
 
 def test_narrow_panels_have_short_notes_and_name_axes_once(tmp_path):
     figure = drawn(comparison(), gallery(10), 5, tmp_path)
-    assert sum("repeat 03\nlength 36.00 m" in text for text in words(figure)) == 10
+    assert sum("length 36.00 m" in text for text in words(figure)) == 10
+    assert "(a), (b), (c)" in figure.get_label(), "what panels have in common is told once"
+    assert "run study/routes/field,points=3/smooth/03; " in figure.get_label()
     assert [axes.get_ylabel() for axes in figure.axes] == [*["y (m)", "", "", "", ""] * 2]
     assert [axes.get_xlabel() for axes in figure.axes] == [""] * 5 + ["x (m)"] * 5
     assert figure.axes[0].get_title(loc="left") == "(a) n = 0"
@@ -607,7 +643,7 @@ def test_no_feasible_run_is_said(tmp_path):
     found = results(feasible=(False, False))
     assert set(paths.data(found, pick=LOWEST)["part"]) == {"start", "target"}
     figure = drawn(found, panels()[:3], 2, tmp_path)
-    assert sum("no feasible run among 2" in text for text in words(figure)) == 3
+    assert figure.get_label() == "(a), (b), (c) no feasible run among 2."
 
 
 def test_absent_repeat_is_said(tmp_path):
@@ -719,7 +755,8 @@ def test_a_mark_that_cannot_be_drawn_is_told():
 
 
 def save(folder: File) -> None:
-    sheet.save(drawn(results(), panels()[1:4], 2, folder), str(folder / "figure.svg"), str(folder / "figure.png"))
+    figure = drawn(results(), panels()[1:4], 2, folder)
+    sheet.save(figure, *(str(folder / f"figure.{ending}") for ending in ("svg", "png", "pdf")))
 
 
 def test_equal_data_gives_equal_bytes_in_another_process(tmp_path):
@@ -729,9 +766,10 @@ def test_equal_data_gives_equal_bytes_in_another_process(tmp_path):
     save(here)
     command = "import sys; from pathlib import Path; from test_figures import save; save(Path(sys.argv[1]))"
     subprocess.run([sys.executable, "-c", command, str(there)], check=True, cwd=File(__file__).parent)
-    for name in ("figure.svg", "figure.png", "figure.csv"):
+    for name in ("figure.svg", "figure.png", "figure.pdf", "figure.csv"):
         assert (here / name).read_bytes() == (there / name).read_bytes(), name
     assert "generation" in (here / "figure.svg").read_text(), "words of a figure stay words"
+    assert "run study/routes/0_15/smooth/1; 2 of 3 runs are feasible" in (here / "figure.svg").read_text(), "and it has its caption"
 
 
 @pytest.mark.parametrize("kind", kinds_of_panel.kinds())

@@ -421,10 +421,22 @@ WORDS = {
         "{kind: lines, experiment: routes, data: x, metric: length, x: genes}",
         "experiment and data: expected either",
     ),
-    "an unknown hue of bars": (
+    "the look of an unknown method": (
+        A,
+        "  nonsmooth: vermilion",
+        "  nonsmoth: vermilion",
+        "looks: nonsmoth: unknown; did you mean nonsmooth?",
+    ),
+    "an unknown look": (
+        A,
+        "  nonsmooth: vermilion",
+        "  nonsmooth: vermillion",
+        "looks: nonsmooth: vermillion: unknown; did you mean vermilion?",
+    ),
+    "an unknown hue of dots": (
         A,
         "{kind: workspace, workspace: figure2, numbers: free}",
-        "{kind: bars, experiment: routes, metric: length, x: problem, hue: methods}",
+        "{kind: dots, experiment: routes, metric: length, x: problem, hue: methods}",
         "panels: 0: hue: methods: unknown; did you mean method?",
     ),
     "an unknown hue of convergence": (

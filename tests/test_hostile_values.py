@@ -51,7 +51,7 @@ tables:
 figures:
   paths: {title: Paths, columns: 2, panels: [
     {kind: paths, title: mine, experiment: first, where: {method: mine}, pick: {lowest: length}},
-    {kind: bars, experiment: first, metric: length, x: method, hue: problem},
+    {kind: dots, experiment: first, metric: length, x: method, hue: problem},
     {kind: lines, experiment: both, metric: length, x: tries, hue: problem, repeats: [1]},
     {kind: boxes, experiment: first, metric: length, by: method},
     {kind: convergence, experiment: first, hue: method}]}
@@ -93,7 +93,7 @@ def plan(problem, rng, *, tries: int):
 LENGTHS, FIGURE, PANEL = "index: [method], columns: [value]", "columns: 2, panels: [", "{kind: paths, title: mine, experiment: first"
 LOWER, TREND = "groups: [line], than: [mine], direction: higher, margin: 0.1", "x: tries, direction: down, margin: 0.1, every: [problem]"
 PATHS = "where: {method: mine}, pick: {lowest: length}}"
-BARS, LINES, BOXES = "x: method, hue: problem}", "x: tries, hue: problem, repeats: [1]}", "metric: length, by: method}"
+DOTS, LINES, BOXES = "x: method, hue: problem}", "x: tries, hue: problem, repeats: [1]}", "metric: length, by: method}"
 HUE = "{kind: convergence, experiment: first, hue: method}"
 VALUES = "{metric: length, statistic: [median, min], label: length, decimals: 2}"
 CHUNK = "chunk: {smoke: 2, full: 6, extended: 6}"
@@ -139,8 +139,8 @@ FAULTS = {
             ("an index", table(f"index: [{column}], columns: [value]"), "tables: lengths: index"),
             ("columns", table(f"index: [method], columns: [{column}]"), "tables: lengths: columns"),
             ("within", table(f"{LENGTHS}, within: {column}"), "tables: lengths: within"),
-            ("bars", (A, BARS, f"x: {column}, hue: method}}"), "panels: 1: x"),
-            ("colours of bars", (A, BARS, f"x: method, hue: {column}}}"), "panels: 1: hue"),
+            ("dots", (A, DOTS, f"x: {column}, hue: method}}"), "panels: 1: x"),
+            ("colours of dots", (A, DOTS, f"x: method, hue: {column}}}"), "panels: 1: hue"),
             ("lines", (A, LINES, f"x: {column}}}"), "panels: 2: x"),
             ("boxes", (A, BOXES, f"metric: length, by: {column}}}"), "panels: 3: by"),
             ("a convergence", (A, HUE, HUE.replace("method", column)), "panels: 4: hue"),
@@ -272,7 +272,7 @@ FAULTS = {
         PATHS[:-1] + ", changed_from: bak}",
         "panels: 0: changed_from: bak: unknown; known: across",
     ),
-    "bars of one colour": (A, BARS, "x: method, hue: method}", "panels: 1: hue: method: is x already; expected another column"),
+    "dots of one colour": (A, DOTS, "x: method, hue: method}", "panels: 1: hue: method: is x already; expected another column"),
     "lines of one point": (A, LINES, "x: tries, hue: tries}", "panels: 2: hue: tries: is x already"),
     "numbers of no cells": (
         *panel("{kind: workspace, workspace: pond, numbers: all}"),

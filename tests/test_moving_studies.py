@@ -1,7 +1,6 @@
 """Experiments in worlds that move: a study of a reader's own, equal runs from equal seeds, faults in one line, and replaying a drive."""
 
 import math
-from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -11,7 +10,7 @@ from PIL import Image, ImageSequence
 
 from bezierplan.analysis import metrics, results, tables
 from bezierplan.commands import replay
-from bezierplan.figures import animation
+from bezierplan.figures import animation, sheet
 from bezierplan.figures.panels import lines
 from bezierplan.running import problems, rides, worlds
 from bezierplan.running.execution import Condition
@@ -280,15 +279,11 @@ def test_an_entry_of_a_table_pairs_the_methods_that_it_names():
     assert table["runs counted: delay"].to_dict() == {"blind": "", "one": "1 of 2", "other": "1 of 2"}
 
 
-@pytest.mark.parametrize("joined", [True, False])
-def test_each_point_shows_the_share_that_arrives(joined):
+def test_the_caption_says_how_many_runs_a_point_has():
     found = paired_runs()
     runs = found.runs.assign(obstacles=5).pipe(results.select, {"method": ["one", "other"]})
     panel = {"experiment": "drives", "x": "obstacles", "metric": "paired_gap_arrival", "statistic": "median", "hue": "method"}
-    panel |= {"repeats": [], "shares": True, "joined": joined}
-    options = {name: panel[name] for name in ("x", "metric", "statistic", "hue", "repeats", "shares", "joined")}
+    options = {name: panel[name] for name in ("x", "metric", "statistic", "hue")}
     frame = lines.data(found._replace(runs=runs), **options)
-    axes = Figure().subplots()
-    note = lines.draw(axes, frame, SimpleNamespace(labels={}, unit="m"), panel)
-    assert [text.get_text() for text in axes.texts] == ["100 %", "50 %"]
-    assert note == "median of 1 of 2 runs a point; 50 to 100 % feasible"
+    note = lines.draw(Figure().subplots(), frame, sheet.Scene({}, {}, {}, "m"), lines.Options.complete(panel))
+    assert note.told == "median of 1 of 2 runs per point, 50 to 100 % feasible"

@@ -1,4 +1,4 @@
-# Figures: the picture in two formats, and exactly the data drawn in it.
+# Figures: the picture in three formats, what its caption says of the runs, and exactly the data drawn in it.
 
 
 rule figure:
@@ -12,6 +12,8 @@ rule figure:
             caption="../report/artefact.rst",
         ),
         png=f"{RESULTS}/figures/{{figure}}.png",
+        pdf=f"{RESULTS}/figures/{{figure}}.pdf",
+        caption=f"{RESULTS}/figures/{{figure}}.txt",
         data=f"{RESULTS}/figures/{{figure}}.csv",
     log:
         f"{RESULTS}/logs/figures/{{figure}}.log",
@@ -20,3 +22,18 @@ rule figure:
         caption=caption,
     script:
         "../scripts/figure.py"
+
+
+# The same on a sheet of one text column: `snakemake narrow`.
+rule narrow_figure:
+    input:
+        inputs(targets.narrow_inputs),
+    output:
+        svg=f"{RESULTS}/figures/{{figure}}.narrow.svg",
+        pdf=f"{RESULTS}/figures/{{figure}}.narrow.pdf",
+    log:
+        f"{RESULTS}/logs/figures/{{figure}}.narrow.log",
+    params:
+        **params(targets.figure_params, "job", "folder", "code"),
+    script:
+        "../scripts/narrow_figure.py"

@@ -47,3 +47,17 @@ rule listing:
         caption=caption,
     script:
         "../scripts/listing.py"
+
+
+# All tables of a study as LaTeX, with their captions: one quick job, which a new title runs again instead of the tables.
+rule latex:
+    input:
+        inputs(targets.latex_inputs),
+    output:
+        f"{RESULTS}/tables.tex",
+    log:
+        f"{RESULTS}/logs/latex.log",
+    params:
+        **params(targets.latex_params, "captions", "code"),
+    script:
+        "../scripts/latex.py"

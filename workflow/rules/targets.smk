@@ -3,7 +3,7 @@
 
 try:
     reading.check_names(
-        STUDIES, [*(rule.name for rule in workflow.rules), "all", "smoke", "extended", "alternatives", "readings", "default"]
+        STUDIES, [*(rule.name for rule in workflow.rules), "all", "smoke", "extended", "alternatives", "readings", "narrow", "default"]
     )
 except checked.Fault as fault:
     sys.exit(str(fault))
@@ -25,6 +25,11 @@ rule extended:
     input:
         targets.files_of_scale(STUDIES, "extended"),
         page.file("extended"),
+
+
+rule narrow:
+    input:
+        targets.files_of_narrow(STUDIES, "full"),
 
 
 rule alternatives:

@@ -19,6 +19,7 @@ with log.job(snakemake) as output:
     panels = job["spec"]["panels"]
     tables = {Path(file).stem: results.published_table(file) for file in inputs.published}
     sheet.write_data(sheet.data(panels, found, bare, functions, tables), output.data)
-    scene = sheet.Scene({name: each.problems for name, each in found.items()}, bare, job["labels"], job["unit"])
+    scene = sheet.Scene({name: each.problems for name, each in found.items()}, bare, job["labels"], job["unit"], job["looks"])
     figure = sheet.draw(panels, sheet.read_data(output.data), scene, job["spec"]["columns"])
-    sheet.save(figure, output.svg, output.png)
+    sheet.save(figure, output.svg, output.png, output.pdf)
+    Path(output.caption).write_text(f"{figure.get_label()}\n", encoding="utf-8")

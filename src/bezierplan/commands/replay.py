@@ -13,7 +13,7 @@ from bezierplan.commands.digest import read_rows, row_text
 from bezierplan.figures import animation, sheet
 from bezierplan.geometry import checker, curves
 from bezierplan.running import rides
-from bezierplan.study import reading
+from bezierplan.study import jobs, reading
 from bezierplan.study.definition import Study
 from bezierplan.study.experiments import SCALES, Experiment
 from bezierplan.study.replays import replay
@@ -94,7 +94,7 @@ def draw(made: results.Results, study: Study, file: Path) -> None:
     if made.worlds:
         panel |= {"kind": "snapshot", "at": 1}
     unit = made.problems[run["problem"]].workspace.unit
-    scene = sheet.Scene({run["experiment"]: made.problems}, {}, study.labels, unit)
+    scene = sheet.Scene({run["experiment"]: made.problems}, {}, study.labels, unit, jobs.looks(study))
     file.parent.mkdir(parents=True, exist_ok=True)
     frame = sheet.data([panel], {run["experiment"]: made}, {})
     sheet.write_data(frame, str(file.with_suffix(".csv")))

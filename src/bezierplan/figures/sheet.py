@@ -5,14 +5,15 @@ A kind of panel is a module of `figures.panels` with two functions:
     data(source, *, <options>) -> DataFrame         what is drawn; the source is Results, a Workspace if nothing is planned, the table
                                                     of a study's function, Results with the table of a function of them, or None if
                                                     the options are enough
-    draw(axes, frame, scene, panel) -> str          draws the rows of its panel, labels its artists for the legend, computes no
-                                                    statistics; returns the note printed below the panel's title
+    draw(axes, frame, scene, panel) -> Note         draws the rows of its panel, labels its artists for the legend, computes no
+                                                    statistics; returns what it says in words: below its title, and in the caption
 
 The keyword-only arguments of `data` are the options that a panel may have; the class `Options` next to it describes them for authors of
 studies, with the keys that name what is shown. A kind with panels that are not flat has `PROJECTION`, matplotlib's name for it.
 """
 
 import importlib
+import itertools
 import json
 import math
 import re
@@ -30,6 +31,7 @@ from matplotlib.figure import Figure
 
 from bezierplan.analysis.results import Results, select
 from bezierplan.figures import style
+from bezierplan.figures.panels import Note
 from bezierplan.workspaces.problem import Problem, Workspace
 
 # Keys that any panel may have in addition to the options of its kind.
@@ -40,13 +42,15 @@ class Scene(NamedTuple):
     """What drawings need in addition to the table of what is drawn.
 
     problems: by experiment, then by name. workspaces: those without an experiment, by name. labels: how names are printed.
-    unit: name of the study's unit of length. narrow: whether panels are too narrow for more than the shortest notes; set by `draw`.
+    unit: name of the study's unit of length. looks: method -> the name of its look (`style.LOOKS`). narrow: whether panels are too narrow
+    for more than the shortest notes; set by `draw`.
     """
 
     problems: dict[str, dict[str, Problem]]
     workspaces: dict[str, Workspace]
     labels: dict[str, str]
     unit: str
+    looks: Mapping[str, str] = MappingProxyType({})
     narrow: bool = False
 
 
@@ -118,38 +122,48 @@ def read_data(file: str) -> pd.DataFrame:
     return pd.read_csv(file, low_memory=False)  # each column read whole, with one type
 
 
-def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, columns: int) -> Figure:
-    """The figure of a table made by `data`: one text column wide for one column of panels, otherwise two.
+def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, columns: int, width: float | None = None) -> Figure:
+    """The figure of a table made by `data`. Its label is its caption: for each panel the run that it shows, and what it counts.
 
-    frame: preferably the csv file read back (`read_data`), so that the figure shows exactly its content. columns: panels per row.
+    frame: preferably the csv file read back (`read_data`), so that the figure shows exactly its content. columns: panels per row. width:
+    of the sheet, in inches; left out: one text column for one column of panels, otherwise two.
     """
     rows = math.ceil(len(panels) / columns)
-    width = style.NARROW if columns == 1 else style.WIDE
+    width = width or (style.NARROW if columns == 1 else style.WIDE)
     labels = {name: _plain(label) for name, label in scene.labels.items()}
     scene = scene._replace(narrow=width / columns < style.NARROW_PANEL, labels=labels)
     with mpl.rc_context(style.SETTINGS):
         figure = Figure(figsize=(width, width * rows / columns))
         FigureCanvasAgg(figure)  # remembers the extents of texts, which the bare canvas of a figure measures anew for each question
         grid = _places(figure, panels, rows, columns)
-        headings, notes = [], []
+        titles, notes = [], []
         for number, panel in enumerate(panels):
             own = frame[frame["panel"] == number]
             kind = kind_module(panel["kind"])
             notes.append(kind.draw(grid.flat[number], own, scene, kind.Options.complete(panel)))
-            letter = f"({string.ascii_lowercase[number]}) " if len(panels) > 1 else ""
-            headings.append(letter + _title(panel, own, scene))
+            titles.append(_title(panel, own, scene))
         for axes in grid.flat[len(panels) :]:
             axes.set_visible(False)
         if scene.narrow:
             _name_axes_once(grid)
         room = _room(figure, grid)
-        for number in range(len(panels)):
-            notes[number] = _broken(notes[number], room, style.SMALLEST_TEXT)
-            grid.flat[number].set_title(_broken(headings[number], room, style.TITLE_TEXT), loc="left")
+        letters = [f"({letter}) " for letter in string.ascii_lowercase[: len(panels)]] if len(panels) > 1 else [""]
+        named = all(_lines(letter + ", ".join(title), room) <= _MOST_LINES for letter, title in zip(letters, titles))
+        headings = [_heading(*each, room, named=named) for each in zip(letters, titles, notes)]
         for first in range(0, len(panels), columns):
-            _write_notes(grid.flat[first : first + columns], notes[first : first + columns])
+            _write_headings(grid.flat[first : first + columns], headings[first : first + columns])
+        figure.set_label(_caption(letters, [heading.told for heading in headings]))
         _lay_out(figure, grid, _draw_legend(figure))
     return figure
+
+
+# Kinds with names beside their rows, which take the room of a second panel, and the most panels of others below each other.
+_NAMED_ROWS, _MOST_BELOW = {"boxes", "critical_difference", "dots", "expected_running_time"}, 4
+
+
+def narrow_columns(panels: list[dict[str, Any]]) -> int:
+    """Panels side by side on a sheet of one text column: one, or two of many, which would make the sheet longer than a page."""
+    return 1 if len(panels) <= _MOST_BELOW or any(panel["kind"] in _NAMED_ROWS for panel in panels) else 2
 
 
 def _places(figure: Figure, panels: list[dict[str, Any]], rows: int, columns: int) -> np.ndarray:
@@ -160,13 +174,11 @@ def _places(figure: Figure, panels: list[dict[str, Any]], rows: int, columns: in
     return np.array(places).reshape(rows, columns)
 
 
-def _title(panel: dict[str, Any], frame: pd.DataFrame, scene: Scene) -> str:
-    """A panel's title with the method whose runs it shows, if there is only one and there is room: it says how to read the curve."""
+def _title(panel: dict[str, Any], frame: pd.DataFrame, scene: Scene) -> list[str]:
+    """A panel's title, and the method whose runs it shows, if there is only one: it says how to read the curve."""
     words = [_plain(panel["title"])] if "title" in panel else []
     methods = frame["method"].dropna().unique() if "method" in frame else []
-    if len(methods) == 1 and not (words and scene.narrow):
-        words.append(scene.labels.get(methods[0], methods[0]))
-    return ", ".join(words)
+    return [*words, scene.labels.get(methods[0], methods[0])] if len(methods) == 1 else words
 
 
 def _plain(text: str) -> str:
@@ -174,15 +186,53 @@ def _plain(text: str) -> str:
     return text.replace("$", r"\$")
 
 
-def _write_notes(row: np.ndarray, notes: list[str]) -> None:
-    """Write the notes of a row of panels between the panels and their titles, with all titles at one height."""
-    lines = max(len(note.splitlines()) for note in notes)
+# Lines above a panel, of its title and the few words below it.
+_MOST_LINES = 2
+
+
+class _Heading(NamedTuple):
+    """The title of a panel, the few words below it, and what the caption says of it."""
+
+    title: str
+    words: str
+    told: list[str]
+
+
+def _lines(title: str, room: float) -> int:
+    return _broken(title, room, style.TITLE_TEXT).count("\n") + 1
+
+
+def _heading(letter: str, title: list[str], note: Note, room: float, *, named: bool) -> _Heading:
+    """What stands above a panel, in lines of a width in points: its title and, if a line is left, the few words. The caption has the rest.
+
+    named: whether the titles of all panels have room for their methods.
+    """
+    told = [*([] if named else title[1:]), *([note.told] if note.told else [])]
+    heading = _broken(letter + ", ".join(title if named else title[:1]), room, style.TITLE_TEXT)
+    words = _broken(note.shown, room, style.SMALLEST_TEXT)
+    if words and heading.count("\n") + words.count("\n") + 2 > _MOST_LINES:
+        return _Heading(heading, "", [note.shown, *told])
+    return _Heading(heading, words, told)
+
+
+def _write_headings(row: np.ndarray, headings: list[_Heading]) -> None:
+    """Write the titles of a row of panels at one height, and their words between them and the panels."""
+    lines = max(len(heading.words.splitlines()) for heading in headings)
     top = 3 + 1.25 * style.SMALLEST_TEXT * lines
     place = {"xy": (0, 1), "xycoords": "axes fraction", "xytext": (0, top), "textcoords": "offset points", "va": "top"}
-    for axes, note in zip(row, notes):
-        axes.set_title(axes.get_title(loc="left"), loc="left", pad=top + 3)
-        if note:
-            axes.annotate(note, linespacing=1.1, **place)
+    for axes, heading in zip(row, headings):
+        axes.set_title(heading.title, loc="left", pad=top + 3)
+        if heading.words:
+            axes.annotate(heading.words, linespacing=1.1, **place)
+
+
+def _caption(letters: list[str], told: list[list[str]]) -> str:
+    """What the panels tell, each with its letter, those that tell the same together."""
+    same: dict[str, list[str]] = {}
+    for letter, clauses in zip(letters, told):
+        if clauses:
+            same.setdefault("; ".join(" ".join(clause.split()) for clause in clauses), []).append(letter.strip())
+    return " ".join(f"{', '.join(filter(None, own))} {words}.".lstrip() for words, own in same.items())
 
 
 def _name_axes_once(grid: np.ndarray) -> None:
@@ -225,8 +275,8 @@ def _broken(text: str, room: float, size: float) -> str:
 def _draw_legend(figure: Figure) -> float:
     """One legend for all panels below them, with each label once, in as few rows as the width allows; returns the room for it in inches."""
     handles = {}
-    for axes in figure.axes:
-        for handle, label in zip(*axes.get_legend_handles_labels()):
+    for part in itertools.chain.from_iterable((axes, *axes.child_axes) for axes in figure.axes):
+        for handle, label in zip(*part.get_legend_handles_labels()):
             handles.setdefault(label, handle)
     for columns in range(len(handles), 0, -1):
         legend = figure.legend(handles.values(), handles.keys(), loc="lower center", ncols=columns)
@@ -284,8 +334,14 @@ def _shape(axes: Axes) -> float:
     return style.PANEL_HEIGHT if axes.get_aspect() == "auto" else axes.get_data_ratio() * axes.get_aspect()
 
 
-def save(figure: Figure, svg: str, png: str) -> None:
-    """Save a figure as svg and as png of 300 dots per inch; equal drawings give equal bytes at any time."""
+def save(figure: Figure, svg: str, png: str | None = None, pdf: str | None = None) -> None:
+    """Save a figure as svg and, if they are asked for, as png of 300 dots per inch and as pdf; equal drawings give equal bytes at any time.
+    Each picture has its caption in its metadata.
+    """
+    told = figure.get_label() or None
     with mpl.rc_context(style.SETTINGS):
-        figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None})
-        figure.savefig(png, format="png", dpi=300, metadata={"Software": None})
+        figure.savefig(svg, format="svg", metadata={"Date": None, "Creator": None, "Description": told})
+        if png:
+            figure.savefig(png, format="png", dpi=300, metadata={"Software": None} | ({"Description": told} if told else {}))
+        if pdf:
+            figure.savefig(pdf, format="pdf", metadata={"CreationDate": None, "Creator": None, "Producer": None, "Subject": told})

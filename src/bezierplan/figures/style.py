@@ -1,10 +1,14 @@
 """The style of every figure of the project.
 
 Colours differ in lightness as well as in hue, and items that could be confused in a grey print also differ in line style, width or mark.
+A method has one look, in all figures of all studies.
 """
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Iterable, Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -39,6 +43,7 @@ SETTINGS = {
     "legend.frameon": False,
     "legend.handlelength": 2.2,
     "legend.labelspacing": 0.6,
+    "pdf.fonttype": 42,  # TrueType: journals accept no other embedded kind
     "svg.fonttype": "none",  # text stays text: searchable, and readable by screen readers
     "svg.hashsalt": "bezierplan",  # equal drawings get equal identifiers
 }
@@ -55,15 +60,43 @@ RUN_SHOWN = {"color": RED, "linestyle": "-", "linewidth": 1.8}
 REFERENCE = {"color": BLACK, "linestyle": (0, (6, 1.5, 1, 1.5)), "linewidth": 0.8}
 BOUND = {"color": BLACK, "linestyle": (0, (1, 1.2)), "linewidth": 1.0}
 
-# Lines side by side, by name: the colours of Okabe and Ito first. Two that share their dashes (every fifth) differ in lightness.
-_COLOURS = ("#000000", "#D55E00", "#0072B2", "#E69F00", "#009E73", "#CC79A7", "#4B0055", "#56B4E9", "#8C510A", "#B5B5B5")
-_DASHES = ("-", (0, (5, 1.5)), (0, (2, 1)), (0, (6, 1.5, 1, 1.5)), (0, (8, 1, 1, 1, 1, 1)))
-_MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "p")
-# Bars side by side: neighbours differ in lightness and in hatching.
-_FILLS = ("#DCE6F2", "#8FB0D6", "#D55E00", "#F7DDB5", "#0072B2", "#FFFFFF", "#333333", "#BDBDBD")
-_HATCHES = ("", "////", "", "\\\\\\\\", "", "....", "", "xxxx")
+# How methods look in every figure: colour, dashes of lines, mark. All colours are at least three times as dark as paper, and those that a
+# reader may confuse, whatever his eyes, differ in dashes and marks.
+LOOKS = {
+    "black": ("#000000", (0, (6, 1.5, 1, 1.5)), "s"),
+    "vermilion": ("#D55E00", "-", "o"),
+    "blue": ("#0072B2", (0, (5, 1.5)), "^"),
+    "green": ("#008F68", (0, (2, 1)), "D"),
+    "pink": ("#B8578E", (0, (8, 1, 1, 1, 1, 1)), "v"),
+    "amber": ("#B97800", (0, (4, 1, 1, 1)), "P"),
+    "purple": ("#4B0055", (0, (5, 1.5)), "X"),
+    "sky": ("#2F8FCB", (0, (6, 1.5, 1, 1.5)), "<"),
+    "brown": ("#8C510A", (0, (2, 1)), ">"),
+    "grey": ("#7A7A7A", (0, (1, 1)), "p"),
+    "olive": ("#6B7000", (0, (8, 1, 1, 1, 1, 1)), "h"),
+    "violet": ("#7E67D6", (0, (2, 1)), "d"),
+}
+# What a planner looks like in all studies, unless a study gives its method another look (`looks` in artefacts.yaml).
+LOOK_OF_PLANNER = {
+    "rounded_shortest_path": "black",
+    "shortest_path": "purple",
+    "shortest_cell_path": "purple",
+    "straight_line": "grey",
+    "prm": "brown",
+    "binary_genetic": "blue",
+    "bca": "green",
+    "node_genetic": "pink",
+    "modified_genetic": "vermilion",
+    "chaotic_pso": "amber",
+    "abc_ep": "amber",
+    "ant_colony": "amber",
+    "grid_genetic": "sky",
+    "lattice_genetic": "sky",
+    "ant_colony_genetic": "blue",
+    "fish_swarm_genetic": "purple",
+}
 # Numbers take their colours from a scale, the higher the lighter, without its lightest end, which is invisible on paper.
-SCALE, _LIGHTEST = "viridis", 0.8
+SCALE, _DARKEST, _LIGHTEST = "viridis", 0.0, 0.58
 
 BOX = {"facecolor": LIGHT_BLUE, "edgecolor": BLUE, "linewidth": 0.7}
 PUBLISHED_MARK = {"color": BLACK, "linestyle": "", "marker": "D", "markersize": 4.5, "markerfacecolor": "#FFFFFF", "markeredgewidth": 0.9}
@@ -74,6 +107,14 @@ SURPLUS_HATCH = {"hatch": "/////", "hatchcolor": "0.7"}
 
 # A panel narrower than this, in inches, shows only the shortest notes, and names its axes only at the edge of the sheet.
 NARROW_PANEL = 2.0
+
+# Intervals of more lines than this in one panel are drawn as bars at their points or at their ends: more bands on top of each other hide
+# the lines.
+MOST_BANDS = 5
+
+# A panel whose lengths of time are shorter than this, in seconds, shows them in milliseconds. Values that differ by more than this factor
+# are drawn on a logarithmic axis. An axis shows at least this share of its values.
+_SHORT, _WIDE_RANGE, _LEAST_SPAN = 0.1, 10.0, 0.01
 
 # Height of a panel with two unlike axes, as a share of its width: by default, and if names beside it need height and leave little width.
 # Room between panels, in inches.
@@ -94,33 +135,82 @@ def interval_band(colour: str) -> dict[str, Any]:
     return {"facecolor": (colour, 0.12), "edgecolor": (colour, 0.5), "linewidth": 0.4}
 
 
-def lines(values: list[Any]) -> list[dict[str, Any]]:
-    """Styles of lines for values side by side, one each: a colour scale for numbers, distinct colours for names; with dashes and marks."""
+def looks_of(planners: Mapping[str, str], declared: Mapping[str, str]) -> dict[str, str]:
+    """Method -> the name of its look in every figure: the declared one, else its planner's, else one that few other methods have.
+
+    planners: method -> planner.
+    """
+    looks = {method: declared.get(method) or LOOK_OF_PLANNER.get(planner) for method, planner in planners.items()}
+    for method, look in looks.items():
+        if look is None:
+            counts = Counter(filter(None, looks.values()))
+            looks[method] = min(LOOKS, key=lambda name: counts[name])
+    return {method: str(look) for method, look in looks.items()}
+
+
+def lines(values: list[Any], looks: Mapping[str, str] = MappingProxyType({})) -> list[dict[str, Any]]:
+    """Styles of lines for values side by side, one each: a colour scale for numbers; for methods their looks; else looks in order.
+
+    looks: method -> the name of its look. A look that another of the values has already is replaced by the next one that is free.
+    """
     import matplotlib as mpl
 
     if len(values) > 1 and not isinstance(values[0], str):
         scale = mpl.colormaps[SCALE]
-        colours = [mpl.colors.to_hex(scale(_LIGHTEST * i / (len(values) - 1))) for i in range(len(values))]
+        colours = [mpl.colors.to_hex(scale(_DARKEST + (_LIGHTEST - _DARKEST) * i / (len(values) - 1))) for i in range(len(values))]
+        parts = [(colour, *list(LOOKS.values())[i % len(LOOKS)][1:]) for i, colour in enumerate(colours)]
     else:
-        colours = [_COLOURS[i % len(_COLOURS)] for i in range(len(values))]
-    return [
-        {
-            "color": colour,
-            "linestyle": _DASHES[i % len(_DASHES)],
-            "marker": _MARKERS[i % len(_MARKERS)],
-            "linewidth": 1.1,
-            "markersize": 3.5,
-        }
-        for i, colour in enumerate(colours)
-    ]
+        names: list[str] = []
+        for value in values:
+            own = looks.get(value)
+            free = [name for name in LOOKS if name not in names] or list(LOOKS)
+            names.append(own if own is not None and own not in names else free[0])
+        parts = [LOOKS[name] for name in names]
+    return [{"color": colour, "linestyle": dashes, "marker": mark, "linewidth": 1.1, "markersize": 3.5} for colour, dashes, mark in parts]
 
 
-def bars(count: int) -> list[dict[str, Any]]:
-    """Styles of the given number of bars side by side."""
-    return [
-        {"facecolor": _FILLS[i % len(_FILLS)], "hatch": _HATCHES[i % len(_HATCHES)], "edgecolor": BLACK, "linewidth": 0.5}
-        for i in range(count)
-    ]
+def is_wide(values: Iterable[float]) -> bool:
+    """Whether values that an axis shows need a logarithmic scale: all positive, with a large ratio of the largest to the smallest."""
+    import numpy as np
+
+    known = np.array([value for value in values if np.isfinite(value)])
+    return len(known) > 1 and bool(known.min() > 0 and known.max() > _WIDE_RANGE * known.min())
+
+
+def fit(axis: Any, values: Iterable[float], middles: Iterable[float]) -> None:
+    """Scale an axis of measured values: logarithmic, with plain numbers, if what is compared differs widely; otherwise no closer than a
+    hundredth of the values, so that what differs by less looks equal.
+
+    middles: a typical value of each method or group that is compared.
+    """
+    import numpy as np
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+
+    known = np.array([value for value in values if np.isfinite(value)])
+    set_limits = axis.axes.set_xlim if axis.axis_name == "x" else axis.axes.set_ylim
+    if is_wide(middles) and known.min() > 0:
+        (axis.axes.set_xscale if axis.axis_name == "x" else axis.axes.set_yscale)("log")
+        set_limits(known.min() / 1.5, known.max() * 1.5)
+        axis.set_major_locator(LogLocator(subs=(1.0,) if known.max() > 300 * known.min() else (1.0, 3.0)))
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.10g}"))
+        axis.set_minor_formatter(NullFormatter())
+        return
+    low, high = axis.get_view_interval()
+    least = _LEAST_SPAN * np.abs(known).max() if len(known) else 0.0
+    if high - low < least:
+        middle = (low + high) / 2
+        set_limits(middle - least / 2, middle + least / 2)
+
+
+def in_milliseconds(axis: Any, values: Iterable[float]) -> None:
+    """Print an axis of seconds in milliseconds if all its values are short."""
+    import numpy as np
+    from matplotlib.ticker import FuncFormatter
+
+    known = [value for value in values if np.isfinite(value)]
+    if known and max(known) < _SHORT and axis.get_label_text().endswith("(s)"):
+        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{1000 * value:,.6g}"))
+        axis.set_label_text(f"{axis.get_label_text().removesuffix('(s)')}(ms)")
 
 
 def in_order(values: pd.Series, panel: dict) -> list[Any]:

@@ -6,7 +6,9 @@ from typing import Annotated, Any, ClassVar, Literal
 
 from pydantic import ConfigDict, Field, PlainValidator, TypeAdapter, ValidationError, model_validator
 
+from bezierplan.figures import style
 from bezierplan.figures.panels import EACH, MOST_PANELS, Panel, kinds
+from bezierplan.schema.checked import closest
 from bezierplan.schema.model import (
     ARGUMENTS,
     Arguments,
@@ -247,10 +249,22 @@ class Figure(Model):
     panels: Annotated[list[Panel], PlainValidator(_panels)] = Field(description="a list of panels")
 
 
+def _look(given: Any) -> str:
+    """The name of a look."""
+    if not isinstance(given, str) or given not in style.LOOKS:
+        raise wrong(f"{given}: unknown{closest(str(given), style.LOOKS)}")
+    return given
+
+
 class ArtefactsFile(Model):
     """The file."""
 
     labels: dict[Line, Label] = Field({}, description="name → how it is printed, at most 80 characters, 30 a word")
+    looks: dict[Name, Annotated[str, PlainValidator(_look)]] = Field(
+        {},
+        description="name of a method → how it looks in every figure: " + ", ".join(style.LOOKS) + "; left out: as its planner does in all "
+        "studies, or unlike most other methods",
+    )
     tables: dict[Name, Annotated[Table, one_of("kind", TABLES)]] = Field({}, description="name → a table")
     figures: dict[Name, Figure] = Field({}, description="name → title, columns and panels")
 

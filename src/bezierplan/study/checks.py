@@ -48,6 +48,8 @@ def check(study: Study) -> None:
     published.check_files(study)
     place = relative(study.folder / "artefacts.yaml")
     _check_labels(study, f"{place}: labels")
+    for method in study.looks:
+        _known(method, study.methods, f"{place}: looks")
     for name, table in study.tables.items():
         _check_table(design, functions, table, f"{place}: tables: {name}")
     for name, figure in study.figures.items():

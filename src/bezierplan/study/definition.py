@@ -40,6 +40,7 @@ class Study:
     worth: Worth | None
     readings_tried: int
     labels: dict[str, str]
+    looks: dict[str, str]
     tables: dict[str, Table]
     figures: dict[str, Figure]
     claims: list[Claim]

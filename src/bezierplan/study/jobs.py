@@ -8,6 +8,7 @@ from collections import Counter
 from typing import Any
 
 from bezierplan.analysis.claims.claim import Claim
+from bezierplan.figures import style
 from bezierplan.figures.panels import Panel
 from bezierplan.planners import PLACE
 from bezierplan.schema.model import one_or_list
@@ -97,11 +98,17 @@ def figure_job(study: Study, figure: str, scale: str) -> dict:
         "spec": spec.plain() | {"panels": [panel.plain() | _planned(study, panel) for panel in spec.panels]},
         "module": study.module(),
         "labels": study.labels,
+        "looks": looks(study),
         "workspaces": {name: study.workspaces[name].plain() for name in bare},
         "repeats": {name: study.experiments[name].repeats[scale] for name in experiments},
         "jobs": _jobs_rerun(study, figure, scale),
         "unit": _unit(study, experiments[0]) if experiments else study.workspaces[bare[0] if bare else next(iter(study.workspaces))].unit,
     }
+
+
+def looks(study: Study) -> dict[str, str]:
+    """Method -> the name of its look in every figure."""
+    return style.looks_of({method: study.planner(method) for method in study.methods}, study.looks)
 
 
 def _planned(study: Study, panel: Panel) -> dict[str, Any]:

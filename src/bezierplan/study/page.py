@@ -153,6 +153,7 @@ def _study(given: Studies, scale: str, key: str, made: list[str], tried: dict[st
         "figures": {name: described[name] for name in made if name in study.figures},
         "assumptions": [each.plain() for each in study.assumptions],
         "files": files | (tried if judged else {}),
+        "latex": f"{key}/tables.tex" if scale != "smoke" and targets.latex_inputs(given, scale, key)["tables"] else "",
         "experiments": _experiments(given, scale, key, made, root),
     }
 

@@ -108,6 +108,7 @@ def read_study(folder: Path, changed: Mapping[str, Any] | None = None) -> Study:
         worth=experiments.worth,
         readings_tried=experiments.readings_tried,
         labels=artefacts.labels,
+        looks=artefacts.looks,
         tables=artefacts.tables,
         figures=artefacts.figures,
         claims=claims.claims if claims else [],

@@ -178,12 +178,30 @@ def listing_params(given: Studies, scale: str, study: str, listing: str) -> dict
     }
 
 
+def latex_inputs(given: Studies, scale: str, study: str) -> dict[str, list[str]]:
+    """The tables of a study that are made at a scale."""
+    names = [name for name in artefacts_of(given[study], scale) if name in given[study].tables]
+    return {"tables": [f"{_folder(scale, study)}/tables/{name}.csv" for name in names]}
+
+
+def latex_params(given: Studies, scale: str, study: str) -> dict:
+    """Params of the tables of a study as LaTeX."""
+    names = [Path(file).stem for file in latex_inputs(given, scale, study)["tables"]]
+    return {"captions": {name: jobs.caption(given[study], name, scale) for name in names}, "code": _code("latex")}
+
+
 def figure_inputs(given: Studies, scale: str, study: str, figure: str) -> dict[str, list[str]]:
     """Input files of a figure: published numbers only for the kinds that draw them and the functions that ask for them."""
     drawn = jobs.published_drawn(given[study], figure)
     bare = jobs.figure_job(given[study], figure, scale)["workspaces"]
     sources = {"maps": given[study].maps(bare), "published": given[study].published_files() if drawn else []}
     return artefact_inputs(given, scale, study, figure=figure) | sources
+
+
+def narrow_inputs(given: Studies, scale: str, study: str, figure: str) -> dict[str, str | list[str]]:
+    """Input files of a figure on a sheet of one text column: what it draws, and the problems and map files that it is drawn on."""
+    wide = figure_inputs(given, scale, study, figure)
+    return {"data": f"{_folder(scale, study)}/figures/{figure}.csv", "problems": wide["problems"], "maps": wide["maps"]}
 
 
 def figure_params(given: Studies, scale: str, study: str, figure: str) -> dict:
@@ -216,7 +234,18 @@ def _shown(study: Study, artefact: str, job: dict) -> dict:
     that it does not show.
     """
     spec = {key: value for key, value in job["spec"].items() if key != "title"}
-    return job | {"spec": spec, "labels": _labels(study, artefact)}
+    shown = job | {"spec": spec, "labels": _labels(study, artefact)}
+    if "looks" in job:
+        methods = _shown_methods(study, artefact)
+        shown["looks"] = {name: look for name, look in job["looks"].items() if name in methods}
+    return shown
+
+
+def _shown_methods(study: Study, artefact: str) -> set[str]:
+    """Methods that a figure can show: those of its experiments; all if it shows the table of a function, which may name any."""
+    if any(hasattr(panel, "data") and panel.data for panel in study.figures[artefact].panels):
+        return set(study.methods)
+    return {method for experiment in jobs.experiments_of(study, artefact) for method in study.methods_of(experiment)}
 
 
 def _labels(study: Study, artefact: str) -> dict[str, str]:
@@ -224,7 +253,7 @@ def _labels(study: Study, artefact: str) -> dict[str, str]:
     spec = (study.tables.get(artefact) or study.figures[artefact]).plain()
     if spec.get("kind") in ("function", "comparison") or any("data" in panel for panel in spec.get("panels", [])):
         return study.labels
-    shown: set[str] = set()
+    shown = {panel["method"] for panel in spec.get("panels", []) if "method" in panel}
     for experiment in jobs.experiments_of(study, artefact):
         content = study.experiments[experiment]
         described = [study.problems[name] for name in content.problems]
@@ -456,7 +485,7 @@ def files_of(given: Studies, scale: str, study: str, name: str) -> list[str]:
     if name in given[study].tables:
         endings = (".csv", ".comparison.csv") if name in given[study].compared() else (".csv",)
         return [f"{_folder(scale, study)}/tables/{name}{ending}" for ending in endings]
-    return [f"{_folder(scale, study)}/figures/{name}{ending}" for ending in (".svg", ".png", ".csv")]
+    return [f"{_folder(scale, study)}/figures/{name}{ending}" for ending in (".svg", ".png", ".pdf", ".csv", ".txt")]
 
 
 def artefacts_of(study: Study, scale: str) -> list[str]:
@@ -475,9 +504,22 @@ def _experiments_behind(study: Study, artefact: str) -> list[str]:
     return jobs.experiments_of(study, artefact)
 
 
+def files_of_narrow(given: Studies, scale: str) -> list[str]:
+    """All figures of a scale, each on a sheet of one text column."""
+    return [
+        f"{_folder(scale, key)}/figures/{name}.narrow{ending}"
+        for key, study in given.items()
+        for name in artefacts_of(study, scale)
+        if name in study.figures
+        for ending in (".svg", ".pdf")
+    ]
+
+
 def files_of_study(given: Studies, scale: str, study: str) -> list[str]:
     """All tables and figures of a study that are made at a scale, its claims, and its audit if it has claims or published numbers."""
     files = [file for name in artefacts_of(given[study], scale) for file in files_of(given, scale, study, name)]
+    if latex_inputs(given, scale, study)["tables"]:
+        files.append(f"{_folder(scale, study)}/tables.tex")
     if given[study].claims:
         files.append(f"{_folder(scale, study)}/claims.csv")
     if given[study].claims or _audited(given[study]):

@@ -236,11 +236,6 @@ def _place(row: tuple) -> str:
 # The radius of the obstacles, which the paper does not state, inferred from its lengths
 
 
-def printed_times(published: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """Table 6, for Figure 11; columns: method, obstacles and cpu_s, in seconds on a machine that the paper does not name."""
-    return published["table6"].rename(columns={"value": "cpu_s"})[["method", "obstacles", "cpu_s"]]
-
-
 def memory(*, sides: list[int], side: int, obstacles: list[int], radius: float, clear_ends: float) -> pd.DataFrame:
     """Memory used by empty fields of several sides, and by one with many obstacles; columns: side, obstacles, held (what is stored),
     megabytes.

@@ -82,7 +82,8 @@ class Figure(Record):
     name: str
     title: str
     caption: str = Field(description="title, methods, settings in force and repeats")
-    svg: str = Field(description="its picture, relative to the page")
+    told: str = Field("", description="by panel, the run that it shows, and the runs that it counts")
+    svg: str = Field(description="its picture, relative to the page; beside it lie others that end in .png and .pdf")
     csv: str = Field(description="exactly the data that it shows, relative to the page")
 
 
@@ -245,6 +246,7 @@ class Study(Record):
     claims: list[Claim]
     tables: list[Table]
     figures: list[Figure]
+    latex: str = Field("", description="its tables as LaTeX, relative to the page")
     audit: list[Audited]
     assumptions: list[Assumption]
     gap: float | None = Field(None, description="median gap of the numbers that count in the outcome")

@@ -95,7 +95,8 @@ def _study(
         outcome={name: count for name, count in outcome.items() if isinstance(count, int)},
         claims=_claims(key, judged, files.get("checks"), choices, job),
         tables=tables,
-        figures=[_figure(key, name, figure) for name, figure in job["figures"].items()],
+        figures=[_figure(key, name, figure, folder) for name, figure in job["figures"].items()],
+        latex=job["latex"],
         audit=[_audited(row) for _, row in files["audit"].iterrows()] if "audit" in files else [],
         assumptions=[_assumption(key, each, choices) for each in job["assumptions"]],
         gap=median(gaps) if gaps else None,
@@ -106,11 +107,11 @@ def _study(
     )
 
 
-def _figure(study: str, name: str, job: dict) -> content.Figure:
+def _figure(study: str, name: str, job: dict, folder: Path) -> content.Figure:
     place = f"{study}/figures/{name}"
-    return content.Figure(
-        address=address(study, name), name=name, title=job["title"], caption=job["caption"], svg=f"{place}.svg", csv=f"{place}.csv"
-    )
+    told = (folder / f"{place}.txt").read_text(encoding="utf-8").strip()
+    named = {"address": address(study, name), "name": name, "title": job["title"], "caption": job["caption"], "told": told}
+    return content.Figure(**named, svg=f"{place}.svg", csv=f"{place}.csv")
 
 
 def _table(study: str, name: str, job: dict, folder: Path, numbers: pd.DataFrame | None, labels: dict[str, str]) -> content.Table:

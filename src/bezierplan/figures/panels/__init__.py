@@ -9,7 +9,7 @@ import importlib
 import inspect
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, NamedTuple
 
 from pydantic import Field, PrivateAttr, model_validator
 
@@ -35,6 +35,18 @@ from bezierplan.schema.model import (
 
 MOST_PANELS = 26
 """Panels of a figure, each of which has a letter."""
+
+
+class Note(NamedTuple):
+    """What a panel says in words.
+
+    shown: a few words below its title, if two lines are enough for both. told: what belongs into the figure's caption, such as the run that
+    it shows and the runs that it counts, in clauses joined by semicolons.
+    """
+
+    shown: str = ""
+    told: str = ""
+
 
 EACH = (
     "a list of at least two mappings, for panels that differ in a few keys: each becomes a panel, with its own keys and those beside "

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from bezierplan.analysis.measures import CURVATURE_SAMPLES
 from bezierplan.figures import style
-from bezierplan.figures.panels import PICK, Pick, RunsPanel
+from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel
 from bezierplan.figures.panels.paths import picked, run_note
 from bezierplan.geometry import curves
 from bezierplan.schema.model import Number
@@ -64,8 +64,8 @@ def data(results: Results, *, pick: dict[str, Any], quantity: Literal["curvature
     return frame[[*names, "t", "value"]]
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the rows of `data`; returns the note below the panel's title."""
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+    """Draw the rows of `data`."""
     row = frame.iloc[0]
     unit = scene.problems[panel["experiment"]][row["problem"]].workspace.unit
     axes.set_xlim(0, 1)
@@ -78,13 +78,13 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
         )
         axes.axhline(-row["limit"], zorder=3, **style.PUBLISHED)
     if frame["value"].isna().all():
-        return run_note(frame, "no path" if frame["t"].isna().all() else "the curve is a single point")
+        return Note("", run_note(frame, "no path" if frame["t"].isna().all() else "the curve is a single point"))
     axes.plot(frame["t"], frame["value"], label="path", **style.RUN_SHOWN)
-    return run_note(frame, _mark_highest(axes, frame, unit))
+    return _mark_highest(axes, frame, unit)
 
 
-def _mark_highest(axes: Axes, frame: pd.DataFrame, unit: str) -> str:
-    """Mark the value of largest magnitude and fit the scale to it; returns a note about it and about the samples left out."""
+def _mark_highest(axes: Axes, frame: pd.DataFrame, unit: str) -> Note:
+    """Mark the value of largest magnitude and fit the scale to it; returns what to say about it and about the samples left out."""
     highest = frame.loc[frame["value"].abs().idxmax()]
     limit, magnitude, side = highest["limit"], abs(highest["value"]), np.sign(highest["value"])
     cut = magnitude > _HIGHEST_PEAK * limit
@@ -93,6 +93,6 @@ def _mark_highest(axes: Axes, frame: pd.DataFrame, unit: str) -> str:
     marker = ("^" if side > 0 else "v") if cut else "o"
     mark = {"marker": marker, "markersize": 5, "color": style.BLACK, "linestyle": "", "label": "largest magnitude"}
     axes.plot(highest["t"], side * min(magnitude, top), clip_on=False, zorder=4, **mark)
-    words = f"largest {highest['value']:.3g} 1/{unit} at t = {highest['t']:.2f}"
     still = int(frame["value"].isna().sum())
-    return words + (f"\n{still} of {len(frame)} samples left out (the curve stands still)" if still else "")
+    left_out = [f"{still} of {len(frame)} samples left out, where the curve stands still"] if still else []
+    return Note(f"largest {highest['value']:.3g} 1/{unit} at t = {highest['t']:.2f}", run_note(frame, *left_out))

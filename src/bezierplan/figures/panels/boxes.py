@@ -9,7 +9,7 @@ from pydantic import Field
 
 from bezierplan.analysis import metrics
 from bezierplan.figures import style
-from bezierplan.figures.panels import RunsPanel
+from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.figures.panels.lines import LIMITS, axis_label, constants, published, runs_note, shared_limits
 from bezierplan.schema.model import Column, Flag, Metric, Number
 
@@ -51,7 +51,7 @@ def data(results: Results, *, metric: str, by: str, limits: bool, limit: float |
 
     Parts: low and high (where the whiskers end), quartile1, median, quartile3; beyond, a value beyond the whiskers; mean; published, the
     mean that the paper prints, and published_end, the least and the largest value that it prints. Values are in the metric's unit, for
-    runs that have the metric. A group without such runs has no rows. Rows without a group: limit; and, with limits, reference (the best
+    runs that have the metric. A group without such runs has a row: none. Rows without a group: limit; and, with limits, reference (the best
     known path of the kind) and bound (the exact shortest length), each if all runs share it.
 
     by: a column of the runs table. limit: the published limit. Raises KeyError for an unknown metric or column.
@@ -62,7 +62,7 @@ def data(results: Results, *, metric: str, by: str, limits: bool, limit: float |
     rows = []
     for group, own in runs.groupby(by):
         named = constants(runs) | {by: group, "runs": len(own), "feasible_runs": int(own["feasible"].sum())}
-        parts = _box(np.sort(own["value"].dropna().to_numpy()))
+        parts = _box(np.sort(own["value"].dropna().to_numpy())) or [("none", np.nan)]
         for part, statistic in (("published", "mean"), ("published_end", "min"), ("published_end", "max")):
             parts += [(part, value) for value in published(results, own, metric, statistic)]
         rows += [named | {"part": part, "value": value} for part, value in parts]
@@ -85,8 +85,8 @@ def _box(values: np.ndarray) -> list[tuple[str, float]]:
     return box + [("beyond", value) for value in values[~inside]]
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the rows of `data`, the first box on top; returns the note below the panel's title."""
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+    """Draw the rows of `data`, the first box on top."""
     by = panel["by"]
     groups = style.in_order(frame[by], panel)
     own = [frame[frame[by] == group].groupby("part")["value"].apply(list).to_dict() for group in groups]
@@ -96,9 +96,16 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
             axes.axvline(value, zorder=1.5, **look)
     for value in frame.loc[frame["part"] == "limit", "value"]:
         axes.axvline(value, zorder=1.5, label=f"published limit: {value:g} {scene.unit}", **style.PUBLISHED)
-    far = _draw_far(axes, own, frame.loc[frame["part"].isin(list(LIMITS)), "value"].to_list())
+    axes.set_xlabel(axis_label(panel["metric"], scene))
+    medians = frame.loc[frame["part"] == "median", "value"]
+    axes.locator_params(axis="x", nbins=4, steps=[1, 2, 5, 10])  # labels such as 0.0025 would touch each other
+    if style.is_wide(medians):
+        style.fit(axes.xaxis, frame["value"], medians)
+        far = set()
+    else:
+        far = _draw_far(axes, own, frame.loc[frame["part"].isin(list(LIMITS)), "value"].to_list())
     marks = {
-        "beyond": {"color": style.BLUE, "marker": ".", "markersize": 1.6, "label": f"beyond {_REACH} interquartile ranges", "zorder": 1},
+        "beyond": {"color": style.BLUE, "marker": ".", "markersize": 1.6, "alpha": 0.6, "label": "outlier", "zorder": 1},
         "mean": {"color": style.RED, "marker": "x", "markersize": 4, "label": "mean", "zorder": 4},
         "published_end": {"color": style.BLACK, "marker": "|", "markersize": 9, "label": "published minimum and maximum", "zorder": 5},
         "published": {**style.PUBLISHED_MARK, "label": "published mean", "zorder": 5},
@@ -107,13 +114,16 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
         points = [(value, height) for height, parts in enumerate(own) for value in parts.get(part, []) if value not in far]
         if points:
             axes.plot(*zip(*points), **({"linestyle": ""} | look))
+    none = [height for height, parts in enumerate(own) if "none" in parts]
+    if none:
+        cross = {"color": style.BLACK, "linestyle": "", "marker": "x", "markersize": 4, "clip_on": False, "label": "no value"}
+        axes.plot(np.ones(len(none)), none, transform=axes.get_yaxis_transform(), **cross)
     axes.set_ylim(len(groups) - 0.4, -0.6)
     axes.set_yticks(range(len(groups)), [style.printed(group, by, scene.labels) for group in groups])
     axes.tick_params(axis="y", length=0)
-    axes.locator_params(axis="x", nbins=4, steps=[1, 2, 5, 10])  # labels such as 0.0025 would touch each other
-    axes.set_xlabel(axis_label(panel["metric"], scene))
     axes.grid(visible=True, axis="x")
-    return runs_note(frame, "box", "method" if by == "method" else "row")
+    style.in_milliseconds(axes.xaxis, frame["value"])
+    return Note("", runs_note(frame, "box", "method" if by == "method" else "row"))
 
 
 def _draw_far(axes: Axes, groups: list[dict[str, list[float]]], limits: list[float]) -> set[float]:

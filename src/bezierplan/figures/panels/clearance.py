@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import RunsPanel
+from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.schema.model import Repeat
 
 if TYPE_CHECKING:
@@ -51,10 +51,10 @@ def data(results: Results, *, repeat: int) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the rows of `data`; returns the note below the panel's title."""
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+    """Draw the rows of `data`."""
     methods = style.in_order(frame["method"], panel)
-    for method, look in zip(methods, style.lines(methods)):
+    for method, look in zip(methods, style.lines(methods, scene.looks)):
         own = frame[frame["method"] == method]
         axes.plot(
             own["step"], own["clearance"], label=style.printed(method, "method", scene.labels), **look | {"marker": "", "linewidth": 1.0}
@@ -63,4 +63,4 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     axes.set_xlabel("step")
     axes.set_ylabel(f"least distance to an obstacle ({scene.unit})")
     axes.grid(visible=True)
-    return ""
+    return Note("", f"runs {', '.join(frame['run'].unique())}")

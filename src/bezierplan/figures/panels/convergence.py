@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis import statistics
 from bezierplan.figures import style
-from bezierplan.figures.panels import PICK, Pick, RunsPanel, exactly_one
+from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, exactly_one
 from bezierplan.figures.panels.lines import LIMITS, constants, interval_band, published, runs_note, shared_limits
 from bezierplan.figures.panels.paths import feasible_note, picked, run_note
 from bezierplan.schema.model import Column, Flag, PrintedTable, Whole, wrong
@@ -25,14 +25,16 @@ if TYPE_CHECKING:
     from bezierplan.analysis.results import Results
 
 
-# Least distance between names beside a panel, as a share of its height: a line of text when two panels are side by side.
-_NAME_GAP = 0.08
-
 # Marks on the line of a group, at generations that differ from those of the other lines.
 _MARKS = 5
 
-# Distance of published means at the end of the axis, as a share of it: side by side, so that they do not hide each other.
-_MARK_STEP = 0.03
+# The strip of last values beside a panel: its width and its distance, as shares of the panel's width.
+_STRIP, _APART = 0.34, 0.04
+
+_PRINTED = style.PUBLISHED_MARK | {"markersize": 3.5}
+
+# Published means farther beyond our values than this share of their range are drawn at the end of the axis, with the range of theirs.
+_FAR = 0.5
 
 
 class Options(RunsPanel):
@@ -151,8 +153,8 @@ def _lengthened(history: list[float], generations: int) -> np.ndarray:
     return np.pad(np.asarray(history, dtype=float), (0, generations - len(history)), mode="edge")
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the rows of `data`; returns the note below the panel's title."""
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+    """Draw the rows of `data`."""
     axes.set_xlim(0, max(1, frame["generation"].max()))
     axes.xaxis.get_major_locator().set_params(integer=True)
     axes.set_xlabel(style.column_name("generation", scene.labels))
@@ -164,7 +166,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
         return _draw_groups(axes, frame, scene, panel)
     _draw_one_run(axes, frame)
     axes.set_ylabel(f"objective ({scene.unit})")
-    return run_note(frame, feasible_note(frame))
+    style.fit(axes.yaxis, frame["median"], [])
+    return Note("", run_note(frame, feasible_note(frame)))
 
 
 def _draw_one_run(axes: Axes, frame: pd.DataFrame) -> None:
@@ -176,41 +179,59 @@ def _draw_one_run(axes: Axes, frame: pd.DataFrame) -> None:
         axes.plot(generation, frame["objective"], label="run shown", **style.RUN_SHOWN)
 
 
-def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
     hue, statistic = panel["hue"], panel["statistic"]
     groups = style.in_order(frame[hue], panel)
-    looks = style.lines(groups)
+    looks = style.lines(groups, scene.looks)
     lines = [frame.loc[frame[hue] == group] for group in groups]
-    for number, (own, look) in enumerate(zip(lines, looks)):
+    for number, (group, own, look) in enumerate(zip(groups, lines, looks)):
         step = max(1, len(own) // _MARKS)
-        interval_band(axes, own["generation"], own["low95"], own["high95"], look["color"], f"95 % interval of the {statistic}")
-        axes.plot(own["generation"], own["objective"], markevery=(number * step // len(groups), step), **look)
-        if "printed" in own and np.isfinite(own["printed"].iloc[-1]):
-            place = own["generation"].iloc[-1] * (1 - _MARK_STEP * (len(groups) - 1 - number))
-            mark = {"marker": look["marker"], "markerfacecolor": look["color"], "label": "published final mean, with the mark of its line"}
-            axes.plot(place, own["printed"].iloc[-1], clip_on=False, zorder=5, **(style.PUBLISHED_MARK | mark))
+        if len(groups) <= style.MOST_BANDS:
+            interval_band(axes, own["generation"], own["low95"], own["high95"], look["color"], "95 % interval")
+        named = look | {"label": style.printed(group, hue, scene.labels)}
+        axes.plot(own["generation"], own["objective"], markevery=(number * step // len(groups), step), **named)
     axes.set_ylabel(f"{statistic} objective ({scene.unit})")
     axes.set_box_aspect(style.HIGH_PANEL_HEIGHT)
-    _name_lines(axes, [own["objective"].iloc[-1] for own in lines], [style.printed(group, hue, scene.labels) for group in groups], looks)
-    return runs_note(frame, statistic, "line")
-
-
-def _name_lines(axes: Axes, ends: list[float], names: list[str], looks: list[dict]) -> None:
-    """Write the lines' names (n) beside the panel, each at the end of its line (n) or as near to it as possible, from high to low."""
-    order = np.argsort(ends, kind="stable")
     axes.autoscale_view()
-    to_share = axes.transData + axes.transAxes.inverted()
-    ends = to_share.transform([(0.0, ends[i]) for i in order])[:, 1]
-    for i, end, height in zip(order, ends, _apart(ends)):
-        beside = {"transform": axes.transAxes, "clip_on": False}
-        axes.plot([1, 1.05], [end, height], **beside, color=looks[i]["color"], linewidth=0.5)
-        axes.plot([1.05, 1.12, 1.19], [height] * 3, markevery=[1], **beside, **looks[i])
-        axes.text(1.21, height, names[i], va="center_baseline", transform=axes.transAxes)
+    style.fit(axes.yaxis, frame["objective"], [])
+    ends = [own.iloc[-1] for own in lines]
+    _draw_ends(axes, ends, looks, statistic)
+    return Note("", f"{runs_note(frame, statistic, 'line')}; right: last values")
 
 
-def _apart(heights: np.ndarray) -> np.ndarray:
-    """Heights (n,), ascending, moved as little as possible so that they are at least a gap apart and between 0 and 1."""
-    from scipy.optimize import isotonic_regression
+def _draw_ends(axes: Axes, ends: list[pd.Series], looks: list[dict], statistic: str) -> None:
+    """The last value of each line with its interval, and the published one, side by side in a strip that shares the vertical axis."""
+    low, high = axes.get_ylim()
+    known = [each[name] for each in ends for name in ("objective", "low95", "high95") if np.isfinite(each[name])]
+    reach = _FAR * (max(known) - min(known))
+    printed = [each.get("printed", np.nan) for each in ends]
+    near = [value for value in printed if min(known) - reach <= value <= max(known) + reach]
+    low, high = min([low, *near]), max([high, *near])
+    axes.set_ylim(low, high)
+    strip = axes.inset_axes([1 + _APART, 0, _STRIP, 1], sharey=axes)
+    strip.tick_params(labelleft=False, left=False)
+    strip.set_xticks([])
+    strip.set_xlim(-0.7, len(ends) - 0.3)
+    strip.set_xlabel(f"final {statistic}", labelpad=style.SMALLEST_TEXT + 8)  # level with that of the panel, below its last number
+    strip.grid(visible=True, axis="y")
+    for place, (end, look, value) in enumerate(zip(ends, looks, printed)):
+        strip.plot([place, place], [end["low95"], end["high95"]], color=look["color"], linewidth=0.9, zorder=2)
+        strip.plot(place, end["objective"], zorder=3, **look | {"linestyle": ""})
+        if not np.isfinite(value):
+            continue
+        if low <= value <= high:
+            strip.plot(place, value, label="published final mean", zorder=4, **_PRINTED)
+        else:
+            above = value > high
+            edge = _PRINTED | {"marker": "^" if above else "v", "clip_on": False, "label": "published, off the scale"}
+            strip.plot(place, high if above else low, zorder=4, **edge)
+    _tell_far(strip, sorted(value for value in printed if value > high), above=True)
+    _tell_far(strip, sorted(value for value in printed if value < low), above=False)
+    axes.set_ylim(low, high)
 
-    steps = min(_NAME_GAP, 1 / max(1, len(heights) - 1)) * np.arange(len(heights))
-    return isotonic_regression(heights - steps).x.clip(0, 1 - steps[-1]) + steps
+
+def _tell_far(strip: Axes, values: list[float], *, above: bool) -> None:
+    """Write the range of values beyond an end of the axis there."""
+    if values:
+        told = " to ".join(dict.fromkeys(f"{value:.3g}" for value in (values[0], values[-1])))
+        strip.text(0.5, 0.95 if above else 0.05, told, transform=strip.transAxes, ha="center", va="top" if above else "bottom", zorder=5)

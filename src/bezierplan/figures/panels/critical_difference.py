@@ -1,4 +1,8 @@
-"""Mean ranks of methods on one axis; bars join those that Friedman's and Nemenyi's tests cannot distinguish (Demsar 2006)."""
+"""Mean ranks of methods, each in a bar as long as Nemenyi's critical difference: methods whose bars overlap cannot be distinguished.
+
+Friedman's and Nemenyi's tests as in Demsar (2006); two mean ranks differ by more than the critical difference if and only if bars of that
+length about them do not overlap.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +14,7 @@ from pydantic import Field
 
 from bezierplan.analysis import metrics, running_time
 from bezierplan.figures import style
-from bezierplan.figures.panels import RunsPanel
+from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.schema.model import Metric, PrintedTable
 
 if TYPE_CHECKING:
@@ -22,10 +26,8 @@ if TYPE_CHECKING:
 
 _LEVEL = 0.05
 
-# Heights in the drawing, in lines of text: of a bar over indistinguishable ranks, and of the items above the axis.
-_BAR, _ABOVE = 0.45, 3.2
-# Room for names on either side, as a share of the axis.
-_NAMES = 1.2
+# Height of a row, as a share of the panel's width.
+_ROW = 0.085
 
 
 class Options(RunsPanel):
@@ -47,12 +49,11 @@ class Options(RunsPanel):
 
 @Options.filled
 def data(results: Results, *, metric: str, printed: str | None, unit: Literal["repeat", "problem"]) -> pd.DataFrame:
-    """One row per rank; columns: method, part, value, until, methods and units (counts), chi2, p_value, difference.
+    """One row per rank; columns: method, part, value, methods and units (counts), chi2, p_value, difference.
 
-    Parts: rank (the mean rank of a method, 1 for the lowest values; ties share the mean of their ranks), published (that of the
-    paper), alike (from one rank to another, between which no two differ by more than the critical difference). In a unit every method
-    is ranked: a repeat of a condition or, with `problem`, a condition, by the lower median of its repeats. chi2 and p_value: Friedman's
-    test; difference: Nemenyi's critical difference at 5 %.
+    Parts: rank (the mean rank of a method, 1 for the lowest values; ties share the mean of their ranks), published (that of the paper). In
+    a unit every method is ranked: a repeat of a condition or, with `problem`, a condition, by the lower median of its repeats. chi2 and
+    p_value: Friedman's test; difference: Nemenyi's critical difference at 5 %.
 
     metric: what is ranked. printed: the published table whose mean ranks are also shown. Raises ValueError for fewer than three
     methods, and if a unit lacks one.
@@ -72,60 +73,32 @@ def data(results: Results, *, metric: str, printed: str | None, unit: Literal["r
     difference = stats.studentized_range.ppf(1 - _LEVEL, methods, np.inf) * math.sqrt(methods * (methods + 1) / (12 * units))
     chi2, p_value = stats.friedmanchisquare(*table.to_numpy().T)
     rows = [{"method": method, "part": "rank", "value": rank} for method, rank in ranks.items()]
-    rows += [{"part": "alike", "value": low, "until": high} for low, high in _alike(ranks.to_numpy(), difference)]
     if printed is not None and results.published is not None:
         theirs = results.published.query("table == @printed and metric == 'rank' and method in @ranks.index")
         rows += [{"method": row.method, "part": "published", "value": row.value} for row in theirs.itertuples()]
     tested = {"methods": methods, "units": units, "chi2": chi2, "p_value": p_value, "difference": difference}
-    return pd.DataFrame(rows).reindex(columns=["method", "part", "value", "until"]).assign(**tested)
+    return pd.DataFrame(rows).reindex(columns=["method", "part", "value"]).assign(**tested)
 
 
-def _alike(ranks: np.ndarray, difference: float) -> list[tuple[float, float]]:
-    """The longest ranges of sorted ranks (n,) no wider than a difference, with at least two ranks."""
-    found = []
-    for first, low in enumerate(ranks):
-        last = int(np.searchsorted(ranks, low + difference, side="right")) - 1
-        if last > first and (not found or ranks[last] > found[-1][1]):
-            found.append((float(low), float(ranks[last])))
-    return found
-
-
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the rows of `data`, the best names on the left; returns the note below the panel's title."""
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+    """Draw the rows of `data`, the best method on top."""
     tested = frame.iloc[0]
-    count = int(tested["methods"])
-    axes.set_axis_off()
-    side = _NAMES * (count - 1)
-    axes.set_xlim(1 - side, count + side)
-    _draw_scale(axes, count, tested["difference"])
-    bars = frame[frame["part"] == "alike"]
-    for number, (low, high) in enumerate(zip(bars["value"], bars["until"]), start=1):
-        axes.plot([low - 0.04, high + 0.04], [-_BAR * number] * 2, color=style.BLACK, linewidth=2.4, solid_capstyle="butt")
-    top = -_BAR * (len(bars) + 1) - 0.5
     ranks, printed = frame[frame["part"] == "rank"], frame[frame["part"] == "published"].set_index("method")["value"]
-    half = (count + 1) // 2
-    for number, (method, rank) in enumerate(zip(ranks["method"], ranks["value"])):
-        left = number < half
-        height = top - (number if left else count - 1 - number)
-        edge = 1 - 0.1 * (count - 1) if left else count + 0.1 * (count - 1)
-        axes.plot([rank, rank, edge], [0, height, height], color=style.BLUE, linewidth=0.8)
-        name = f"{scene.labels.get(method, method)} {rank:.2f}" + (f" ({printed[method]:g})" if method in printed else "")
-        axes.text(edge, height, f"{name} " if left else f" {name}", ha="right" if left else "left", va="center")
-    axes.set_ylim(top - half, _ABOVE)
-    axes.set_box_aspect(min(1.2, 0.055 * (_ABOVE - top + half)))
+    methods, half = list(ranks["method"]), tested["difference"] / 2
+    for row, (rank, look) in enumerate(zip(ranks["value"], style.lines(methods, scene.looks))):
+        axes.plot([rank - half, rank + half], [row, row], color="0.6", linewidth=2.2, zorder=2, label="critical difference")
+        axes.plot(rank, row, zorder=3, **look | {"markersize": 4.5})
+    if len(printed):
+        heights = [methods.index(method) for method in printed.index]
+        axes.plot(printed, heights, label="published mean rank", zorder=4, **style.PUBLISHED_MARK)
+    axes.set_yticks(range(len(methods)), [scene.labels.get(method, method) for method in methods])
+    axes.set_ylim(len(methods) - 0.5, -0.5)
+    axes.tick_params(axis="y", length=0)
+    axes.set_xticks(range(1, len(methods) + 1))
+    axes.set_box_aspect(0.1 + _ROW * len(methods))
+    axes.set_xlabel("mean rank (1 is best)")
+    axes.grid(visible=True, axis="x")
     chance = f"p = {tested['p_value']:.2g}" if tested["p_value"] >= 1e-4 else "p below 0.0001"
     units = "problems" if panel.get("unit") == "problem" else "repeats"
-    words = f"{tested['units']:g} {units}; Friedman chi2 {tested['chi2']:.1f}, {chance}"
-    return words if printed.empty else f"{words}\nin parentheses: the published mean rank"
-
-
-def _draw_scale(axes: Axes, count: int, difference: float) -> None:
-    """The axis from 1 to `count`, with the critical difference as a length above it."""
-    thin = {"color": style.BLACK, "linewidth": 0.8}
-    axes.plot([1, count], [0, 0], **thin)
-    for rank in range(1, count + 1):
-        axes.plot([rank, rank], [0, 0.25], **thin)
-        axes.text(rank, 0.35, str(rank), ha="center", va="bottom")
-    axes.text((1 + count) / 2, 1.25, "mean rank", ha="center", va="bottom")
-    axes.plot([1, 1 + difference], [2.35, 2.35], marker="|", markersize=4, **thin)
-    axes.text(1 + difference, 2.35, f" critical difference {difference:.2f}", ha="left", va="center")
+    words = f"methods whose bars overlap cannot be distinguished: {tested['units']:g} {units}, Friedman's chi-squared {tested['chi2']:.1f}"
+    return Note("", f"{words}, {chance}; critical difference {tested['difference']:.2f}")

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import TablePanel
+from bezierplan.figures.panels import Note, TablePanel
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.schema.model import Line
 
@@ -82,8 +82,8 @@ def data(marks: pd.DataFrame, *, x_label: str | None, y_label: str | None) -> pd
     return marks.reindex(columns=[*columns, *marks.columns.difference(columns, sort=False)])
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the rows of `data` to scale, over their workspace if the panel has one; returns no note."""
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+    """Draw the rows of `data` to scale, over their workspace if the panel has one."""
     axes.set_aspect("equal")
     if "workspace" in panel:
         home = scene.workspaces[panel["workspace"]]
@@ -103,7 +103,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
             axes.set(**{f"{name}ticks": []})
     if "workspace" not in panel and not {"x_label", "y_label"} & set(panel):
         axes.set_frame_on(False)
-    return ""
+    return Note()
 
 
 def _draw_marks(axes: Axes, own: pd.DataFrame, zorder: float) -> None:

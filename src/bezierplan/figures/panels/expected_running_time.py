@@ -9,7 +9,7 @@ from pydantic import Field
 
 from bezierplan.analysis import running_time
 from bezierplan.figures import style
-from bezierplan.figures.panels import RunsPanel
+from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
@@ -22,6 +22,10 @@ _DRAWS = 1000
 
 # Distance of the marks of one method, as a share of the distance between methods.
 _APART = 0.18
+
+# Distance of the place for what never happens from the largest finite value and from the last label, as shares of the axis. Times below
+# this, in seconds, are printed in milliseconds.
+_NEVER, _CLEAR, _SHORT = 0.12, 0.2, 0.1
 
 _NAMES = {"evaluations": "expected evaluations", "cpu_s": "expected CPU time (s)"}
 
@@ -90,35 +94,50 @@ def _interval(groups: list[tuple[np.ndarray, np.ndarray]], values: np.ndarray, r
     return float(low), float(high)
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the rows of `data`, a line of marks per method; returns the note below the panel's title."""
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+    """Draw the rows of `data`, a line of marks per method. An infinite time stands at the right edge."""
+    from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator
+
     methods, targets = style.in_order(frame["method"], panel), sorted(frame["within"].unique())
     finite = frame["value"][np.isfinite(frame["value"]) & (frame["value"] > 0)]
     low, high = (finite.min(), finite.max()) if len(finite) else (1.0, 10.0)
+    never = high * max((high / low) ** _NEVER, 4.0)
     axes.set_xscale("log")
-    axes.set_xlim(low / 2, high * 3)
+    axes.set_xlim(low / 2, never * 1.5)
+    axes.set_xlabel(_NAMES[panel["cost"]])
     for number, (target, look) in enumerate(zip(targets, style.lines([str(target) for target in targets]))):
         own = frame[frame["within"] == target].set_index("method").reindex(methods)
         heights = np.arange(len(methods)) + _APART * (number - (len(targets) - 1) / 2)
         known = np.isfinite(own["value"].to_numpy())
-        ends = [own[name].clip(low / 2, high * 3)[known] for name in ("low95", "high95")]
+        ends = [own[name].clip(low / 2, never)[known] for name in ("low95", "high95")]
         axes.hlines(heights[known], *ends, color=look["color"], linewidth=0.8, zorder=2, label="95 % interval")
         mark = look | {"linestyle": "", "zorder": 3}
         axes.plot(own["value"][known], heights[known], label=f"within {100 * target:g} %", **mark)
-    for height, method in enumerate(methods):
-        own = frame[frame["method"] == method].sort_values("within")
-        reached = " ".join(f"{count:g}" for count in own["reached" if own["problems"].iloc[0] > 1 else "successes"])
-        axes.text(1.02, height, reached, transform=axes.get_yaxis_transform(), va="center", ha="left")
+        axes.plot(np.full((~known).sum(), never), heights[~known], **mark | {"markerfacecolor": style.FREE})
+    axes.axvline(never / 1.8, color="0.5", linewidth=0.6, linestyle=(0, (1, 2)), zorder=1)
+    # So far from the last place that their labels do not touch.
+    last = never / (never / low) ** _CLEAR
+    steps = (1.0,) if high > 100 * low else (1.0, 3.0)
+    ticks = [tick for tick in LogLocator(subs=steps, numticks=4).tick_values(low, high) if low / 2 <= tick <= last]
+    thousand = 1000 if panel["cost"] == "cpu_s" and high < _SHORT else 1
+    if thousand > 1:
+        axes.set_xlabel(f"{_NAMES['cpu_s'].removesuffix('(s)')}(ms)")
+    axes.xaxis.set_major_locator(FixedLocator([*ticks, never]))
+    axes.xaxis.set_minor_locator(FixedLocator([]))
+    axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: "never" if value == never else _power(thousand * value)))
+    axes.hlines(np.arange(len(methods) - 1) + 0.5, 0, 1, transform=axes.get_yaxis_transform(), color="0.8", linewidth=0.5, zorder=0.5)
     axes.set_yticks(range(len(methods)), [scene.labels.get(method, method) for method in methods])
     axes.set_ylim(len(methods) - 0.5, -0.5)
     axes.tick_params(axis="y", length=0)
     axes.set_box_aspect(min(1.4, 0.14 + 0.12 * len(methods)))
-    axes.set_xlabel(_NAMES[panel["cost"]])
     axes.grid(visible=True, axis="x")
     first = frame.iloc[0]
-    targets_named = ", ".join(f"{100 * target:g}" for target in targets)
     if first["problems"] > 1:
-        return f"median over {first['problems']:g} problems; right: on how many of them any run is within {targets_named} %"
+        return Note("", f"median over {first['problems']:g} problems; never: at least half of them are not solved in any run")
     fewest, most = frame["runs"].min(), frame["runs"].max()
-    runs = f"{fewest:g}" if fewest == most else f"{fewest:g} to {most:g}"
-    return f"{runs} runs a method; right: how many of them are within {targets_named} %"
+    return Note("", f"{fewest:g}{'' if fewest == most else f' to {most:g}'} runs per method; never: no run gets there")
+
+
+def _power(value: float) -> str:
+    """A power of ten as a plain number as long as that is short."""
+    return f"{value:,.10g}" if 1e-3 <= value < 1e6 else f"$10^{{{round(np.log10(value))}}}$"

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import RunsPanel
+from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.schema.model import Function
 
@@ -28,7 +28,7 @@ _NUMBERS = (1, 2, 5)
 _LOOK = {
     "minimum": {"color": style.BLACK, "marker": "o", "markersize": 3.5, "markerfacecolor": "#FFFFFF", "label": "local minimum"},
     "lowest": {"color": style.RED, "marker": "X", "markersize": 7, "markeredgecolor": "#FFFFFF", "label": "lowest value"},
-    "fixed": {"color": style.BLUE, "marker": "o", "markersize": 4.5, "markerfacecolor": "#FFFFFF", "label": "control point that stays"},
+    "fixed": {"color": style.BLUE, "marker": "o", "markersize": 4.5, "markerfacecolor": "#FFFFFF", "label": "fixed control point"},
     "start": workspaces.START,
     "target": workspaces.TARGET,
 }
@@ -82,8 +82,8 @@ def round_numbers(values: np.ndarray) -> list[float]:
     return [n * 10.0**power for power in powers for n in _NUMBERS if values.min() <= n * 10.0**power <= values.max()]
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the rows of `data`; returns the note below the panel's title."""
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+    """Draw the rows of `data`."""
     workspace = scene.problems[panel["experiment"]][frame["problem"].iloc[0]].workspace
     x, y, values = nodes(frame)
     colours = scale_of(values)
@@ -100,7 +100,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     bar.set_ticks(round_numbers(values), labels=[f"{number:g}" for number in round_numbers(values)])
     bar.minorticks_off()
     bar.set_label(f"objective ({scene.unit})")
-    return minima_note(frame, scene.unit)
+    return Note("", minima_note(frame, scene.unit))
 
 
 def minima_note(frame: pd.DataFrame, unit: str) -> str:

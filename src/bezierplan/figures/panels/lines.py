@@ -10,8 +10,20 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis import metrics, statistics
 from bezierplan.figures import style
-from bezierplan.figures.panels import TablePanel, exactly_one
-from bezierplan.schema.model import Column, Experiment, Flag, Function, Metric, NumberColumn, Repeat, Where, listed
+from bezierplan.figures.panels import Note, TablePanel, exactly_one
+from bezierplan.schema.model import (
+    Column,
+    Experiment,
+    Flag,
+    Function,
+    Metric,
+    NumberColumn,
+    PrintedTable,
+    Repeat,
+    Where,
+    listed,
+    wrong,
+)
 from bezierplan.workspaces.seeds import generator
 
 if TYPE_CHECKING:
@@ -23,9 +35,6 @@ if TYPE_CHECKING:
 
 # Where lines do not join points, the groups at one x take this share of the distance to the next.
 _SPREAD = 0.7
-
-# Shares above points take this part of a panel's height.
-_ROOM = 0.15
 
 # At most so many values, evenly spaced, each get a tick.
 _FEW = 5
@@ -45,13 +54,20 @@ class Options(TablePanel):
     hue: Column = Field(None, description="a column of the runs table or of the data: a line for each of its values")
     statistic: Literal["mean", "median", "share"] = Field("mean", description="of runs: mean (left out: this), median or share")
     repeats: listed(Repeat) = Field((), description="a list of whole numbers: single runs that are drawn besides")
-    shares: Flag = Field(False, description="of runs: whether each point shows the share of its runs that is feasible, true or false")
+    printed: PrintedTable = Field(None, description="of runs, the name of a published table whose means are marked at their places")
     joined: Flag = Field(True, description="whether lines join points, true or false: false where x is a name in numbers, without order")
 
     @model_validator(mode="after")
     def _check_source(self) -> Options:
         exactly_one(self, "experiment", "data")
+        if self.printed is not None and self.experiment is None:
+            raise wrong("printed: needs experiment")
         return self
+
+    @property
+    def published_drawn(self) -> bool:
+        """Whether published numbers are drawn."""
+        return self.printed is not None
 
 
 @Options.filled
@@ -63,16 +79,17 @@ def data(
     statistic: Literal["mean", "median", "share"],
     hue: str | None,
     repeats: Sequence[int],
-    shares: bool,
+    printed: str | None,
     joined: bool,
 ) -> pd.DataFrame:
-    """One row per point; columns: hue (if one is given) and x, both by their own names; part (statistic, repeat or value), value.
+    """One row per point; columns: hue (if one is given) and x, both by their own names; part (statistic, repeat, published or value),
+    value.
 
     For runs: the columns of `summary` for the statistic, and repeat, the number of a single run. For a table: the column `metric`, as is.
 
-    x: a numeric column. hue: a column, with a line for each of its values. repeats: the single runs to draw as well. shares: whether points
-    show the share of feasible runs. joined: whether lines join points. Raises ValueError if a single repeat has several runs at one place,
-    and KeyError for an unknown metric or column.
+    x: a numeric column. hue: a column, with a line for each of its values. repeats: the single runs to draw as well. printed: a published
+    table whose means are drawn as well. joined: whether lines join points. Raises ValueError if a single repeat has several runs at one
+    place, and KeyError for an unknown metric or column.
     """
     import pandas as pd
 
@@ -85,7 +102,13 @@ def data(
         raise ValueError(f"repeats: several runs of one repeat have equal {' and '.join(keys)}; see the panel's `where`")
     values = metrics.values(source.runs, metric, source.problems).loc[single.index]
     thin = single[[*keys, "repeat"]].assign(value=values, part="repeat", **constants(source.runs))
-    return pd.concat([frame, thin.sort_values(["repeat", *keys])], ignore_index=True)
+    parts = [frame, thin.sort_values(["repeat", *keys])]
+    if printed is not None and source.published is not None:
+        table = source._replace(published=source.published[source.published["table"] == printed])
+        means = [(key, published(table, own, metric)) for key, own in source.runs.groupby(keys)]
+        marked = [dict(zip(keys, key)) | {"part": "published", "value": value} for key, values in means for value in values]
+        parts.append(pd.DataFrame(marked, columns=[*keys, "part", "value"]))
+    return pd.concat(parts, ignore_index=True)
 
 
 def summary(results: Results, keys: list[str], metric: str, statistic: str) -> pd.DataFrame:
@@ -143,14 +166,15 @@ _PRINTED = ["table", "metric", "statistic", "n", "unit", "value"]
 def published(results: Results, runs: pd.DataFrame, metric: str, statistic: str = "mean") -> list[float]:
     """Values of a metric's statistic that the paper prints for the problem, method and settings of runs; a row's empty keys match all runs.
 
-    A number repeated in several tables counts once.
+    A number that is of a part of the runs only, such as one of several problems, is none of theirs. One repeated in several tables counts
+    once.
     """
     found = results.published
     if found is None:
         return []
     found = found[(found["metric"] == metric) & (found["statistic"] == statistic)]
     for column in found.columns.difference(_PRINTED):
-        fits = found[column].isin(runs[column]) if column in runs else False
+        fits = found[column].isin(runs[column].unique() if runs[column].nunique() == 1 else []) if column in runs else False
         found = found[found[column].isna() | fits]
     return sorted(found["value"].unique())
 
@@ -167,7 +191,7 @@ def runs_note(frame: pd.DataFrame, statistic: str, where: str) -> str:
     counted = _range(fewest, most)
     if "n" in frame and (frame["n"] < frame["feasible_runs"]).any():
         counted = f"{_range(frame['n'].min(), frame['n'].max())} of {counted}"
-    return f"{statistic} of {counted} runs a {where}; {_range(round(share.min()), round(share.max()))} % feasible"
+    return f"{statistic} of {counted} runs per {where}, {_range(round(share.min()), round(share.max()))} % feasible"
 
 
 def _range(low: float, high: float) -> str:
@@ -175,32 +199,32 @@ def _range(low: float, high: float) -> str:
     return f"{low:g}" if low == high else f"{low:g} to {high:g}"
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the rows of `data`; returns the note below the panel's title."""
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+    """Draw the rows of `data`."""
     x, hue = panel["x"], panel.get("hue")
     of_runs = "experiment" in panel
     statistic = panel["statistic"] if of_runs else ""
     groups = [None] if hue is None else style.in_order(frame[hue], panel)
     values = np.unique(frame[x])
     apart = min(np.diff(values), default=1)
-    for number, (group, look) in enumerate(zip(groups, style.lines(groups))):
+    for number, (group, look) in enumerate(zip(groups, _looks(groups, frame, scene))):
         own = frame if hue is None else frame[frame[hue] == group]
-        label = statistic if hue is None else style.printed(group, hue, scene.labels)
-        if of_runs and not panel["joined"]:
-            aside = _SPREAD * apart * ((number + 0.5) / len(groups) - 0.5)
-            _draw_apart(axes, own[own["part"] == "statistic"], x, aside, look | {"label": label})
-            if panel["shares"]:
-                _write_shares(axes, own, x, aside)
-        elif of_runs:
-            _draw_statistic(axes, own[own["part"] == "statistic"], x, look | {"label": label})
-            _draw_repeats(axes, own[own["part"] == "repeat"], x, None if hue is None else look["color"])
-            if panel["shares"]:
-                _write_shares(axes, own, x, 0.0)
+        named = {} if hue is None else {"label": style.printed(group, hue, scene.labels)}
+        if not of_runs:
+            axes.plot(own[x], own["value"], **_joined(look, len(own)), **named)
+            continue
+        theirs = own[own["part"] == "published"]
+        if len(theirs):
+            edge = style.PUBLISHED_MARK | {"markeredgecolor": look["color"]}
+            axes.plot(theirs[x], theirs["value"], zorder=5, **edge)
+            axes.plot([], [], label="published mean", **style.PUBLISHED_MARK)
+        if panel["joined"]:
+            bands = len(groups) <= style.MOST_BANDS
+            _draw_statistic(axes, own[own["part"] == "statistic"], x, look | named, bands=bands)
+            _draw_repeats(axes, own[own["part"] == "repeat"], x, look["color"])
         else:
-            axes.plot(own[x], own["value"], label=label or None, **_joined(look, len(own)))
-    if of_runs and panel["shares"]:
-        low, high = axes.get_ylim()
-        axes.set_ylim(low, high + _ROOM * (high - low))
+            aside = _SPREAD * apart * ((number + 0.5) / len(groups) - 0.5)
+            _draw_apart(axes, own[own["part"] == "statistic"], x, aside, look | named)
     if not panel["joined"] or (len(values) <= _FEW and len(set(np.diff(values))) <= 1):
         axes.set_xticks(values)
     elif (frame[x] % 1 == 0).all():
@@ -208,12 +232,25 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     axes.set_xlabel(axis_label(x, scene))
     axes.set_ylabel(axis_label(panel["metric"], scene, statistic))
     axes.grid(visible=True)
-    return runs_note(frame[frame["part"] == "statistic"], statistic, "point") if of_runs else ""
+    style.fit(axes.yaxis, frame["value"], [] if hue is None else frame.groupby(hue)["value"].median())
+    style.in_milliseconds(axes.yaxis, frame["value"])
+    return Note("", runs_note(frame[frame["part"] == "statistic"], statistic, "point")) if of_runs else Note()
 
 
-def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict) -> None:
-    """A line with marks, in a band that shows the interval of its points."""
-    interval_band(axes, frame[x], frame["low95"], frame["high95"], look["color"], "95 % interval")
+def _looks(groups: list[Any], frame: pd.DataFrame, scene: Any) -> list[dict]:
+    """Looks of lines; of the only line that of its method, if all its runs have one."""
+    if groups != [None]:
+        return style.lines(groups, scene.looks)
+    methods = frame["method"].dropna().unique() if "method" in frame else []
+    return style.lines(list(methods), scene.looks) if len(methods) == 1 else [style.OURS | {"marker": "o", "markersize": 3.5}]
+
+
+def _draw_statistic(axes: Axes, frame: pd.DataFrame, x: str, look: dict, *, bands: bool) -> None:
+    """A line with marks, in a band that shows the interval of its points, or with a bar at each of them."""
+    if bands:
+        interval_band(axes, frame[x], frame["low95"], frame["high95"], look["color"], "95 % interval")
+    else:
+        axes.vlines(frame[x], frame["low95"], frame["high95"], color=look["color"], linewidth=0.8, zorder=2, label="95 % interval")
     axes.plot(frame[x], frame["value"], zorder=3, **look)
 
 
@@ -224,23 +261,10 @@ def _draw_apart(axes: Axes, frame: pd.DataFrame, x: str, aside: float, look: dic
     axes.plot(places, frame["value"], zorder=3, **look | {"linestyle": ""})
 
 
-def _write_shares(axes: Axes, frame: pd.DataFrame, x: str, aside: float) -> None:
-    """Above each point, or the end of its interval, the share of its runs that is feasible, in per cent."""
-    own = frame[(frame["part"] == "statistic") & frame["value"].notna()]
-    top = own[["value", "high95"]].max(axis=1)
-    for place, height, feasible, runs in zip(own[x] + aside, top, own["feasible_runs"], own["runs"]):
-        text = {"xytext": (0, 3), "textcoords": "offset points", "ha": "center", "va": "bottom", "rotation": 90, "fontsize": "xx-small"}
-        axes.annotate(f"{100 * feasible / runs:.0f} %", (place, height), zorder=4, **text)
-
-
-def _draw_repeats(axes: Axes, frame: pd.DataFrame, x: str, colour: str | None) -> None:
-    """A thin line for each single repeat; without a colour, each gets its own colour and a name."""
-    repeats = frame["repeat"].unique()
-    looks = style.lines([str(repeat) for repeat in range(len(repeats) + 1)])[1:]  # the first style is the statistic's
-    for repeat, look in zip(repeats, looks):
-        own = frame[frame["repeat"] == repeat]
-        thin = look | {"linewidth": 0.6, "markersize": 2.2, "zorder": 2.5}
-        axes.plot(own[x], own["value"], **(thin | ({"color": colour} if colour else {"label": f"repeat {repeat:g}"})))
+def _draw_repeats(axes: Axes, frame: pd.DataFrame, x: str, colour: str) -> None:
+    """A thin line for each single repeat, all alike: they show how far runs scatter."""
+    for _, own in frame.groupby("repeat"):
+        axes.plot(own[x], own["value"], color=colour, alpha=0.6, linewidth=0.5, linestyle=(0, (2, 1.5)), zorder=1.8, label="single runs")
 
 
 def _joined(look: dict, points: int) -> dict:

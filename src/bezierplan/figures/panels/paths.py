@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis import metrics
 from bezierplan.figures import style
-from bezierplan.figures.panels import PICK, Pick, RunsPanel, View, exactly_one
+from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, View, exactly_one
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.figures.panels.lines import axis_label, published
 from bezierplan.geometry import curves
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
 _STEPS = 600
 
 # Widths of the first and of the last of several paths.
-_WIDEST, _NARROWEST = 2.8, 1.3
+_WIDEST, _NARROWEST = 2.0, 1.0
 
 # Scale factor of marks in a narrow panel.
 _NARROW_MARK = 0.6
@@ -56,7 +56,7 @@ _LOOK = {
         "label": "control point in an occupied cell",
         "zorder": 5.5,
     },
-    "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull of the control points", "zorder": 2},
+    "hull": {"color": style.BLUE, "linewidth": 0.7, "label": "convex hull", "zorder": 2},
     "bound": {**style.BOUND, "label": "exact shortest path", "zorder": 4},
     "optimum": {"color": style.BLACK, "linestyle": (0, (5, 1.5)), "linewidth": 0.9, "label": "shortest between cell centres", "zorder": 4},
     "collision": {"color": style.BLACK, "linestyle": "", "marker": "X", "markersize": 8, "label": "first collision", "zorder": 6},
@@ -102,7 +102,7 @@ def run_note(frame: pd.DataFrame, *more: str) -> str:
     row = frame.iloc[0]
     if pd.isna(row["run"]):
         return f"no {'such' if row['feasible_runs'] else 'feasible'} run among {row['runs']:g}"
-    return "\n".join([f"run {row['run']}" + ("" if row["feasible"] else " (not feasible)"), *more])
+    return "; ".join([f"run {row['run']}" + ("" if row["feasible"] else " (not feasible)"), *more])
 
 
 def feasible_note(frame: pd.DataFrame) -> str:
@@ -329,8 +329,8 @@ def steps(path: Path) -> np.ndarray:
     return curves.sample_matrix(path.curve, len(path.points), steps + 1) @ path.points
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the rows of `data`, in their workspace if they have one; returns the note below the panel's title."""
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+    """Draw the rows of `data`, in their workspace if they have one."""
     if "explicit" in panel:
         workspaces.scale(axes, scene.unit)
         axes.set_aspect("equal")
@@ -345,7 +345,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     if "hue" in panel:
         note = _draw_side_by_side(axes, frame, scene, panel)
     else:
-        note = "" if "explicit" in panel or panel["bare"] else _note(frame, workspace.unit, scene.narrow)
+        note = Note() if "explicit" in panel or panel["bare"] else _note(frame, workspace.unit)
         draw_parts(axes, frame, narrow=scene.narrow, clip="view" in panel)
     for part, letter in zip(("start", "target"), panel.get("letters", ())):
         _write_letter(axes, frame.loc[frame["part"] == part, ["x", "y"]].iloc[0].to_numpy(dtype=float), letter)
@@ -388,14 +388,14 @@ def _write_letter(axes: Axes, place: np.ndarray, letter: str) -> None:
     axes.annotate(letter, place, weight="bold", zorder=7, **beside)
 
 
-def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
+def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
     """Draw the paths of all values of hue, each in its own style, and what belongs to their problem once; returns their measures."""
     hue = panel["hue"]
     values = style.in_order(frame[hue], panel)
     given = []
     # The first path is the widest, so that paths on top do not hide it.
     widths = np.linspace(_WIDEST, _NARROWEST, len(values))
-    for value, look, width in zip(values, style.lines(values), widths):
+    for value, look, width in zip(values, style.lines(values, scene.looks), widths):
         own = frame[frame[hue] == value]
         draw_parts(axes, own[own["part"] == "collision"], narrow=scene.narrow, clip="view" in panel)
         path = own[own["part"] == "path"]
@@ -404,7 +404,7 @@ def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict)
         given.append(f"{name} {_decimal(own['measure'].iloc[0])}" if len(path) else f"{name} no path")
     once = frame[frame["part"].isin(["start", "target", "bound"])].drop_duplicates(["part", "x", "y"])
     draw_parts(axes, once, narrow=scene.narrow, clip="view" in panel)
-    return f"{axis_label(panel['measure'], scene)}: {', '.join(given)}"
+    return Note("", f"{axis_label(panel['measure'], scene)}: {', '.join(given)}")
 
 
 def draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> None:
@@ -416,26 +416,20 @@ def draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> 
             axes.plot(points["x"], points["y"], clip_on=clip, **(look | size))
 
 
-def _note(frame: pd.DataFrame, unit: str, narrow: bool) -> str:
-    """The run and its length; a narrow panel has no room for more."""
+def _note(frame: pd.DataFrame, unit: str) -> Note:
+    """The length of the path; for the caption its run, and what else is known of it."""
     row = frame.iloc[0]
     if not (frame["part"] == "path").any():
-        return run_note(frame, "no path")
-    if narrow:
-        repeat = row["run"].rpartition("/")[2]
-        words = [f"length {row['length']:.2f} {unit}", *_clear(row)]
-        return f"repeat {repeat}{'' if row['feasible'] else ' (not feasible)'}\n" + ", ".join(words)
+        return Note("no path", run_note(frame, "no path"))
     control = frame.loc[frame["part"].isin(["control", "points"]), ["x", "y"]]
-    words = [f"length {row['length']:.2f} {unit}"]
-    if not control.empty:
-        words.append(f"{len(control.drop_duplicates())} of {len(control)} control points distinct")
-    lines = [", ".join([*words, *_clear(row)]), feasible_note(frame)]
+    clauses = [] if control.empty else [f"{len(control.drop_duplicates())} of {len(control)} control points distinct"]
+    clauses += [*_clear(row), feasible_note(frame)]
     if "printed" in frame and np.isfinite(row["printed"]):
-        lines.append(f"shortest printed {row['printed']:.2f} {unit}")
+        clauses.append(f"shortest printed {row['printed']:.2f} {unit}")
     if (frame["part"] == "optimum").any():
         cells, bound = (_joined(frame[frame["part"] == part]) for part in ("optimum", "bound"))
-        lines.append(f"shortest between cell centres {cells:.2f}, at any angle {bound:.2f}")
-    return run_note(frame, *lines)
+        clauses.append(f"shortest between cell centres {cells:.2f}, at any angle {bound:.2f}")
+    return Note(f"length {row['length']:.2f} {unit}", run_note(frame, *clauses))
 
 
 def _clear(row: pd.Series) -> list[str]:

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis import running_time
 from bezierplan.figures import style
-from bezierplan.figures.panels import RunsPanel
+from bezierplan.figures.panels import Note, RunsPanel
 from bezierplan.schema.model import Positive, wrong
 
 if TYPE_CHECKING:
@@ -21,6 +21,9 @@ if TYPE_CHECKING:
 
 # Room beyond the largest ratio, as a factor of the axis, so that the level that a line ends at can be seen.
 _ROOM = 1.15
+
+# Distance of marks at the end of lines, as a share of the axis.
+_MARK = 0.03
 
 # Ratios that the axis may name.
 _RATIOS = (1.01, 1.02, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0, 5.0, *(10.0**power for power in range(1, 13)))
@@ -80,29 +83,32 @@ def data(results: Results, *, cost: Literal["length", "evaluations", "cpu_s"], w
     return pd.DataFrame(rows)
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the rows of `data`; returns the note below the panel's title."""
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+    """Draw the rows of `data`."""
     end = max(frame["ratio"].max(), 1.01) ** _ROOM
     methods = style.in_order(frame["method"], panel)
-    for number, (method, look) in enumerate(zip(methods, style.lines(methods))):
+    for number, (method, look) in enumerate(zip(methods, style.lines(methods, scene.looks))):
         own = frame[frame["method"] == method]
         places = np.concatenate([[1.0], own["ratio"], [end]])
         heights = np.concatenate([[0.0], own["share"], own["share"].iloc[-1:]])
-        # Marks at different steps, because lines may end at one height.
-        marks = look | {"markevery": sorted({1 + number * len(own) // len(methods), len(places) - 1}), "clip_on": False}
-        axes.plot(places, heights, drawstyle="steps-post", label=scene.labels.get(method, method), **marks)
+        # One mark each, at the end, side by side: lines may end at one height, and marks on the way would look like data.
+        axes.plot(places, heights, drawstyle="steps-post", clip_on=False, **look | {"marker": ""})
+        aside = end ** (1 - _MARK * (number + 0.5))
+        axes.plot(aside, heights[-1], clip_on=False, **look | {"linestyle": ""})
+        axes.plot([], [], label=scene.labels.get(method, method), **look)
     axes.set_xscale("log")
     axes.set_xlim(1, end)
     _name_ratios(axes, end)
-    axes.set_ylim(0, 1.02)
+    axes.set_ylim(-0.04, 1.04)  # a line along an edge stays visible
     axes.set_xlabel(_AXES[panel["cost"]])
     axes.set_ylabel("share of problems")
     axes.grid(visible=True)
     counts = frame.iloc[0]
     words = f"{counts['problems']:g} problem{'s' if counts['problems'] != 1 else ''}"
     if panel["cost"] == "length":
-        return f"{words}; solved by the median run of any method: {counts['solved']:g}"
-    return f"to within {100 * panel['within']:g} % of the exact shortest path; {words}, solved by any method: {counts['solved']:g}"
+        return Note("", f"{words}; solved by the median run of any method: {counts['solved']:g}")
+    target = f"to within {100 * panel['within']:g} % of the exact shortest path"
+    return Note("", f"{target}; {words}, solved by any method: {counts['solved']:g}")
 
 
 def _name_ratios(axes: Axes, end: float) -> None:

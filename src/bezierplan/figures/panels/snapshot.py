@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import PICK, Pick, RunsPanel
+from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.schema.model import is_number, value
 
@@ -100,15 +100,15 @@ def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: flo
     return pd.concat(parts, ignore_index=True)
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the rows of `data`; returns the note below the panel's title."""
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+    """Draw the rows of `data`."""
     problem = scene.problems[panel["experiment"]][frame["problem"].iloc[0]]
     workspaces.shade(axes, frame)
     workspaces.scale(axes, problem.workspace.unit)
     show(axes, frame)
     dropped = frame.loc[frame["part"] == "dropped", "number"].nunique()
-    plans = "no plan dropped" if dropped == 0 else f"{dropped} plan{'s' if dropped > 1 else ''} dropped"
-    return f"step {frame['time'].iloc[0]:.0f}, {plans}"
+    plans = "no plan discarded" if dropped == 0 else f"{dropped} plan{'s' if dropped > 1 else ''} discarded"
+    return Note(f"step {frame['time'].iloc[0]:.0f}, {plans}", f"run {frame['run'].iloc[0]}")
 
 
 def show(axes: Axes, frame: pd.DataFrame) -> None:
@@ -120,9 +120,10 @@ def show(axes: Axes, frame: pd.DataFrame) -> None:
         reach = _LONGEST_ARROW * np.diff(axes.get_xlim())[0]
         arrows *= min(1.0, reach / longest) if longest > 0 else 1.0
         look = {"angles": "xy", "scale_units": "xy", "scale": 1, "color": style.BLACK, "width": 0.005, "zorder": 2}
-        axes.quiver(circles["x"], circles["y"], *arrows.T, label="velocity", **look)
+        axes.quiver(circles["x"], circles["y"], *arrows.T, **look)
+        axes.plot([], [], color=style.BLACK, linestyle="", marker=r"$\rightarrow$", markersize=8, label="velocity")
     for _, own in frame[frame["part"] == "dropped"].groupby("number"):
-        axes.plot(own["x"], own["y"], color="0.55", linewidth=0.8, linestyle=(0, (3, 1.5)), zorder=2.5, label="dropped plan")
+        axes.plot(own["x"], own["y"], color="0.7", linewidth=0.5, zorder=2.5, label="discarded plan")
     looks = {
         "plan": {"color": style.BLUE, "linewidth": 1.2, "linestyle": (0, (5, 1.5)), "zorder": 3, "label": "current plan"},
         "way": {"color": style.RED, "linewidth": 1.8, "zorder": 3.5, "label": "path driven"},

@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import Panel
+from bezierplan.figures.panels import Note, Panel
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.geometry import curves
 from bezierplan.geometry import spheres as exact
@@ -127,8 +127,8 @@ def _places(part: str, points: np.ndarray) -> pd.DataFrame:
     return pd.DataFrame(points, columns=["x", "y", "z"]).assign(part=part)
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the rows of `data`; returns the note below the panel's title."""
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+    """Draw the rows of `data`."""
     across, up = panel["plane"]
     unit = scene.workspaces[panel["workspace"]].unit
     flat = frame.assign(part=frame["part"].replace("sphere", "circle"), x=frame[across], y=frame[up])
@@ -144,10 +144,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     runs, row = frame[frame["part"] == "run"], frame.iloc[0]
     free, claimed = runs[runs["feasible"].astype(bool)], runs["claimed_feasible"].astype(bool).sum()
     shortest = f"{free['length'].min():.3f} {unit}" if len(free) else "none"
-    return (
-        f"{len(free)} of {len(runs)} runs are free, {claimed} by their own test\n"
-        f"shortest free path: {shortest}\n"
-        f"straight line: {row['straight_line']:.3f} {unit}, lower bound: {row['bound']:.3f} {unit}"
+    return Note(
+        f"shortest free path: {shortest}",
+        f"{len(free)} of {len(runs)} runs are free, {claimed} by their own test; "
+        f"straight line {row['straight_line']:.3f} {unit}, lower bound {row['bound']:.3f} {unit}",
     )
 
 

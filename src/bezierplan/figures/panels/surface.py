@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bezierplan.figures.panels import landscape
+from bezierplan.figures.panels import Note, landscape
 from bezierplan.figures.panels.landscape import Options as Options
 from bezierplan.figures.panels.landscape import data as data
 
@@ -22,8 +22,8 @@ PROJECTION = "3d"
 _VIEW = {"elev": 45, "azim": -60}
 
 
-def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the nodes of `data` at a logarithmic height; returns the note below the panel's title."""
+def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+    """Draw the nodes of `data` at a logarithmic height."""
     unit = scene.problems[panel["experiment"]][frame["problem"].iloc[0]].workspace.unit
     x, y, values = landscape.nodes(frame)
     colours = landscape.scale_of(values).to_rgba(values)
@@ -40,4 +40,4 @@ def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
     axes.locator_params(axis="x", nbins=5)
     axes.locator_params(axis="y", nbins=5)
     axes.tick_params(pad=-3)
-    return landscape.minima_note(frame, scene.unit)
+    return Note("", landscape.minima_note(frame, scene.unit))

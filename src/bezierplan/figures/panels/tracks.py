@@ -9,7 +9,7 @@ from pydantic import Field
 
 from bezierplan.analysis import metrics
 from bezierplan.figures import style
-from bezierplan.figures.panels import RunsPanel, landscape
+from bezierplan.figures.panels import Note, RunsPanel, landscape
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.figures.panels.paths import steps
 from bezierplan.planners import planner_module
@@ -115,8 +115,8 @@ def _part(run: pd.Series, paths: list[Path], point: int | None) -> pd.DataFrame:
     return pd.concat(drawn, ignore_index=True).assign(run=run["id"], length=run["length"])
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the rows of `data`; returns the note below the panel's title."""
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+    """Draw the rows of `data`."""
     workspace = scene.problems[panel["experiment"]][frame["problem"].iloc[0]].workspace
     if (frame["part"] == "node").any():
         x, y, values = landscape.nodes(frame)
@@ -137,8 +137,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
         _draw_paths(axes, own[own["part"] == "path"], look | {"label": name})
         notes.append(f"{name}: repeat {run.rpartition('/')[2]}, length {own['length'].iloc[0]:.2f} {workspace.unit}")
     row = frame.iloc[0]
-    notes.append(f"{row['groups']:g} classes among {row['candidates']:g} feasible runs" if len(runs) else "no feasible run")
-    return "\n".join(notes)
+    if not len(runs):
+        return Note("no feasible run")
+    notes.append(f"{row['groups']:g} classes among {row['candidates']:g} feasible runs")
+    return Note("", "; ".join(notes))
 
 
 def _draw_way(axes: Axes, way: pd.DataFrame, look: dict) -> None:

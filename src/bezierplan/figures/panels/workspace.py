@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import Panel
+from bezierplan.figures.panels import Note, Panel
 from bezierplan.schema.model import Flag
 from bezierplan.schema.model import Workspace as Described
 from bezierplan.workspaces.circles import Circles
@@ -132,8 +132,8 @@ def _rings(workspace: Polygons) -> pd.DataFrame:
     return pd.concat([pd.DataFrame(), *rings], ignore_index=True)
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
-    """Draw the rows of `data`; returns the note below the panel's title.
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+    """Draw the rows of `data`.
 
     Cells that show their numbers need no scale: it would take up the room that keeps the numbers legible.
     """
@@ -144,11 +144,11 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> str:
         axes.text(x, y, str(int(number)), ha="center", va="center_baseline", in_layout=False)
     if numbered.empty:
         scale(axes, unit)
-        return ""
+        return Note()
     axes.set_xticks([])
     axes.set_yticks([])
     side = numbered["size"].iloc[0]
-    return f"cells of {side:g} x {side:g} {unit}"
+    return Note(f"cells of {side:g} x {side:g} {unit}{'s' if side != 1 and unit in ('unit', 'cell') else ''}")
 
 
 def scale(axes: Axes, unit: str) -> None:

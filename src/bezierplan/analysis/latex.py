@@ -1,0 +1,89 @@
+"""Tables as LaTeX, ready to be read by a paper that loads `booktabs` and `graphicx`."""
+
+import itertools
+from typing import NamedTuple
+
+import pandas as pd
+
+_SIGNS = {"\\": r"\textbackslash{}", "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"\textless{}", ">": r"\textgreater{}"}
+_SIGNS |= {sign: f"\\{sign}" for sign in "&%$#_{}"}
+_SIGNS |= {"²": r"\textsuperscript{2}", "→": r"$\to$", "ζ": r"$\zeta$"}
+
+# Columns that fit a page; more are scaled down to its width.
+_MOST_COLUMNS = 7
+
+# Between the levels of a column's name in the csv file.
+_LEVEL = ": "
+
+
+class Captioned(NamedTuple):
+    """A table with its caption and the label that `\\ref` takes. table: all text, as in its csv file."""
+
+    table: pd.DataFrame
+    caption: str
+    label: str
+
+
+def document(tables: list[Captioned]) -> str:
+    """Tables one after the other, each as an environment of its own."""
+    return "\n".join(["% Needs \\usepackage{booktabs,graphicx}.", *map(environment, tables)])
+
+
+def environment(each: Captioned) -> str:
+    """A table with rules as of a book: numbers on the right, and columns whose names begin alike below a common head.
+
+    >>> print(environment(Captioned(pd.DataFrame({"method": ["a_b"], "length: mean": ["1.5"]}), "Lengths in %", "tab:x")))
+    \\begin{table}[htbp]
+      \\centering
+      \\caption{Lengths in \\%}
+      \\label{tab:x}
+      \\begin{tabular}{lr}
+        \\toprule
+        method & length: mean \\\\
+        \\midrule
+        a\\_b & 1.5 \\\\
+        \\bottomrule
+      \\end{tabular}
+    \\end{table}
+    <BLANKLINE>
+    """
+    table = each.table
+    sides = "".join("r" if _is_number(table[column]) else "l" for column in table)
+    rows = [*_heads(list(table.columns)), "\\midrule", *(_row(row) for row in table.itertuples(index=False))]
+    body = [f"\\begin{{tabular}}{{{sides}}}", *(f"  {row}" for row in ["\\toprule", *rows, "\\bottomrule"]), "\\end{tabular}"]
+    if len(table.columns) > _MOST_COLUMNS:
+        body = ["\\resizebox{\\textwidth}{!}{%", *body, "}"]
+    head = ["\\centering", f"\\caption{{{escaped(each.caption)}}}", f"\\label{{{each.label}}}"]
+    return "\n".join(["\\begin{table}[htbp]", *(f"  {line}" for line in [*head, *body]), "\\end{table}", ""])
+
+
+def escaped(text: str) -> str:
+    """Text in which no sign is a command."""
+    return "".join(_SIGNS.get(sign, sign) for sign in text)
+
+
+def _row(cells: tuple) -> str:
+    return " & ".join(escaped(str(cell)) for cell in cells) + " \\\\"
+
+
+def _heads(names: list[str]) -> list[str]:
+    """The rows of heads: one, or two if neighbouring columns share the first part of their names."""
+    parts = [name.split(_LEVEL, 1) for name in names]
+    groups = [(first, len(list(own))) for first, own in itertools.groupby(part[0] for part in parts)]
+    if all(count == 1 for _, count in groups):
+        return [_row(tuple(names))]
+    above, rules, below, place = [], [], [], 1
+    for first, count in groups:
+        own = [part[-1] if count > 1 or len(part) > 1 else part[0] for part in parts[place - 1 : place - 1 + count]]
+        below += own
+        shared = count > 1 or own != [first]
+        above.append(f"\\multicolumn{{{count}}}{{c}}{{{escaped(first)}}}" if shared else "")
+        rules += [f"\\cmidrule(lr){{{place}-{place + count - 1}}}"] if shared else []
+        place += count
+    return [" & ".join(above) + " \\\\", "".join(rules), _row(tuple(below))]
+
+
+def _is_number(column: pd.Series) -> bool:
+    """Whether a column of text holds numbers, and empty cells at most."""
+    given = column[column != ""]
+    return bool(len(given)) and bool(pd.to_numeric(given, errors="coerce").notna().all())

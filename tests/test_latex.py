@@ -1,0 +1,50 @@
+"""Tables as LaTeX: every sign as text, heads in two rows, and a caption that needs no other file."""
+
+import re
+
+import pandas as pd
+import pytest
+
+from bezierplan.analysis import latex
+
+
+def written(**columns: list[str]) -> str:
+    return latex.environment(latex.Captioned(pd.DataFrame(columns), "Shares & lengths, 50 % of them", "tab:s-table1"))
+
+
+@pytest.mark.parametrize("sign", list("&%$#_{}~^\\<>"))
+def test_no_sign_is_a_command(sign):
+    text = latex.escaped(f"a{sign}b")
+    assert text != f"a{sign}b"
+    assert not re.search(r"(?<!\\)[&%$#_~^]", text)
+
+
+def test_columns_that_begin_alike_share_a_head():
+    columns = {"method": ["GA"], "length: mean": ["1.5"], "length: max": ["2"], "n": ["30"]}
+    lines = [line.strip() for line in written(**columns).splitlines()]
+    assert r"\begin{tabular}{lrrr}" in lines
+    assert r"& \multicolumn{2}{c}{length} &  \\" in lines
+    assert r"\cmidrule(lr){2-3}" in lines
+    assert r"method & mean & max & n \\" in lines
+    assert r"GA & 1.5 & 2 & 30 \\" in lines
+
+
+def test_captions_and_labels_name_the_table():
+    text = written(method=["a_b"])
+    assert r"\caption{Shares \& lengths, 50 \% of them}" in text
+    assert r"\label{tab:s-table1}" in text
+    assert [text.index(rule) for rule in (r"\toprule", r"\midrule", r"\bottomrule")] == sorted(
+        text.index(rule) for rule in (r"\toprule", r"\midrule", r"\bottomrule")
+    )
+    assert "resizebox" not in text
+
+
+def test_a_wide_table_is_scaled_to_the_page():
+    text = written(**{f"c{number}": ["1"] for number in range(9)})
+    assert r"\resizebox{\textwidth}{!}{%" in text
+    assert text.count("{") == text.count("}")
+
+
+def test_a_document_holds_every_table():
+    tables = [latex.Captioned(pd.DataFrame({"n": ["1"]}), f"Table {number}", f"tab:{number}") for number in (1, 2)]
+    assert latex.document(tables).count(r"\begin{table}") == 2
