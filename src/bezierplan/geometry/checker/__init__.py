@@ -18,7 +18,7 @@ import numpy as np
 from bezierplan.geometry.checker.collision import first_collision
 from bezierplan.geometry.checker.corner_cutting import CONTACT_RADIUS, first_corner_cut
 from bezierplan.geometry.checker.distances import CLEARANCE_TOLERANCE, DEPTH_TOLERANCE, largest_depth, least_clearance
-from bezierplan.geometry.checker.hulls import LARGEST_COORDINATE, LARGEST_DEGREE, ROUNDING, TOLERANCE
+from bezierplan.geometry.checker.hulls import LARGEST_COORDINATE, LARGEST_DEGREE, TOLERANCE, resolution
 from bezierplan.geometry.region import CircleRegion, GridRegion, Region, from_origin
 
 __all__ = ["TOLERANCE", "Check", "check", "first_collision", "refuse_unfit"]
@@ -111,7 +111,7 @@ def check(pieces: np.ndarray, region: Region, corner_cutting: Literal["open", "c
             return Check(False, cut_at, 0.0, 0.0, 0.0, intervals)
     if collision_at < math.inf:
         depth = largest_depth(pieces, region, collision_at)
-        return Check(False, collision_at, depth, 0.0, max(DEPTH_TOLERANCE * depth, ROUNDING), intervals)
+        return Check(False, collision_at, depth, 0.0, max(DEPTH_TOLERANCE * depth, resolution(pieces.reshape(-1, 2))), intervals)
     if isinstance(region, CircleRegion):
         clearance = least_clearance(pieces, region.edges, region.centres, region.radii)
     else:

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from bezierplan.geometry.checker.certificates import depth_at, depth_bound, is_free, least_distance_to_centre
-from bezierplan.geometry.checker.hulls import ROUNDING, STACK, bulge_of, copy_points, distance_to_segment, halve, size
+from bezierplan.geometry.checker.hulls import STACK, bulge_of, copy_points, distance_to_segment, halve, resolution, size
 from bezierplan.geometry.region import Region
 from bezierplan.kernels import allocation_free, compiled
 
@@ -16,18 +16,21 @@ DEPTH_TOLERANCE = 1e-6
 
 @compiled
 def largest_depth(pieces: np.ndarray, region: Region, collision_at: float) -> float:
-    """Largest depth of a path, to a relative `DEPTH_TOLERANCE`, by branch and bound, starting with the piece of its first collision."""
+    """Largest depth of a path, to a relative `DEPTH_TOLERANCE` or the pieces' `resolution`, by branch and bound, starting with the piece of
+    its first collision.
+    """
     stack = np.empty((STACK, pieces.shape[1], 2))
     largest = 0.0
     for piece in range(max(0, math.ceil(collision_at) - 1), len(pieces)):
         copy_points(pieces[piece], stack[0])
+        finest = resolution(pieces[piece])
         for x, y in (pieces[piece, 0], pieces[piece, -1]):
             largest = max(largest, depth_at(x, y, region))
         top = 0
         while top >= 0:
             points = stack[top]
-            enough = largest + max(DEPTH_TOLERANCE * largest, ROUNDING)
-            if size(points) <= ROUNDING or depth_bound(points, region) <= enough or is_free(points, region):
+            enough = largest + max(DEPTH_TOLERANCE * largest, finest)
+            if size(points) <= finest or depth_bound(points, region) <= enough or is_free(points, region):
                 top -= 1
             else:
                 halve(points, stack[top + 1])

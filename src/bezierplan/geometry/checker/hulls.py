@@ -9,8 +9,10 @@ from bezierplan.kernels import allocation_free
 # Depth in units above which a point is certainly blocked.
 TOLERANCE = 1e-9
 
-# Smaller differences between coordinates are rounding errors.
+# Smaller differences between coordinates are rounding errors; beyond coordinates of about a thousand, so are smaller ones than some units
+# in the last place.
 ROUNDING = 1e-12
+_LAST_PLACES = 4 * np.finfo(float).eps
 
 # With larger coordinates, the rounding errors of halved control points would approach the tolerance.
 LARGEST_COORDINATE = 1e5
@@ -64,6 +66,15 @@ def size(points: np.ndarray) -> float:
     for i in range(1, len(points)):
         largest = max(largest, math.hypot(points[i, 0] - points[0, 0], points[i, 1] - points[0, 1]))
     return largest
+
+
+@allocation_free
+def resolution(points: np.ndarray) -> float:
+    """Size in units below which halving no longer separates control points: `ROUNDING`, or more for large coordinates."""
+    largest = 0.0
+    for i in range(len(points)):
+        largest = max(largest, abs(points[i, 0]), abs(points[i, 1]))
+    return max(ROUNDING, _LAST_PLACES * largest)
 
 
 @allocation_free
