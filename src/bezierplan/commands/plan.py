@@ -15,16 +15,19 @@ import numpy as np
 
 from bezierplan import api
 from bezierplan.geometry import checker, shortest_paths
+from bezierplan.geometry.region import Region
 from bezierplan.places import TREE
 from bezierplan.planners import Plan, known_planners, planner_module
 from bezierplan.running import answer, interface, legs, problems, watchdog
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.loans import lend
+from bezierplan.running.problems import Regions
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.model import is_line
 from bezierplan.workspaces import map_files, robot
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.grown import original
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem, Workspace
 from bezierplan.workspaces.text_file import is_count
@@ -32,7 +35,10 @@ from bezierplan.workspaces.text_file import is_count
 PICTURES = (".svg", ".png")
 OUT = (*PICTURES, ".csv", ".geojson", ".yaml", ".yml")
 
-_FROM_MAPS = ("start", "target", "via", "cell", "rule", "robot_radius", "most_pixels", "scenario", "strict", "turning_radius")
+_FROM_MAPS = (
+    *("start", "target", "via", "cell", "rule", "margin", "resolution", "unknown", "most_pixels", "scenario"),
+    *("robot_radius", "strict", "turning_radius"),
+)
 """What messages about a map or a problem may begin with: here these are options."""
 
 MANUAL = f"""
@@ -50,8 +56,11 @@ the robot:
                     path has a corner
 
 maps:
-  .geojson   polygons: features with properties.role border (a rectangle) and obstacle; planners that need cells get --cell and --rule
-  .yaml      an occupancy map of ROS's map_server, beside its image; unknown pixels count as occupied
+  .geojson   polygons, as GIS programs write them, also in projected coordinates such as UTM: what has no properties.role is an obstacle;
+             the border is the polygon with the role border, of any shape, or the file's bbox, or --margin around the obstacles;
+             planners that need cells get --cell and --rule
+  .yaml      an occupancy map of ROS's map_server, beside its image; unknown pixels count as occupied, or with --unknown free as free
+  .png .pgm  an image alone, with --resolution; dark pixels are occupied, and the lower left corner is at 0,0
   .map       a MovingAI grid; --scenario FILE:NUMBER in place of --start and --target
   .txt       cells of . (free) and # (occupied), the top row first, of the side --cell
 
@@ -127,7 +136,10 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     parser.add_argument("--rule", choices=("overlap", "centre"), help="which cells obstacles occupy (default: overlap)")
     parser.add_argument("--robot-radius", type=float, metavar="R", help="the distance that the path keeps from obstacles and border")
     parser.add_argument("--strict", action="store_true", help="refuse a path that turns tighter than the turning radius")
-    parser.add_argument("--most-pixels", type=int, metavar="N", help="the most pixels of a ROS map's image")
+    parser.add_argument("--margin", type=float, metavar="D", help="how far the border lies from the obstacles of a .geojson without one")
+    parser.add_argument("--resolution", type=float, metavar="SIDE", help="side of a pixel of an image without a YAML file")
+    parser.add_argument("--unknown", choices=("occupied", "free"), help="what unknown pixels count as (default: occupied)")
+    parser.add_argument("--most-pixels", type=int, metavar="N", help="the most pixels of an image")
     parser.add_argument("--unit", metavar="NAME", help="the unit of length that is printed (default: m, of grids cell)")
     parser.add_argument(
         "--out",
@@ -142,13 +154,15 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
 def _plan(given: Namespace) -> None:
     _check_words(given)
     planner, settings = _planner(given)
-    module = planner_module(planner)
+    module, regions = planner_module(planner), problems.remembered()
     with _as_options():
         legs.check_planner(planner, given.via, given.strict)
-        problem = _problem(given, planner)
+        problem = _problem(given, planner, regions)
         via = [map_files.point("via", text) for text in given.via]
-        parts = legs.legs(problem, via)
-    bound = legs.shortest(parts)
+        parts = legs.legs(problem, via, regions)
+    blocked = regions(problem.workspace)
+    bounds = legs.shortest(parts, blocked)
+    bound = legs.whole(bounds)
     if not np.isfinite(bound.length):
         raise Fault(f"--target: {given.target or given.scenario}: no free way leads there from the start; expected one that can be reached")
     if planner == legs.ROUNDED:
@@ -158,14 +172,14 @@ def _plan(given: Namespace) -> None:
     if hasattr(module, "serves"):
         interface.asked(module.serves, f"--planner: {planner}", problem)
     for _ in range(2):  # the first run also loads compiled code, so only the second is timed
-        answers = [_answer(module, part, planner, settings, given.seed) for part in parts]
+        answers = [_answer(module, part, planner, settings, given.seed, bounds[number], blocked) for number, part in enumerate(parts)]
     plan, seconds = legs.joined([answer for answer, _ in answers]), sum(taken for _, taken in answers)
     kept = plan.extra["least_radius"] if planner == legs.ROUNDED else math.nan
     if given.strict:
         with _as_options():
             legs.check_kept(settings["turning_radius"], kept, problem.workspace.unit)
     try:
-        judged = api.Judged(**api.verdict(problem, plan.path, bound.length, via))
+        judged = api.Judged(**api.verdict(problem, plan.path, bound.length, regions, via))
     except ValueError as error:
         raise Fault(f"--planner: {planner}: {error}") from None
     if judged.feasible and judged.length < shortest_paths.least_length(bound):
@@ -232,21 +246,26 @@ def _unwritable(out: File, error: OSError) -> Fault:
     return Fault(f"--out: {out}: cannot be written ({error.strerror or type(error).__name__})")
 
 
-def _answer(module: ModuleType, problem: Problem, planner: str, settings: dict[str, Any], seed: int) -> tuple[Plan, float]:
+def _answer(
+    module: ModuleType, problem: Problem, planner: str, settings: dict[str, Any], seed: int, bound: shortest_paths.Bound, blocked: Region
+) -> tuple[Plan, float]:
     """A planner's answer, through the door of all answers, and its CPU seconds. Raises Fault, in one line, however the planner fails."""
-    loan = lend({problem.name: problem})[problem.name]
-    called = module.gentlest if planner == legs.ROUNDED else module.plan
+    own = planner == legs.ROUNDED
+    loan = None if own else lend({problem.name: problem})[problem.name]
     try:
         with watchdog.watching(None) as watch, watchdog.executing(f"--planner: {planner}", watch):
             begin = time.process_time()
-            given = called(loan.problem, np.random.default_rng(seed), **settings)
+            if own:
+                given = module.gentlest(problem, None, bound, blocked, **settings)
+            else:
+                given = module.plan(loan.problem, np.random.default_rng(seed), **settings)
             seconds = time.process_time() - begin
         plan = answer.accepted(given, problem, {*TAKEN, *settings})
     except answer.Unfit as fault:
         raise Fault(f"--planner: {planner}: its answer: {fault}") from None
     except watchdog.PlannerFailure as failure:
         raise Fault(str(failure)) from None
-    if fault := loan.thorough_fault():
+    if loan and (fault := loan.thorough_fault()):
         raise Fault(f"--planner: {planner}: {fault}")
     return plan, seconds
 
@@ -327,21 +346,22 @@ def _preset(planner: str) -> dict[str, Any]:
     return {}
 
 
-def _problem(given: Namespace, planner: str) -> Problem:
+def _problem(given: Namespace, planner: str, regions: Regions) -> Problem:
     """The map with start and target; as a grid if the planner needs cells."""
     served = getattr(planner_module(planner), "workspaces", None)
     if given.robot_radius is not None:
         robot.check_radius(given.robot_radius)
-    options = {name: getattr(given, name) for name in ("cell", "rule", "unit", "most_pixels", "scenario")}
+    names = ("cell", "rule", "unit", "margin", "resolution", "unknown", "most_pixels", "scenario")
+    options = {name: getattr(given, name) for name in names}
     described = map_files.described(given.map, **options, cells=map_files.needs_cells(served))
     workspace = robot.suited(map_files.read(given.map, described, given.robot_radius), served)
     met = "polygons" if isinstance(workspace, Polygons) else "grid"
     if served is not None and met not in served:
         raise Fault(f"--planner: {planner}: serves workspaces of kind {', '.join(served)}, and a map is {met}")
     if given.scenario:
-        return problems.build("", _scenario(given, described, robot.original(workspace)), workspace)
+        return problems.build("", _scenario(given, described, original(workspace)), workspace, regions)
     ends = {end: map_files.point(end, getattr(given, end)) for end in ("start", "target")}
-    return problems.build("", ends, workspace)
+    return problems.build("", ends, workspace, regions)
 
 
 def _scenario(given: Namespace, described: dict, workspace: Workspace) -> dict:

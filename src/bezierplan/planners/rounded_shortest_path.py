@@ -94,14 +94,12 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 
 @with_settings(Settings)
-def gentlest(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
+def gentlest(problem: Problem, rng: np.random.Generator | None, settings: Settings, bound: shortest_paths.Bound, blocked: Region) -> Plan:
     """The same, but where the turning radius cannot be kept, another wish is taken if its tightest turn is wider: the largest that is kept.
 
     So a larger wish gives no tighter turn than a smaller one. Wishes shrink on a fixed scale until one is kept, and then the largest
-    between it and the one before is found by halving.
+    between it and the one before is found by halving. bound, blocked: the exact shortest path and the region of the problem's map.
     """
-    bound = shortest_paths.shortest_path(problem)
-    blocked = region(problem.workspace)
     first = _answer(problem, bound, blocked, settings)
     if math.isinf(bound.length) or first.extra["tight_turns"] == 0:
         return first

@@ -7,8 +7,11 @@ from itertools import pairwise
 import numpy as np
 
 from bezierplan.geometry import shortest_paths
+from bezierplan.geometry.region import Region
 from bezierplan.planners import Plan
 from bezierplan.running import problems
+from bezierplan.running.problems import Regions, near_region
+from bezierplan.workspaces import shifted
 from bezierplan.workspaces.problem import Path, Problem
 
 ROUNDED = "rounded_shortest_path"
@@ -28,12 +31,15 @@ def check_planner(planner: str, via: Sequence[tuple[float, float]], strict: bool
         raise ValueError(f"strict: only for {ROUNDED}, which has a turning radius; the planner is {own}")
 
 
-def legs(problem: Problem, via: Sequence[tuple[float, float]]) -> list[Problem]:
-    """The problems from start to the first way point, and so on to the target. Raises ValueError for a way point that is not free."""
+def legs(problem: Problem, via: Sequence[tuple[float, float]], regions: Regions = near_region) -> list[Problem]:
+    """The problems from start to the first way point, and so on to the target, on the map where it is computed with.
+
+    Raises ValueError for a way point that is not free.
+    """
     places = [problem.start]
     for point in via:
         try:
-            placed = problems.build("", {"start": point, "target": point}, problem.workspace).start
+            placed = problems.build("", {"start": point, "target": point}, problem.workspace, regions).start
         except ValueError as error:
             raise ValueError(f"via{str(error).removeprefix('start')}") from None
         if placed == places[-1]:
@@ -41,13 +47,19 @@ def legs(problem: Problem, via: Sequence[tuple[float, float]]) -> list[Problem]:
         places.append(placed)
     if via and places[-1] == problem.target:
         raise ValueError(f"via: {via[-1]}: the same place as the target; expected another")
-    ends = [*places, problem.target]
-    return [problem._replace(start=start, target=target) for start, target in pairwise(ends)]
+    near = shifted.near_problem(problem)
+    shift = shifted.shift_of(problem.workspace)
+    ends = [shifted.lowered(place, shift) for place in (*places, problem.target)]
+    return [near._replace(start=start, target=target) for start, target in pairwise(ends)]
 
 
-def shortest(parts: Sequence[Problem]) -> shortest_paths.Bound:
+def shortest(parts: Sequence[Problem], blocked: Region) -> list[shortest_paths.Bound]:
+    """The exact shortest path of each leg. blocked: the region of their map."""
+    return [shortest_paths.shortest_path(part, blocked=blocked) for part in parts]
+
+
+def whole(bounds: Sequence[shortest_paths.Bound]) -> shortest_paths.Bound:
     """The exact shortest path through all legs."""
-    bounds = [shortest_paths.shortest_path(part) for part in parts]
     return shortest_paths.Bound(sum(bound.length for bound in bounds), np.concatenate([bound.points for bound in bounds]))
 
 
