@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from bezierplan.geometry.samples import Samples
+    from bezierplan.planners import Plan
     from bezierplan.running.problems import Regions
 
 __all__ = [
@@ -46,9 +47,6 @@ __all__ = [
 
 Method = str | Callable[..., Any] | ModuleType
 Via = Sequence[tuple[float, float]]
-
-SHARE = 0.02
-"""The turning radius of `plan` without a method, as a share of the map's longer side."""
 
 
 @dataclass(frozen=True)
@@ -195,8 +193,8 @@ class Answer(Judged):
     stop : str
         Why it ended.
     turning_radius : float
-        Radius of the tightest turn, where the planner is `rounded_shortest_path`: 0 where a corner is left, infinite without turns; nan of
-        other planners.
+        Radius of the tightest turn, where the planner is `rounded_shortest_path` or `dubins_search`: 0 where a corner is left, infinite
+        without turns; nan of other planners.
     """
 
     method: str
@@ -394,12 +392,13 @@ def plan(
     robot_radius : float
         Radius of the robot, in the map's unit: obstacles grow by it and the border shrinks. 0 if the map was read with one.
     via : sequence of tuple of float
-        Way points (x, y), in their order: the path joins paths from one to the next, with a corner at each. For the planners
-        `rounded_shortest_path` and `shortest_path`.
+        Way points (x, y), in their order: the path joins paths from one to the next. For the planners without a method, `dubins_search`
+        and `shortest_path`.
     strict : bool
-        Whether a turning radius that cannot be kept everywhere is an error. For `rounded_shortest_path`.
+        Whether a turning radius that cannot be kept everywhere is an error. For the planners without a method and `dubins_search`.
     **settings
-        Settings in place of the method's own.
+        Settings in place of the method's own. Without a method: `turning_radius`; `start_heading` and `target_heading`, directions at the
+        ends, in radians counterclockwise from the x-axis, None for any.
 
     Returns
     -------
@@ -425,38 +424,31 @@ def plan(
     >>> wide.feasible, round(wide.length, 3), round(wide.clearance, 6)
     (True, 9.156, 0.5)
     """
-    from bezierplan.planners import rounded_shortest_path
     from bezierplan.running import answer as door
     from bezierplan.running import legs, problems
     from bezierplan.running.columns import TAKEN
-    from bezierplan.running.loans import lend
 
     if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
         raise ValueError(f"seed: {seed!r}; expected a whole number of at least 0")
     _check_problem(problem)
-    name, module, preset = _method(method, problem)
+    name, module, preset = _method(method, problem, settings)
     chosen, regions = preset | settings, problems.remembered()
     problem = _placed(_grown(problem, robot_radius), regions, getattr(module, "workspaces", None))
     _check_settings(name, module, chosen, problem)
-    rounded = module is rounded_shortest_path
-    legs.check_planner(module.__name__ if isinstance(module, ModuleType) else name, via, strict)
-    parts = legs.legs(problem, via, regions)
-    bounds = legs.shortest(parts, regions(problem.workspace))
-    answers = []
-    for part, bound in zip(parts, bounds, strict=True):
-        loan = lend({part.name: part})[part.name]
-        if rounded:
-            answered = module.gentlest(part, None, bound, regions(problem.workspace), **chosen)
-        else:
-            answered = module.plan(loan.problem, np.random.default_rng(seed), **chosen)
-        try:
-            answers.append(door.accepted(answered, part, {*TAKEN, *chosen}))
-        except door.Unfit as fault:
-            raise ValueError(f"the answer of planner {name}: {fault}") from None
-        if fault := loan.thorough_fault():
-            raise ValueError(f"planner {name}: {fault}")
-    found = legs.joined(answers)
-    kept = found.extra.get("least_radius", math.nan) if rounded else math.nan
+    planner = getattr(module, "__name__", name).removeprefix("bezierplan.planners.")
+    legs.check_planner(planner, via, strict)
+    parts, blocked = legs.legs(problem, via, regions), regions(problem.workspace)
+    bounds = legs.shortest(parts, blocked)
+    if planner in legs.TURNING:
+        found = legs.solved(planner, parts, bounds, blocked, chosen)
+    else:
+        found = legs.joined([_answered(part, name, module, seed, chosen) for part in parts])
+    try:
+        whole = parts[0]._replace(target=parts[-1].target)
+        found = door.accepted(found, whole, {*TAKEN, *chosen})
+    except door.Unfit as fault:
+        raise ValueError(f"the answer of planner {name}: {fault}") from None
+    kept = legs.kept(planner, found, chosen)
     if strict:
         legs.check_kept(chosen["turning_radius"], kept, problem.workspace.unit)
     return Answer(
@@ -470,6 +462,23 @@ def plan(
         history=found.history,
         stop=found.stop,
     )
+
+
+def _answered(problem: Problem, name: str, module: Any, seed: int, settings: Mapping[str, Any]) -> Plan:
+    """The answer of any planner, which gets a copy of the problem."""
+    from bezierplan.running import answer as door
+    from bezierplan.running.columns import TAKEN
+    from bezierplan.running.loans import lend
+
+    loan = lend({problem.name: problem})[problem.name]
+    answered = module.plan(loan.problem, np.random.default_rng(seed), **settings)
+    try:
+        plan = door.accepted(answered, problem, {*TAKEN, *settings})
+    except door.Unfit as fault:
+        raise ValueError(f"the answer of planner {name}: {fault}") from None
+    if fault := loan.thorough_fault():
+        raise ValueError(f"planner {name}: {fault}")
+    return plan
 
 
 def _check_problem(problem: Problem) -> None:
@@ -503,15 +512,16 @@ class _Function:
         self.plan = function
 
 
-def _method(method: Method | None, problem: Problem) -> tuple[str, Any, dict[str, Any]]:
-    """Name, module and settings of a method."""
+def _method(method: Method | None, problem: Problem, settings: Mapping[str, Any]) -> tuple[str, Any, dict[str, Any]]:
+    """Name, module and settings of a method; without one, of a planner that has the given settings."""
     from bezierplan.planners import known_planners, planner_module
+    from bezierplan.running import legs
     from bezierplan.schema.checked import closest
 
     if method is None:
-        x_low, x_high, y_low, y_high = problem.workspace.bounds
-        radius = SHARE * max(x_high - x_low, y_high - y_low)
-        return "rounded_shortest_path", planner_module("rounded_shortest_path"), {"turning_radius": radius, "offset": 0.0}
+        method = legs.DRIVEN if {"start_heading", "target_heading"} & set(settings) else legs.ROUNDED
+    if isinstance(method, str) and method in legs.TURNING:
+        return method, planner_module(method), legs.preset(method, problem.workspace)
     if isinstance(method, ModuleType):
         return method.__name__, method, {}
     if callable(method):

@@ -15,7 +15,6 @@ import numpy as np
 
 from bezierplan import api
 from bezierplan.geometry import checker, shortest_paths
-from bezierplan.geometry.region import Region
 from bezierplan.places import TREE
 from bezierplan.planners import Plan, known_planners, planner_module
 from bezierplan.running import answer, interface, legs, problems, watchdog
@@ -50,10 +49,12 @@ the robot:
   --robot-radius R  every path keeps the distance R from the obstacles and the border of the map, on maps of all kinds: obstacles grow by R,
                     round at corners to a ten-thousandth of R, and the shortest path is that of the robot's centre. Cells with more than
                     {robot.MOST_CORNERS:,} corners grow by whole cells
-  turning radius    a setting of the default planner; where there is no room for it, the radius that is kept is printed beside it, and a
-                    larger wish gives no tighter turn. With --strict such a path is refused
-  --via X,Y         way points in their order, each reached by an exact path from the one before; where the direction changes there, the
-                    path has a corner
+  turning radius    a setting of the default planner. Where rounding has no room for it, a path that keeps it is searched; if none is found,
+                    the radius that is kept is printed beside it. With --strict such a path is refused
+  headings          --start X,Y,THETA and --target X,Y,THETA: the direction of travel there, in radians, counterclockwise from the x-axis.
+                    The path turns no tighter than the turning radius: the shortest one without obstacles, if it is free (Dubins), or else
+                    one by a search (hybrid A*), pulled tight
+  --via X,Y         way points in their order; the path turns no tighter there than elsewhere, if the search finds one that does not
 
 maps:
   .geojson   polygons, as GIS programs write them, also in projected coordinates such as UTM: what has no properties.role is an obstacle;
@@ -119,14 +120,18 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     parser.formatter_class = RawDescriptionHelpFormatter
     parser.description, parser.epilog = MANUAL.strip(), EXAMPLES.strip()
     parser.add_argument("map", type=File, metavar="MAP", help="a map file")
-    parser.add_argument("--start", metavar="X,Y", help="where the path begins, in the map's unit")
-    parser.add_argument("--target", metavar="X,Y", help="where it ends")
+    parser.add_argument("--start", metavar="X,Y[,THETA]", help="where the path begins, in the map's unit; the heading there, in radians")
+    parser.add_argument("--target", metavar="X,Y[,THETA]", help="where it ends, and the heading there")
     parser.add_argument(
         "--via", action="append", default=[], metavar="X,Y", help="a place to pass on the way; may be given several times, in their order"
     )
     parser.add_argument("--scenario", metavar="FILE:NUMBER", help="start and target of a MovingAI scenario, numbered from 1")
     chosen = parser.add_mutually_exclusive_group()
-    chosen.add_argument("--planner", metavar="NAME", help="a planner, or the path of a planner's file (default: rounded_shortest_path)")
+    chosen.add_argument(
+        "--planner",
+        metavar="NAME",
+        help="a planner, or the path of a planner's file (default: rounded_shortest_path, with headings dubins_search)",
+    )
     chosen.add_argument("--like", metavar="STUDY/METHOD", help="planner and settings of a study's method")
     parser.add_argument("--settings", default="{}", metavar="'{NAME: VALUE, ...}'", help="settings in place of the planner's own")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="of the random numbers (default: 0)")
@@ -153,28 +158,33 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
 
 def _plan(given: Namespace) -> None:
     _check_words(given)
-    planner, settings = _planner(given)
+    places, headings = _places(given)
+    planner, settings = _planner(given, headings)
     module, regions = planner_module(planner), problems.remembered()
     with _as_options():
         legs.check_planner(planner, given.via, given.strict)
-        problem = _problem(given, planner, regions)
         via = [map_files.point("via", text) for text in given.via]
+        problem = _problem(given, planner, places, regions)
         parts = legs.legs(problem, via, regions)
+    if planner in legs.TURNING:
+        settings = legs.preset(planner, problem.workspace) | settings
+    interface.check_settings(module, settings, "--settings")
+    if hasattr(module, "serves"):
+        interface.asked(module.serves, f"--planner: {planner}", problem)
     blocked = regions(problem.workspace)
     bounds = legs.shortest(parts, blocked)
     bound = legs.whole(bounds)
     if not np.isfinite(bound.length):
         raise Fault(f"--target: {given.target or given.scenario}: no free way leads there from the start; expected one that can be reached")
-    if planner == legs.ROUNDED:
-        x_low, x_high, y_low, y_high = problem.workspace.bounds
-        settings = {"turning_radius": api.SHARE * max(x_high - x_low, y_high - y_low), "offset": 0.0} | settings
-    interface.check_settings(module, settings, "--settings")
-    if hasattr(module, "serves"):
-        interface.asked(module.serves, f"--planner: {planner}", problem)
     for _ in range(2):  # the first run also loads compiled code, so only the second is timed
-        answers = [_answer(module, part, planner, settings, given.seed, bounds[number], blocked) for number, part in enumerate(parts)]
-    plan, seconds = legs.joined([answer for answer, _ in answers]), sum(taken for _, taken in answers)
-    kept = plan.extra["least_radius"] if planner == legs.ROUNDED else math.nan
+        if planner in legs.TURNING:
+            begin = time.process_time()
+            plan = legs.solved(planner, parts, bounds, blocked, settings)
+            seconds = time.process_time() - begin
+        else:
+            answers = [_answer(module, part, planner, settings, given.seed) for part in parts]
+            plan, seconds = legs.joined([answer for answer, _ in answers]), sum(taken for _, taken in answers)
+    kept = legs.kept(planner, plan, settings)
     if given.strict:
         with _as_options():
             legs.check_kept(settings["turning_radius"], kept, problem.workspace.unit)
@@ -246,26 +256,20 @@ def _unwritable(out: File, error: OSError) -> Fault:
     return Fault(f"--out: {out}: cannot be written ({error.strerror or type(error).__name__})")
 
 
-def _answer(
-    module: ModuleType, problem: Problem, planner: str, settings: dict[str, Any], seed: int, bound: shortest_paths.Bound, blocked: Region
-) -> tuple[Plan, float]:
+def _answer(module: ModuleType, problem: Problem, planner: str, settings: dict[str, Any], seed: int) -> tuple[Plan, float]:
     """A planner's answer, through the door of all answers, and its CPU seconds. Raises Fault, in one line, however the planner fails."""
-    own = planner == legs.ROUNDED
-    loan = None if own else lend({problem.name: problem})[problem.name]
+    loan = lend({problem.name: problem})[problem.name]
     try:
         with watchdog.watching(None) as watch, watchdog.executing(f"--planner: {planner}", watch):
             begin = time.process_time()
-            if own:
-                given = module.gentlest(problem, None, bound, blocked, **settings)
-            else:
-                given = module.plan(loan.problem, np.random.default_rng(seed), **settings)
+            given = module.plan(loan.problem, np.random.default_rng(seed), **settings)
             seconds = time.process_time() - begin
         plan = answer.accepted(given, problem, {*TAKEN, *settings})
     except answer.Unfit as fault:
         raise Fault(f"--planner: {planner}: its answer: {fault}") from None
     except watchdog.PlannerFailure as failure:
         raise Fault(str(failure)) from None
-    if loan and (fault := loan.thorough_fault()):
+    if fault := loan.thorough_fault():
         raise Fault(f"--planner: {planner}: {fault}")
     return plan, seconds
 
@@ -274,7 +278,8 @@ def _told(judged: api.Judged, planner: str, settings: dict[str, Any], stop: str,
     """The names and values to print."""
     home = judged.problem.workspace
     unit = home.unit
-    lines = [("planner", planner), ("settings", ", ".join(f"{name} {value}" for name, value in settings.items()) or "none")]
+    told = ", ".join(f"{name} {'any' if value is None else value}" for name, value in settings.items())
+    lines = [("planner", planner), ("settings", told or "none")]
     if judged.robot_radius:
         whole = f", by whole cells of {home.cell:g} {unit}" if isinstance(home, Grid) and not home.drawn else ""
         lines.append(("robot radius", f"{judged.robot_radius:g} {unit}{whole}"))
@@ -284,7 +289,7 @@ def _told(judged: api.Judged, planner: str, settings: dict[str, Any], stop: str,
     lines.append(("length", f"{judged.length:.6g} {unit}, {_told_number(100 * judged.gap, 3)} % above the shortest path"))
     corners = ", and corners" if judged.corners else ""
     lines.append(("curvature", f"at most {_told_number(judged.curvature, 6)} / {unit}{corners}"))
-    if planner == legs.ROUNDED:
+    if planner in legs.TURNING:
         asked = settings["turning_radius"]
         met = kept >= asked * (1 - 1e-9)
         lines.append(("turning radius", f"{asked:.6g} {unit} asked{' and kept' if met else f', {kept:.6g} {unit} kept'}"))
@@ -303,21 +308,37 @@ def _told_number(value: float, digits: int) -> str:
     return f"{value:.{digits}g}" if abs(value) > checker.TOLERANCE else "0"
 
 
-def _planner(given: Namespace) -> tuple[str, dict[str, Any]]:
+def _places(given: Namespace) -> tuple[dict[str, tuple[float, float]], dict[str, float]]:
+    """Start and target, as far as they are given, and the headings there, by the names of their settings."""
+    places, headings = {}, {}
+    with _as_options():
+        for end in () if given.scenario else ("start", "target"):
+            places[end], heading = map_files.pose(end, getattr(given, end))
+            if heading is not None:
+                headings[f"{end}_heading"] = heading
+    return places, headings
+
+
+def _planner(given: Namespace, headings: dict[str, float]) -> tuple[str, dict[str, Any]]:
     """The planner and its settings, as far as they are known without the map."""
     own = checked.parse(given.settings, "--settings")
     if not isinstance(own, dict):
         raise Fault(f"--settings: {given.settings}: expected '{{name: value, ...}}'")
+    if twice := headings.keys() & own.keys():
+        raise Fault(f"--settings: {min(twice)}: given with --{min(twice).removesuffix('_heading')} as well; expected once")
     if given.like:
         planner, preset = _like(given.like)
     else:
-        planner = given.planner or "rounded_shortest_path"
+        planner = given.planner or (legs.DRIVEN if {"start_heading", "target_heading"} & (headings.keys() | own.keys()) else legs.ROUNDED)
         if not planner.endswith(".py") and planner not in known_planners():
             raise Fault(f"--planner: {planner}: unknown{closest(planner, known_planners())}")
         interface.loaded(planner, f"--planner: {planner}")
-        preset = {} if planner == "rounded_shortest_path" or planner.endswith(".py") else _preset(planner)
+        preset = {} if planner in legs.TURNING or planner.endswith(".py") else _preset(planner)
+    if headings and planner != legs.DRIVEN:
+        end = min(headings).removesuffix("_heading")
+        raise Fault(f"--{end}: {getattr(given, end)}: a heading is only for {legs.DRIVEN}; the planner is {planner}")
     interface.refuse_unknown(planner_module(planner), own, "--settings")
-    return planner, preset | own
+    return planner, preset | own | headings
 
 
 def _like(name: str) -> tuple[str, dict[str, Any]]:
@@ -346,7 +367,7 @@ def _preset(planner: str) -> dict[str, Any]:
     return {}
 
 
-def _problem(given: Namespace, planner: str, regions: Regions) -> Problem:
+def _problem(given: Namespace, planner: str, places: dict[str, tuple[float, float]], regions: Regions) -> Problem:
     """The map with start and target; as a grid if the planner needs cells."""
     served = getattr(planner_module(planner), "workspaces", None)
     if given.robot_radius is not None:
@@ -360,8 +381,7 @@ def _problem(given: Namespace, planner: str, regions: Regions) -> Problem:
         raise Fault(f"--planner: {planner}: serves workspaces of kind {', '.join(served)}, and a map is {met}")
     if given.scenario:
         return problems.build("", _scenario(given, described, original(workspace)), workspace, regions)
-    ends = {end: map_files.point(end, getattr(given, end)) for end in ("start", "target")}
-    return problems.build("", ends, workspace, regions)
+    return problems.build("", places, workspace, regions)
 
 
 def _scenario(given: Namespace, described: dict, workspace: Workspace) -> dict:

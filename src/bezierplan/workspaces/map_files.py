@@ -146,6 +146,20 @@ def needs_cells(served: Collection[str] | None) -> bool:
     return served is not None and "polygons" not in served
 
 
+def pose(name: str, text: str | None) -> tuple[tuple[float, float], float | None]:
+    """A point from words such as `2.5,10`, and the heading in radians that a third number gives. Raises ValueError, naming the option."""
+    words = (text or "").split(",")
+    if len(words) != 3:
+        return point(name, text), None
+    try:
+        x, y, heading = (number(word.strip()) for word in words)
+    except ValueError:
+        raise ValueError(f"{name}: {text}; expected X,Y or X,Y,THETA, numbers such as 2.5,10,1.57") from None
+    if abs(heading) > math.tau:
+        raise ValueError(f"{name}: {text}: a heading of {heading:g}; expected radians, from {-math.tau:.4g} to {math.tau:.4g}")
+    return (x, y), heading
+
+
 def point(name: str, text: str | None) -> tuple[float, float]:
     """A point from words such as `2.5,10`. Raises ValueError, naming the option."""
     try:
