@@ -12,7 +12,6 @@ from scipy.optimize import brentq
 import bezierplan as bp
 from bezierplan.__main__ import main
 from bezierplan.geometry import curves
-from bezierplan.planners import dubins_search
 from bezierplan.planners.parts import dubins
 from bezierplan.workspaces.problem import Path
 
@@ -208,18 +207,3 @@ def test_way_points_are_passed_without_a_corner():
     line = shapely.LineString(np.column_stack([along.x, along.y]))
     assert all(line.distance(shapely.Point(point)) < 1e-4 for point in via)
     assert densest(answer) < (1 + dubins.CURVATURE_EXCESS) / 1.5
-
-
-def test_where_rounding_has_no_room_a_path_is_searched():
-    """Past the end of a wall close to the border, a circle of 2 m has room only before and behind the gap."""
-    walls = (
-        (np.array([(7.0, 0.0), (7.5, 0.0), (7.5, 9.0), (7.0, 9.0)]),),
-        (np.array([(9.5, 10.0), (10.0, 10.0), (10.0, 1.5), (9.5, 1.5)]),),
-    )
-    problem = bp.Problem("slalom", bp.Polygons((0.0, 17.0, 0.0, 10.5), walls, "m"), (2.0, 5.0), (15.0, 5.0))
-    tight = dubins_search  # the planner that is asked
-    rounded = bp.plan(problem, turning_radius=0.6, strict=True)
-    assert rounded.turning_radius == 0.6
-    assert rounded.feasible
-    assert densest(rounded) < (1 + 1e-3) / 0.6
-    assert tight.exact
