@@ -192,7 +192,7 @@ def test_a_larger_turning_radius_gives_no_tighter_turn():
         assert answer.curvature == pytest.approx(1 / answer.turning_radius, rel=1e-3)
     assert all(bp.plan(two_walls(), turning_radius=radius, strict=True).turning_radius == radius for radius in asked[:4])
     assert answers[3].stop == "search"  # the circles have room for 1.998 m
-    with pytest.raises(ValueError, match=r"turning_radius: 3 m asked, 2\.4\d+ m kept; expected one that can be kept"):
+    with pytest.raises(ValueError, match=r"turning_radius: 3 m asked, 2\.\d+ m kept; expected one that can be kept"):
         bp.plan(two_walls(), turning_radius=3.0, strict=True)
 
 
@@ -222,7 +222,10 @@ REFUSED = {
     "strict": ((*WALL, "--settings", "{turning_radius: 9}", "--strict"), "--settings: turning_radius: 9 m asked, "),
     "1e300": ((*WALL, "--settings", "{turning_radius: 1e300}"), "turning_radius: 1e+300; expected a number from 0 to 100000"),
     "strict planner": ((*WALL, "--planner", "prm", "--strict"), "--strict: only for rounded_shortest_path and dubins_search"),
-    "via planner": ((*WALL, "--planner", "prm", "--via", "1,1.8"), "--via: only for rounded_shortest_path, dubins_search and shortest_path"),
+    "via planner": (
+        (*WALL, "--planner", "prm", "--via", "1,1.8"),
+        "--via: only for rounded_shortest_path, dubins_search and shortest_path",
+    ),
     "via in an obstacle": ((*WALL, "--via", "1,1"), "--via: (1.0, 1.0): in an obstacle; expected a free place"),
     "via outside": ((*WALL, "--via", "-1,1"), "--via: (-1.0, 1.0): outside the workspace"),
     "via in words": ((*WALL, "--via", "1"), "--via: 1; expected X,Y"),

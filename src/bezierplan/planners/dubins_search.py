@@ -1,14 +1,14 @@
-"""A baseline for robots that cannot turn on the spot: a path of arcs and straight lines that turns no tighter than a radius anywhere, from one
-heading to another where they are given (Dubins 1957).
+"""A baseline for robots that cannot turn on the spot: a path of arcs and straight lines that turns no tighter than a radius anywhere, from
+one heading to another where they are given (Dubins 1957).
 
 If the shortest such path without obstacles is free, it is the answer, and exact. Otherwise hybrid A* finds one (Dolgov et al. 2008): from
-the start it drives short arcs to the left, straight lines and short arcs to the right; of all places reached in about the same heading in the
-same cell the nearest is driven on from; the distance ahead is estimated by that around obstacles over a lattice, and by the Dubins path
+the start it drives short arcs to the left, straight lines and short arcs to the right; of all places reached in about the same heading in
+the same cell the nearest is driven on from; the distance ahead is estimated by that around obstacles over a lattice, and by the Dubins path
 without them. Now and then the Dubins path from there to the target is tried; if it is free, a path is found. It is then pulled tight: parts
 of it are replaced by Dubins paths between its own places, and these places are moved as long as it becomes shorter.
 
 Every arc and line is tested by the certified checker's own search, as the cubic pieces that are the answer. A search that finds nothing is
-repeated with finer steps; it is no proof that there is no such path.
+repeated with finer steps; that it finds nothing is no proof that there is no such path.
 """
 
 import heapq
