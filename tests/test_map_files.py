@@ -1,11 +1,15 @@
 """Maps that people have: ROS map_server maps and MovingAI grids, and every fault in one line."""
 
+import json
 import math
+import re
 
 import numpy as np
 import pytest
+import shapely
 from PIL import Image
 
+import bezierplan as bp
 from bezierplan.geometry import shortest_paths
 from bezierplan.running import problems
 from bezierplan.workspaces import files
@@ -91,6 +95,121 @@ def test_a_robots_radius_makes_obstacles_grow(tmp_path):
     assert np.array_equal(grown, (apart < 0.6) | (inside < 0.6))
 
 
+GREY = np.array([[0, 60, 100, 101], [128, 205, 254, 255]], dtype=np.uint8)
+
+
+@pytest.mark.parametrize(
+    ("mode", "unknown", "free"),
+    [
+        ("trinary", "occupied", "......##"),
+        ("trinary", "free", "..######"),
+        ("scale", "occupied", "......##"),
+        ("scale", "free", "......##"),
+        ("raw", "occupied", "#......."),
+        ("raw", "free", "#..#####"),
+    ],
+)
+def test_modes_and_unknown_pixels(tmp_path, mode, unknown, free):
+    """Of map_server's modes: in `raw` a pixel is its occupancy in percent; above 100 it is unknown, and so is a grey one in `trinary`."""
+    grid = ros_map(tmp_path, f"{YAML}mode: {mode}\n", GREY, unknown=unknown)
+    assert "".join(".#"[int(cell)] for cell in ~grid.occupied[::-1].ravel()) == free
+
+
+@pytest.mark.parametrize("yaw", ["-nan", "nan", ".nan", "6.283185307179586", "1e-9"])
+def test_a_yaw_that_is_none(tmp_path, yaw, caplog):
+    grid = ros_map(tmp_path, YAML.replace("2.0, 0.0]", f"2.0, {yaw}]"))
+    assert grid.bounds == (-1.0, 1.0, 2.0, 3.5)
+    assert len(caplog.messages) == ("nan" in yaw)
+    assert all(re.fullmatch(r"room\.yaml: origin: yaw -?nan counts as 0; .*", told) for told in caplog.messages)
+
+
+def test_an_image_without_a_yaml_file(tmp_path):
+    Image.fromarray(PIXELS).save(tmp_path / "room.PNG")
+    grid = bp.read_map(tmp_path / "room.PNG", resolution=0.5)
+    assert grid.occupied.tolist() == [[False] * 4, [False, True, True, False], [False] * 4]
+    assert grid.bounds == (0.0, 2.0, 0.0, 1.5)
+    assert bp.read_map(tmp_path / "room.PNG", resolution=0.5, unknown="free").occupied.sum() == 1
+    with pytest.raises(ValueError, match=r"resolution: missing; expected the length of a pixel's side, or the YAML file of .*room\.PNG"):
+        bp.read_map(tmp_path / "room.PNG")
+    with pytest.raises(ValueError, match=r"nowhere\.png: cannot be read"):
+        bp.read_map(tmp_path / "nowhere.png", resolution=1.0)
+
+
+def courtyard(x, y, role=True):
+    """Two walls in a room of 20 x 10 m, with its lower left corner at a place; as GeoJSON, with a border or without roles."""
+    rings = [[(8, 0), (9, 0), (9, 7), (8, 7)], [(14, 3), (15, 3), (15, 10), (14, 10)]]
+    border = [[(0, 0), (20, 0), (20, 10), (0, 10)]] if role else []
+    features = [
+        {
+            "type": "Feature",
+            "properties": {"role": "border"} if ring in border else None,
+            "geometry": {"type": "Polygon", "coordinates": [[[x + a, y + b] for a, b in (*ring, ring[0])]]},
+        }
+        for ring in border + rings
+    ]
+    return json.dumps({"type": "FeatureCollection", "features": features})
+
+
+UTM = (391000.25, 5820000.5)
+
+
+@pytest.mark.parametrize("radius", [0.0, 1.0])
+def test_projected_coordinates_keep_their_digits(tmp_path, radius):
+    found = []
+    for place in ((0.0, 0.0), UTM):
+        (tmp_path / "court.geojson").write_text(courtyard(*place))
+        room = bp.read_map(tmp_path / "court.geojson", robot_radius=radius)
+        ends = [(place[0] + x, place[1] + y) for x, y in ((2, 2), (18, 8))]
+        problem = bp.Problem("court", room, *ends)
+        answer = bp.plan(problem, turning_radius=0.7)
+        assert answer.feasible
+        assert answer.problem.start == problem.start
+        assert np.abs(bp.shortest_path(problem).points[-1] - ends[1]).max() < 1e-9
+        assert bp.check(problem, answer.path).length == pytest.approx(answer.length, abs=1e-8)
+        answer.to_csv(tmp_path / "path.csv", step=0.1)
+        points = np.loadtxt(tmp_path / "path.csv", delimiter=",", skiprows=1)[:, 1:3]
+        obstacles = shapely.union_all(
+            [shapely.box(place[0] + a, place[1] + b, place[0] + a + 1, place[1] + b + 7) for a, b in ((8, 0), (14, 3))]
+        )
+        assert shapely.LineString(points).distance(obstacles) >= radius - 2e-8 - (0.1**2 / 8 / 0.7 if not radius else 0.01)
+        assert points[0].tolist() == list(ends[0])
+        found.append((answer, points - place))
+    near, far = found
+    assert far[0].length == pytest.approx(near[0].length, abs=1e-8)
+    assert far[0].clearance == pytest.approx(near[0].clearance, abs=1e-8)
+    assert np.abs(far[1] - near[1]).max() < 2e-8
+
+
+def test_far_maps_of_every_kind(tmp_path):
+    with pytest.raises(ValueError, match=r"is not a coordinate; expected finite numbers of at most 100000 in size"):  # in a study
+        ros_map(tmp_path, YAML.replace("[-1.0, 2.0, 0.0]", f"[{UTM[0]}, {UTM[1]}, 0.0]"))
+    room = bp.read_map(tmp_path / "room.yaml")
+    problem = bp.Problem("far", room, (UTM[0] + 0.25, UTM[1] + 0.75), (UTM[0] + 1.75, UTM[1] + 0.75))
+    assert bp.plan(problem, turning_radius=0.1).length == pytest.approx(1 + 2 * math.hypot(0.25, 0.25), abs=0.05)
+    with pytest.raises(ValueError, match=r"start: \(0.0, 0.0\): outside the workspace; expected x from 391000.25 to 391002.25 and y"):
+        bp.plan(problem._replace(start=(0.0, 0.0)))
+    (tmp_path / "wide.geojson").write_text(courtyard(0, 0).replace("20", "391000"))
+    with pytest.raises(ValueError, match=r"wide\.geojson: the border: 391000 x 10 units; expected at most 100000 on a side"):
+        bp.read_map(tmp_path / "wide.geojson")
+
+
+def test_a_margin_is_for_files_without_a_border(tmp_path):
+    (tmp_path / "court.geojson").write_text(courtyard(0, 0, role=False))
+    assert bp.read_map(tmp_path / "court.geojson", margin=2).bounds == (6, 17, -2, 12)
+    assert bp.read_map(tmp_path / "court.geojson", margin=2, cell=0.5).bounds[0] == 5.75
+    (tmp_path / "room.geojson").write_text(courtyard(0, 0))
+    for file, options, told in (
+        ("court.geojson", {}, "court.geojson: no border; expected a polygon with role border, a bbox, or a margin"),
+        ("room.geojson", {"margin": 2}, "^margin: 2: the file has a border of its own"),
+        ("court.geojson", {"margin": -1}, "^margin: -1; expected a number of at least 0"),
+        ("court.geojson", {"margin": math.inf}, "^margin: inf; expected a number of at least 0"),
+        ("court.geojson", {"resolution": 1.0}, "^resolution: only for an image"),
+        ("court.geojson", {"unknown": "free"}, "^unknown: only for a ROS map or an image"),
+    ):
+        with pytest.raises(ValueError, match=told):
+            bp.read_map(tmp_path / file, **options)
+
+
 ROS_FAULTS = {
     "resolution of 0": (("resolution: 0.5", "resolution: 0"), "room.yaml: resolution: 0; expected a number above 0"),
     "resolution in words": (("resolution: 0.5", "resolution: fine"), "room.yaml: resolution: fine; expected a number"),
@@ -100,7 +219,7 @@ ROS_FAULTS = {
     "turned": (("2.0, 0.0]", "2.0, 0.3]"), "room.yaml: origin: .*; expected a yaw of 0"),
     "origin": (("[-1.0, 2.0, 0.0]", "here"), r"room.yaml: origin: here; expected \[x, y, yaw\]"),
     "thresholds": (("free_thresh: 0.196", "free_thresh: 0.9"), "room.yaml: free_thresh: 0.9; expected a number from 0 to occupied_thresh"),
-    "mode": (("negate: 0", "negate: 0\nmode: raw"), "room.yaml: mode: raw; expected trinary"),
+    "mode": (("negate: 0", "negate: 0\nmode: Raw"), "room.yaml: mode: Raw; expected one of trinary, scale, raw"),
     "far away": (("[-1.0, 2.0, 0.0]", "[1e9, 0, 0]"), "room.yaml: origin, resolution: the border: 1e.09 is not a coordinate"),
     "no mapping": ((YAML, "just a word\n"), "room.yaml: image: missing"),
 }

@@ -209,6 +209,8 @@ def test_a_feasible_path_shorter_than_the_bound_is_no_answer(capsys, monkeypatch
     """If the bound is wrong, or the checker, no negative gap is printed."""
     (tmp_path / "room.txt").write_text("...\n...\n")
     found = shortest_paths.shortest_path
-    monkeypatch.setattr(shortest_paths, "shortest_path", lambda problem: (bound := found(problem))._replace(length=bound.length + 1))
+    monkeypatch.setattr(
+        shortest_paths, "shortest_path", lambda problem, **known: (bound := found(problem, **known))._replace(length=bound.length + 1)
+    )
     told = refused(capsys, tmp_path / "room.txt", "--start", "0.5,0.5", "--target", "2.5,0.5", "--planner", "straight_line")
     assert told.startswith("--planner: straight_line: its path is 2 long and feasible, but no free path is shorter than 3: ")

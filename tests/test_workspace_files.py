@@ -13,7 +13,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from bezierplan.geometry.checker import check
-from bezierplan.geometry.region import region
+from bezierplan.geometry.region import blocks, region
 from bezierplan.running import problems, worlds
 from bezierplan.workspaces import files, random_circles
 from bezierplan.workspaces.geojson import polygons_from_geojson
@@ -54,36 +54,48 @@ POLYGON_FAULTS = {
     "features no list": ('{"features": 1}', "not a GeoJSON feature collection"),
     "nested too deeply": ('{"features": ' + "[" * 100_000, "nested too deeply"),
     "long number": ('{"features": [' + "1" * 5000 + "]}", "not a GeoJSON feature collection"),
-    "feature no object": (json.dumps({"features": [1]}), "feature 0: properties: role: missing; expected border or obstacle"),
-    "no properties": (json.dumps({"features": [{"geometry": {"coordinates": []}}]}), "feature 0: properties: role: missing"),
-    "no role": (json.dumps({"features": [{"properties": {}}]}), "feature 0: properties: role: missing; expected border or obstacle"),
+    "feature no object": (json.dumps({"features": [1]}), "feature 0: 1; expected a feature with a geometry"),
+    "no kind": (
+        json.dumps({"features": [{"geometry": {"coordinates": []}}]}),
+        r"feature 0 \(obstacle\): geometry: None; expected a Polygon",
+    ),
+    "no geometry at all": (json.dumps({"features": [{"properties": {}}]}), r"feature 0 \(obstacle\): geometry: None; expected a Polygon"),
+    "properties no mapping": (
+        json.dumps({"features": [{"properties": ["border"]}]}),
+        r"feature 0: properties: role: \['border'\]: unknown",
+    ),
     "role misspelt": (polygon([SQUARE], "obstacel"), "feature 1: properties: role: 'obstacel': unknown; did you mean obstacle?"),
     "role no word": (polygon([SQUARE], ["obstacle"]), "feature 1: properties: role: .* unknown"),
-    "no border": (json.dumps({"features": []}), "0 features with role border"),
-    "two borders": (polygon([BORDER], "border"), "2 features with role border; expected one"),
-    "border no rectangle": (geojson(border=[[0, 0], [10, 0], [5, 10], [0, 0]]), "expected a rectangle"),
-    "border with a hole": (json.dumps({"features": [json.loads(polygon([BORDER, SQUARE], "border"))["features"][1]]}), "without a hole"),
+    "no border": (json.dumps({"features": []}), "no border; expected a polygon with role border, a bbox, or a margin"),
+    "two borders": (polygon([BORDER], "border"), "2 polygons with role border; expected one"),
+    "border crossing itself": (geojson(border=closed((0, 0), (10, 10), (10, 0), (0, 10))), r"feature 0 \(border\): Self-intersection"),
+    "border with a tip": (geojson(border=closed((0, 0), (10, 0), (10, 10), (5, 10), (4.999, 1), (4.998, 10), (0, 10))), "an angle at"),
     "crossing itself": (geojson([[[1, 1], [3, 3], [3, 1], [1, 3], [1, 1]]]), "Self-intersection"),
     "hole outside": (polygon([SQUARE, moved(3, 3)]), "Hole lies outside shell"),
     "holes in each other": (
         polygon([SQUARE, *[[[a, a], [b, a], [b, b], [a, b], [a, a]] for a, b in ((4.2, 5.8), (4.5, 5))]]),
         "Holes are nested",
     ),
-    "over the border": (geojson([moved(5, 0)]), "reaches over the border"),
     "not closed": (polygon([SQUARE[:-1]]), r"feature 1 \(obstacle\): ring 0: is not closed: begins at \[4, 4\], ends at \[4, 6\]"),
     "hole not closed": (polygon([SQUARE, [[4.5, 4.5], [5, 5], [5, 4.5], [4.5, 4.6]]]), "ring 1: is not closed"),
     "too few positions": (polygon([[[1, 1], [2, 2], [1, 1]]]), "ring 0: expected at least four positions"),
     "rings missing": (polygon([SQUARE[0]]), "ring 0: expected at least four positions"),
     "no ring": (polygon([]), "coordinates: expected a list of rings"),
-    "in space": (polygon([[[*position, 0] for position in SQUARE]]), r"ring 0: position \[4, 4, 0\]; expected \[x, y\]"),
+    "in space at times": (polygon([[[4, 4], [6, 4, 1], [6, 6], [4, 4]]]), r"ring 0: position \[6, 4, 1\]; expected \[x, y\]"),
     "on a line": (polygon([[[position[0]] for position in SQUARE]]), r"ring 0: position \[4\]; expected \[x, y\]"),
     "text": (polygon([[[str(x), str(y)] for x, y in SQUARE]]), r"expected \[x, y\]"),
     "truths": (polygon([[[True, False]] * 4]), r"expected \[x, y\]"),
     "null": (polygon([[[None, None]] * 4]), r"expected \[x, y\]"),
-    "many parts": (
-        feature({"role": "obstacle"}, {"type": "MultiPolygon", "coordinates": [[SQUARE]]}),
-        "geometry: MultiPolygon; expected a Poly",
+    "a line": (feature({}, {"type": "LineString", "coordinates": SQUARE}), "geometry: LineString; expected a Polygon, a MultiPolygon"),
+    "a line in a collection": (
+        feature({}, {"type": "GeometryCollection", "geometries": [{"type": "LineString", "coordinates": SQUARE}]}),
+        "geometry: LineString; expected a Polygon",
     ),
+    "no parts": (feature({}, {"type": "MultiPolygon", "coordinates": []}), "coordinates: expected a list of polygons"),
+    "a bbox of words": (json.dumps({"features": [], "bbox": ["0", "0", "1", "1"]}), "bbox: .*; expected .x low, y low, x high, y high."),
+    "a bbox of three": (json.dumps({"features": [], "bbox": [0, 0, 1]}), "bbox: .0, 0, 1.; expected"),
+    "a bbox beyond floats": (json.dumps({"features": [], "bbox": [0, 0, 10**400, 1]}), "bbox: a number is too large"),
+    "a bbox the wrong way": (json.dumps({"features": [], "bbox": [5, 0, 1, 1]}), "bounds: .*; expected .x low"),
     "no geometry": (feature({"role": "obstacle"}, None), "geometry: None; expected a Polygon"),
     "not finite": (geojson([[[1, 1], [3, 1], [float("nan"), 3], [1, 1]]]), "is not a coordinate"),
     "beyond floats": (polygon([[[1, 1], [3, 1], [10**400, 3], [1, 1]]]), "too large"),
@@ -128,6 +140,54 @@ def test_no_obstacle_vanishes():
     border = json.loads(geojson())["features"]
     found = polygons_from_geojson(json.dumps({"features": border + same}), "m")
     assert [ring.tolist() for (ring,) in found.obstacles] == [moved(x, 0)[:-1] for x in (-3, 0, 3)]
+
+
+SHAPE = {"type": "Polygon", "coordinates": [SQUARE]}
+FOREIGN = {
+    "no role": feature(None, SHAPE),
+    "roles of other programs": feature({"building": "yes"}, SHAPE),
+    "many parts": feature({}, {"type": "MultiPolygon", "coordinates": [[SQUARE], [moved(3, 3)]]}),
+    "a collection": feature({}, {"type": "GeometryCollection", "geometries": [SHAPE, {"type": "MultiPolygon", "coordinates": [[SQUARE]]}]}),
+    "heights": feature({}, {"type": "Polygon", "coordinates": [[[*place, 7.5] for place in SQUARE]]}),
+    "a bbox": json.dumps({"type": "FeatureCollection", "bbox": [0, 0, 10, 10], "features": [{"geometry": SHAPE}]}),
+    "a bbox with heights": json.dumps({"bbox": [0, 0, -1, 10, 10, 5], "features": [{"type": "Feature", "geometry": SHAPE}]}),
+    "one feature": json.dumps({"type": "Feature", "bbox": [0, 0, 10, 10], "geometry": SHAPE}),
+    "a bare geometry": json.dumps(SHAPE | {"bbox": [0, 0, 10, 10]}),
+}
+
+
+@pytest.mark.parametrize("form", FOREIGN)
+def test_files_of_gis_programs_are_read_as_they_are(form, caplog):
+    found = polygons_from_geojson(FOREIGN[form], "m")
+    assert found.bounds == (0, 10, 0, 10)
+    assert found.obstacles[0][0].tolist() == SQUARE[:-1]
+    assert len(found.obstacles) == 1 + (form in ("many parts", "a collection"))
+    assert caplog.messages == (["4 positions have a height, which is dropped: the map is flat"] if form == "heights" else [])
+
+
+def test_a_margin_around_obstacles_takes_the_place_of_a_border():
+    file = json.dumps({"features": [{"geometry": SHAPE}]})
+    assert polygons_from_geojson(file, "m", margin=1.5).bounds == (2.5, 7.5, 2.5, 7.5)
+    with pytest.raises(ValueError, match=r"margin: 1: the file has a border of its own; expected no margin"):
+        polygons_from_geojson(geojson([SQUARE]), "m", margin=1.0)
+    with pytest.raises(ValueError, match=r"margin: 1: the file has no obstacle; expected a border"):
+        polygons_from_geojson(json.dumps({"features": []}), "m", margin=1.0)
+
+
+def test_what_lies_outside_a_border_of_any_shape_is_blocked():
+    ell = closed((0, 0), (10, 0), (10, 4), (4, 4), (4, 10), (0, 10))
+    courtyard = json.loads(polygon([ell, closed((1, 1), (3, 1), (3, 3), (1, 3))], "border"))["features"][1]
+    found = region(polygons_from_geojson(json.dumps({"features": [courtyard]}), "m"))
+    for point, free in {(9, 3): True, (2, 9): True, (5, 5): False, (4.001, 4.001): False, (2, 2): False, (3.5, 3.5): True}.items():
+        assert blocks(found, point) != free
+
+
+def test_obstacles_are_cut_at_the_border_and_that_is_told(caplog):
+    found = polygons_from_geojson(geojson([moved(5, 0)], [moved(20, 20)], [SQUARE]), "m")
+    assert sorted(np.concatenate([ring for (ring,) in found.obstacles]).tolist()) == sorted(
+        [[9, 4], [10, 4], [10, 6], [9, 6], *SQUARE[:-1]]
+    )
+    assert caplog.messages == ["feature 1 (obstacle) and 1 more: beyond the border, and cut there"]
 
 
 def test_start_and_target_features_are_left_out():

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
     from bezierplan.geometry.samples import Samples
+    from bezierplan.planners import Plan
+    from bezierplan.running.problems import Regions
 
 __all__ = [
     "Answer",
@@ -45,9 +47,6 @@ __all__ = [
 
 Method = str | Callable[..., Any] | ModuleType
 Via = Sequence[tuple[float, float]]
-
-SHARE = 0.02
-"""The turning radius of `plan` without a method, as a share of the map's longer side."""
 
 
 @dataclass(frozen=True)
@@ -118,23 +117,28 @@ class Judged:
         ValueError
             If there is no path, or for an `n` or `step` out of range.
         """
-        from bezierplan.geometry import samples
+        from bezierplan.geometry import curves, samples
+        from bezierplan.workspaces import shifted
 
-        return samples.along(self._path(), n, step)
+        x, y = shifted.shift_of(self.problem.workspace)
+        found = samples.along(curves.moved(self._path(), (-x, -y)), n, step)
+        return found._replace(x=found.x + x, y=found.y + y)
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw map, path and exact shortest path on matplotlib's `axes`, or on new ones, which are returned."""
         from bezierplan.figures import drawn_path
-        from bezierplan.running import legs
-        from bezierplan.workspaces import robot
+        from bezierplan.running import legs, problems
+        from bezierplan.workspaces import shifted
+        from bezierplan.workspaces.grown import original
 
         if axes is None:
             import matplotlib.pyplot as plt
 
             axes = plt.figure(layout="constrained").add_subplot()
-        bound = legs.shortest(legs.legs(self.problem, self.via))
-        own = self.problem._replace(workspace=robot.original(self.problem.workspace))
-        drawn_path.draw(axes, own, self.path, bound.points, self.collision)
+        home, regions = self.problem.workspace, problems.remembered()
+        bound = legs.whole(legs.shortest(legs.legs(self.problem, self.via, regions), regions(home)))
+        own = self.problem._replace(workspace=original(home))
+        drawn_path.draw(axes, own, self.path, bound.points + shifted.shift_of(home), self.collision)
         return axes
 
     def to_picture(self, file: str | File) -> None:
@@ -189,8 +193,8 @@ class Answer(Judged):
     stop : str
         Why it ended.
     turning_radius : float
-        Radius of the tightest turn, where the planner is `rounded_shortest_path`: 0 where a corner is left, infinite without turns; nan of
-        other planners.
+        Radius of the tightest turn, where the planner is `rounded_shortest_path` or `dubins_search`: 0 where a corner is left, infinite
+        without turns; nan of other planners.
     """
 
     method: str
@@ -221,6 +225,9 @@ def read_map(
     rule: str | None = None,
     robot_radius: float | None = None,
     unit: str | None = None,
+    margin: float | None = None,
+    resolution: float | None = None,
+    unknown: str | None = None,
     most_pixels: int | None = None,
 ) -> Workspace:
     """Read a map from a file.
@@ -228,7 +235,8 @@ def read_map(
     Parameters
     ----------
     file : str or Path
-        GeoJSON polygons (.geojson, .json), an occupancy map of ROS's map_server (.yaml), a MovingAI grid (.map), or cells as text (.txt).
+        GeoJSON polygons (.geojson, .json), as GIS programs write them, also in projected coordinates; an occupancy map of ROS's map_server
+        (.yaml), or an image alone (.png, .pgm, .bmp); a MovingAI grid (.map), or cells as text (.txt).
     cell : float, optional
         Side of a cell. Of text, 1 by default. Of polygons: makes a grid of them, for methods that need cells.
     rule : {"overlap", "centre"}, optional
@@ -237,8 +245,14 @@ def read_map(
         Radius of the robot, in the map's unit: obstacles grow by it and the border shrinks. Verdicts tell the clearance to the map itself.
     unit : str, optional
         Name of the unit of length; by default m, of grids cell.
+    margin : float, optional
+        Of GeoJSON without a border: how far the border lies from the obstacles, in the map's unit.
+    resolution : float, optional
+        Of an image alone: side of a pixel, in the map's unit. Its lower left corner is at 0, 0, and dark pixels are occupied.
+    unknown : {"occupied", "free"}, optional
+        What pixels of a ROS map or an image count as that are unknown; occupied by default.
     most_pixels : int, optional
-        The most pixels of a ROS map's image.
+        The most pixels of an image.
 
     Returns
     -------
@@ -253,7 +267,8 @@ def read_map(
     from bezierplan.workspaces import map_files
 
     source = File(file)
-    description = map_files.described(source, cell=cell, rule=rule, unit=unit, most_pixels=most_pixels, cells=cell is not None)
+    pixels = {"resolution": resolution, "unknown": unknown, "most_pixels": most_pixels}
+    description = map_files.described(source, cell=cell, rule=rule, unit=unit, margin=margin, **pixels, cells=cell is not None)
     return map_files.read(source, description, robot_radius)
 
 
@@ -282,9 +297,13 @@ def shortest_path(problem: Problem) -> Shortest:
     4.5113
     """
     from bezierplan.geometry import shortest_paths
+    from bezierplan.running import problems
+    from bezierplan.workspaces import shifted
 
-    bound = shortest_paths.shortest_path(_placed(problem))
-    return Shortest(bound.length, bound.points)
+    regions = problems.remembered()
+    placed = _placed(problem, regions)
+    bound = shortest_paths.shortest_path(shifted.near_problem(placed), blocked=regions(placed.workspace))
+    return Shortest(bound.length, bound.points + shifted.shift_of(placed.workspace))
 
 
 def check(problem: Problem, path: Path) -> Judged:
@@ -312,36 +331,45 @@ def check(problem: Problem, path: Path) -> Judged:
     >>> judged.feasible, round(judged.length, 3), round(judged.clearance, 3)
     (True, 4.071, 0.5)
     """
-    placed = _placed(problem)
-    return Judged(**verdict(placed, path, shortest_path(placed).length))
+    from bezierplan.geometry import curves, shortest_paths
+    from bezierplan.running import problems
+    from bezierplan.workspaces import shifted
+
+    regions = problems.remembered()
+    placed = _placed(problem, regions)
+    x, y = shifted.shift_of(placed.workspace)
+    bound = shortest_paths.shortest_path(shifted.near_problem(placed), blocked=regions(placed.workspace))
+    return Judged(**verdict(placed, curves.moved(path, (-x, -y)), bound.length, regions) | {"path": path})
 
 
-def verdict(problem: Problem, path: Path | None, shortest: float, via: Via = ()) -> dict[str, Any]:
+def verdict(problem: Problem, path: Path | None, shortest: float, regions: Regions, via: Via = ()) -> dict[str, Any]:
     """The fields of `Judged` for a path, or for none.
 
-    shortest: length of the exact shortest path. Raises ValueError if the path is feasible and yet shorter than that, or closer to the map's
-    own obstacles than the robot's radius, so that the checker or the bound is wrong.
+    path: on the map where it is computed with (`shifted`). shortest: length of the exact shortest path. regions: the blocked regions of
+    maps. Raises ValueError if the path is feasible and yet closer to the map's own obstacles than the robot's radius, so that the checker
+    is wrong.
     """
     from bezierplan.analysis.measures import CURVATURE_SAMPLES
     from bezierplan.geometry import checker, curves
-    from bezierplan.geometry.region import region
-    from bezierplan.workspaces import robot
+    from bezierplan.workspaces import robot, shifted
+    from bezierplan.workspaces.grown import grown_of
 
-    grown = robot.grown_of(problem.workspace)
+    grown = grown_of(problem.workspace)
     asked = {"robot_radius": grown.radius if grown else 0.0, "via": tuple(via), "shortest": shortest}
     if path is None:
         nothing = dict.fromkeys(("length", "depth", "clearance", "curvature"), math.nan)
         return {"problem": problem, "path": None, **nothing, "feasible": False, "collision": None, "corners": False, **asked}
     pieces = curves.bezier_pieces(path)
-    verdict = checker.check(pieces, region(problem.workspace))
-    clearance = checker.check(pieces, region(grown.original)).clearance if grown else verdict.clearance
+    verdict = checker.check(pieces, regions(problem.workspace))
+    clearance = checker.check(pieces, regions(grown.original)).clearance if grown else verdict.clearance
     if grown and verdict.feasible and clearance < grown.radius - robot.TOLERANCE:
         raise ValueError(f"its path is feasible, but {clearance:.12g} from an obstacle, less than the robot's radius: the checker is wrong")
     kappa, _ = curves.curvature(path, max(CURVATURE_SAMPLES, 20 * len(pieces) + 1))
-    collision = None if verdict.feasible else tuple(curves.point_at(path, verdict.collision_at).tolist())
+    shift = shifted.shift_of(problem.workspace)
+    collision = None if verdict.feasible else tuple((curves.point_at(path, verdict.collision_at) + shift).tolist())
     return {
         "problem": problem,
-        "path": path,
+        "path": curves.moved(path, shift),
         "length": curves.length(path),
         "feasible": verdict.feasible,
         "collision": collision,
@@ -377,12 +405,13 @@ def plan(
     robot_radius : float
         Radius of the robot, in the map's unit: obstacles grow by it and the border shrinks. 0 if the map was read with one.
     via : sequence of tuple of float
-        Way points (x, y), in their order: the path joins paths from one to the next, with a corner at each. For the planners
-        `rounded_shortest_path` and `shortest_path`.
+        Way points (x, y), in their order: the path joins paths from one to the next. For the planners without a method, `dubins_search`
+        and `shortest_path`.
     strict : bool
-        Whether a turning radius that cannot be kept everywhere is an error. For `rounded_shortest_path`.
+        Whether a turning radius that cannot be kept everywhere is an error. For the planners without a method and `dubins_search`.
     **settings
-        Settings in place of the method's own.
+        Settings in place of the method's own. Without a method: `turning_radius`; `start_heading` and `target_heading`, directions at the
+        ends, in radians counterclockwise from the x-axis, None for any.
 
     Returns
     -------
@@ -408,39 +437,35 @@ def plan(
     >>> wide.feasible, round(wide.length, 3), round(wide.clearance, 6)
     (True, 9.156, 0.5)
     """
-    from bezierplan.planners import rounded_shortest_path
     from bezierplan.running import answer as door
-    from bezierplan.running import legs
+    from bezierplan.running import legs, problems
     from bezierplan.running.columns import TAKEN
-    from bezierplan.running.loans import lend
 
     if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
         raise ValueError(f"seed: {seed!r}; expected a whole number of at least 0")
     _check_problem(problem)
-    name, module, preset = _method(method, problem)
-    chosen = preset | settings
-    problem = _placed(_grown(problem, robot_radius), getattr(module, "workspaces", None))
+    name, module, preset = _method(method, problem, settings)
+    chosen, regions = preset | settings, problems.remembered()
+    problem = _placed(_grown(problem, robot_radius), regions, getattr(module, "workspaces", None))
     _check_settings(name, module, chosen, problem)
-    rounded = module is rounded_shortest_path
-    legs.check_planner(module.__name__ if isinstance(module, ModuleType) else name, via, strict)
-    parts = legs.legs(problem, via)
-    called = rounded_shortest_path.gentlest if rounded else module.plan
-    answers = []
-    for part in parts:
-        loan = lend({part.name: part})[part.name]
-        answered = called(loan.problem, np.random.default_rng(seed), **chosen)
-        try:
-            answers.append(door.accepted(answered, part, {*TAKEN, *chosen}))
-        except door.Unfit as fault:
-            raise ValueError(f"the answer of planner {name}: {fault}") from None
-        if fault := loan.thorough_fault():
-            raise ValueError(f"planner {name}: {fault}")
-    found = legs.joined(answers)
-    kept = found.extra.get("least_radius", math.nan) if rounded else math.nan
+    planner = getattr(module, "__name__", name).removeprefix("bezierplan.planners.")
+    legs.check_planner(planner, via, strict)
+    parts, blocked = legs.legs(problem, via, regions), regions(problem.workspace)
+    bounds = legs.shortest(parts, blocked)
+    if planner in legs.TURNING:
+        found = legs.solved(planner, parts, bounds, blocked, chosen)
+    else:
+        found = legs.joined([_answered(part, name, module, seed, chosen) for part in parts])
+    try:
+        whole = parts[0]._replace(target=parts[-1].target)
+        found = door.accepted(found, whole, {*TAKEN, *chosen})
+    except door.Unfit as fault:
+        raise ValueError(f"the answer of planner {name}: {fault}") from None
+    kept = legs.kept(planner, found, chosen)
     if strict:
         legs.check_kept(chosen["turning_radius"], kept, problem.workspace.unit)
     return Answer(
-        **verdict(problem, found.path, legs.shortest(parts).length, via),
+        **verdict(problem, found.path, legs.whole(bounds).length, regions, via),
         turning_radius=kept,
         method=name,
         settings=chosen,
@@ -450,6 +475,23 @@ def plan(
         history=found.history,
         stop=found.stop,
     )
+
+
+def _answered(problem: Problem, name: str, module: Any, seed: int, settings: Mapping[str, Any]) -> Plan:
+    """The answer of any planner, which gets a copy of the problem."""
+    from bezierplan.running import answer as door
+    from bezierplan.running.columns import TAKEN
+    from bezierplan.running.loans import lend
+
+    loan = lend({problem.name: problem})[problem.name]
+    answered = module.plan(loan.problem, np.random.default_rng(seed), **settings)
+    try:
+        plan = door.accepted(answered, problem, {*TAKEN, *settings})
+    except door.Unfit as fault:
+        raise ValueError(f"the answer of planner {name}: {fault}") from None
+    if fault := loan.thorough_fault():
+        raise ValueError(f"planner {name}: {fault}")
+    return plan
 
 
 def _check_problem(problem: Problem) -> None:
@@ -463,7 +505,7 @@ def _grown(problem: Problem, radius: float) -> Problem:
     return problem._replace(workspace=robot.grow(problem.workspace, radius))
 
 
-def _placed(problem: Problem, served: Collection[str] | None = None) -> Problem:
+def _placed(problem: Problem, regions: Regions, served: Collection[str] | None = None) -> Problem:
     """A problem whose start and target are known to be free, in the workspace that suits a planner of some kinds, None for all.
 
     Raises TypeError and ValueError.
@@ -473,7 +515,7 @@ def _placed(problem: Problem, served: Collection[str] | None = None) -> Problem:
 
     _check_problem(problem)
     workspace = robot.suited(problem.workspace, served)
-    return problems.build(problem.name, {"start": problem.start, "target": problem.target}, workspace)
+    return problems.build(problem.name, {"start": problem.start, "target": problem.target}, workspace, regions)
 
 
 class _Function:
@@ -483,15 +525,16 @@ class _Function:
         self.plan = function
 
 
-def _method(method: Method | None, problem: Problem) -> tuple[str, Any, dict[str, Any]]:
-    """Name, module and settings of a method."""
+def _method(method: Method | None, problem: Problem, settings: Mapping[str, Any]) -> tuple[str, Any, dict[str, Any]]:
+    """Name, module and settings of a method; without one, of a planner that has the given settings."""
     from bezierplan.planners import known_planners, planner_module
+    from bezierplan.running import legs
     from bezierplan.schema.checked import closest
 
     if method is None:
-        x_low, x_high, y_low, y_high = problem.workspace.bounds
-        radius = SHARE * max(x_high - x_low, y_high - y_low)
-        return "rounded_shortest_path", planner_module("rounded_shortest_path"), {"turning_radius": radius, "offset": 0.0}
+        method = legs.DRIVEN if {"start_heading", "target_heading"} & set(settings) else legs.ROUNDED
+    if isinstance(method, str) and method in legs.TURNING:
+        return method, planner_module(method), legs.preset(method, problem.workspace)
     if isinstance(method, ModuleType):
         return method.__name__, method, {}
     if callable(method):
@@ -618,6 +661,7 @@ def replay(run: str) -> Answer:
     """
     from bezierplan.analysis.results import path_of
     from bezierplan.planners import planner_module, planner_settings
+    from bezierplan.running import problems
     from bezierplan.study import replays
 
     made = replays.replay(run, {key: _study(key) for key in _keys()})
@@ -625,8 +669,9 @@ def replay(run: str) -> Answer:
     if made.worlds:
         raise ValueError(f"run: {run}: is a drive; expected a run in a world that stands still, or `bezierplan replay`")
     names = planner_settings(planner_module(row["planner"]))
+    problem = made.problems[row["problem"]]
     return Answer(
-        **verdict(made.problems[row["problem"]], path_of(row), shortest_path(made.problems[row["problem"]]).length),
+        **verdict(problem, path_of(row), shortest_path(problem).length, problems.remembered()),
         turning_radius=float(row.get("least_radius", math.nan)),
         method=f"{study}/{method}",
         settings={name: row[name] for name in names},

@@ -20,11 +20,13 @@ from bezierplan.planners import Plan, known_planners, planner_module
 from bezierplan.running import answer, interface, legs, problems, watchdog
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.loans import lend
+from bezierplan.running.problems import Regions
 from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.model import is_line
 from bezierplan.workspaces import map_files, robot
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.grown import original
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem, Workspace
 from bezierplan.workspaces.text_file import is_count
@@ -32,7 +34,10 @@ from bezierplan.workspaces.text_file import is_count
 PICTURES = (".svg", ".png")
 OUT = (*PICTURES, ".csv", ".geojson", ".yaml", ".yml")
 
-_FROM_MAPS = ("start", "target", "via", "cell", "rule", "robot_radius", "most_pixels", "scenario", "strict", "turning_radius")
+_FROM_MAPS = (
+    *("start", "target", "via", "cell", "rule", "margin", "resolution", "unknown", "most_pixels", "scenario"),
+    *("robot_radius", "strict", "turning_radius"),
+)
 """What messages about a map or a problem may begin with: here these are options."""
 
 MANUAL = f"""
@@ -44,14 +49,19 @@ the robot:
   --robot-radius R  every path keeps the distance R from the obstacles and the border of the map, on maps of all kinds: obstacles grow by R,
                     round at corners to a ten-thousandth of R, and the shortest path is that of the robot's centre. Cells with more than
                     {robot.MOST_CORNERS:,} corners grow by whole cells
-  turning radius    a setting of the default planner; where there is no room for it, the radius that is kept is printed beside it, and a
-                    larger wish gives no tighter turn. With --strict such a path is refused
-  --via X,Y         way points in their order, each reached by an exact path from the one before; where the direction changes there, the
-                    path has a corner
+  turning radius    a setting of the default planner. Where rounding has no room for it, a path that keeps it is searched; if none is found,
+                    the radius that is kept is printed beside it. With --strict such a path is refused
+  headings          --start X,Y,THETA and --target X,Y,THETA: the direction of travel there, in radians, counterclockwise from the x-axis.
+                    The path turns no tighter than the turning radius: the shortest one without obstacles, if it is free (Dubins), or else
+                    one by a search (hybrid A*), pulled tight
+  --via X,Y         way points in their order; the path turns no tighter there than elsewhere, if the search finds one that does not
 
 maps:
-  .geojson   polygons: features with properties.role border (a rectangle) and obstacle; planners that need cells get --cell and --rule
-  .yaml      an occupancy map of ROS's map_server, beside its image; unknown pixels count as occupied
+  .geojson   polygons, as GIS programs write them, also in projected coordinates such as UTM: what has no properties.role is an obstacle;
+             the border is the polygon with the role border, of any shape, or the file's bbox, or --margin around the obstacles;
+             planners that need cells get --cell and --rule
+  .yaml      an occupancy map of ROS's map_server, beside its image; unknown pixels count as occupied, or with --unknown free as free
+  .png .pgm  an image alone, with --resolution; dark pixels are occupied, and the lower left corner is at 0,0
   .map       a MovingAI grid; --scenario FILE:NUMBER in place of --start and --target
   .txt       cells of . (free) and # (occupied), the top row first, of the side --cell
 
@@ -110,14 +120,18 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     parser.formatter_class = RawDescriptionHelpFormatter
     parser.description, parser.epilog = MANUAL.strip(), EXAMPLES.strip()
     parser.add_argument("map", type=File, metavar="MAP", help="a map file")
-    parser.add_argument("--start", metavar="X,Y", help="where the path begins, in the map's unit")
-    parser.add_argument("--target", metavar="X,Y", help="where it ends")
+    parser.add_argument("--start", metavar="X,Y[,THETA]", help="where the path begins, in the map's unit; the heading there, in radians")
+    parser.add_argument("--target", metavar="X,Y[,THETA]", help="where it ends, and the heading there")
     parser.add_argument(
         "--via", action="append", default=[], metavar="X,Y", help="a place to pass on the way; may be given several times, in their order"
     )
     parser.add_argument("--scenario", metavar="FILE:NUMBER", help="start and target of a MovingAI scenario, numbered from 1")
     chosen = parser.add_mutually_exclusive_group()
-    chosen.add_argument("--planner", metavar="NAME", help="a planner, or the path of a planner's file (default: rounded_shortest_path)")
+    chosen.add_argument(
+        "--planner",
+        metavar="NAME",
+        help="a planner, or the path of a planner's file (default: rounded_shortest_path, with headings dubins_search)",
+    )
     chosen.add_argument("--like", metavar="STUDY/METHOD", help="planner and settings of a study's method")
     parser.add_argument("--settings", default="{}", metavar="'{NAME: VALUE, ...}'", help="settings in place of the planner's own")
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="of the random numbers (default: 0)")
@@ -127,7 +141,10 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     parser.add_argument("--rule", choices=("overlap", "centre"), help="which cells obstacles occupy (default: overlap)")
     parser.add_argument("--robot-radius", type=float, metavar="R", help="the distance that the path keeps from obstacles and border")
     parser.add_argument("--strict", action="store_true", help="refuse a path that turns tighter than the turning radius")
-    parser.add_argument("--most-pixels", type=int, metavar="N", help="the most pixels of a ROS map's image")
+    parser.add_argument("--margin", type=float, metavar="D", help="how far the border lies from the obstacles of a .geojson without one")
+    parser.add_argument("--resolution", type=float, metavar="SIDE", help="side of a pixel of an image without a YAML file")
+    parser.add_argument("--unknown", choices=("occupied", "free"), help="what unknown pixels count as (default: occupied)")
+    parser.add_argument("--most-pixels", type=int, metavar="N", help="the most pixels of an image")
     parser.add_argument("--unit", metavar="NAME", help="the unit of length that is printed (default: m, of grids cell)")
     parser.add_argument(
         "--out",
@@ -141,31 +158,38 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
 
 def _plan(given: Namespace) -> None:
     _check_words(given)
-    planner, settings = _planner(given)
-    module = planner_module(planner)
+    places, headings = _places(given)
+    planner, settings = _planner(given, headings)
+    module, regions = planner_module(planner), problems.remembered()
     with _as_options():
         legs.check_planner(planner, given.via, given.strict)
-        problem = _problem(given, planner)
         via = [map_files.point("via", text) for text in given.via]
-        parts = legs.legs(problem, via)
-    bound = legs.shortest(parts)
-    if not np.isfinite(bound.length):
-        raise Fault(f"--target: {given.target or given.scenario}: no free way leads there from the start; expected one that can be reached")
-    if planner == legs.ROUNDED:
-        x_low, x_high, y_low, y_high = problem.workspace.bounds
-        settings = {"turning_radius": api.SHARE * max(x_high - x_low, y_high - y_low), "offset": 0.0} | settings
+        problem = _problem(given, planner, places, regions)
+        parts = legs.legs(problem, via, regions)
+    if planner in legs.TURNING:
+        settings = legs.preset(planner, problem.workspace) | settings
     interface.check_settings(module, settings, "--settings")
     if hasattr(module, "serves"):
         interface.asked(module.serves, f"--planner: {planner}", problem)
+    blocked = regions(problem.workspace)
+    bounds = legs.shortest(parts, blocked)
+    bound = legs.whole(bounds)
+    if not np.isfinite(bound.length):
+        raise Fault(f"--target: {given.target or given.scenario}: no free way leads there from the start; expected one that can be reached")
     for _ in range(2):  # the first run also loads compiled code, so only the second is timed
-        answers = [_answer(module, part, planner, settings, given.seed) for part in parts]
-    plan, seconds = legs.joined([answer for answer, _ in answers]), sum(taken for _, taken in answers)
-    kept = plan.extra["least_radius"] if planner == legs.ROUNDED else math.nan
+        if planner in legs.TURNING:
+            begin = time.process_time()
+            plan = legs.solved(planner, parts, bounds, blocked, settings)
+            seconds = time.process_time() - begin
+        else:
+            answers = [_answer(module, part, planner, settings, given.seed) for part in parts]
+            plan, seconds = legs.joined([answer for answer, _ in answers]), sum(taken for _, taken in answers)
+    kept = legs.kept(planner, plan, settings)
     if given.strict:
         with _as_options():
             legs.check_kept(settings["turning_radius"], kept, problem.workspace.unit)
     try:
-        judged = api.Judged(**api.verdict(problem, plan.path, bound.length, via))
+        judged = api.Judged(**api.verdict(problem, plan.path, bound.length, regions, via))
     except ValueError as error:
         raise Fault(f"--planner: {planner}: {error}") from None
     if judged.feasible and judged.length < shortest_paths.least_length(bound):
@@ -235,11 +259,10 @@ def _unwritable(out: File, error: OSError) -> Fault:
 def _answer(module: ModuleType, problem: Problem, planner: str, settings: dict[str, Any], seed: int) -> tuple[Plan, float]:
     """A planner's answer, through the door of all answers, and its CPU seconds. Raises Fault, in one line, however the planner fails."""
     loan = lend({problem.name: problem})[problem.name]
-    called = module.gentlest if planner == legs.ROUNDED else module.plan
     try:
         with watchdog.watching(None) as watch, watchdog.executing(f"--planner: {planner}", watch):
             begin = time.process_time()
-            given = called(loan.problem, np.random.default_rng(seed), **settings)
+            given = module.plan(loan.problem, np.random.default_rng(seed), **settings)
             seconds = time.process_time() - begin
         plan = answer.accepted(given, problem, {*TAKEN, *settings})
     except answer.Unfit as fault:
@@ -255,7 +278,8 @@ def _told(judged: api.Judged, planner: str, settings: dict[str, Any], stop: str,
     """The names and values to print."""
     home = judged.problem.workspace
     unit = home.unit
-    lines = [("planner", planner), ("settings", ", ".join(f"{name} {value}" for name, value in settings.items()) or "none")]
+    told = ", ".join(f"{name} {'any' if value is None else value}" for name, value in settings.items())
+    lines = [("planner", planner), ("settings", told or "none")]
     if judged.robot_radius:
         whole = f", by whole cells of {home.cell:g} {unit}" if isinstance(home, Grid) and not home.drawn else ""
         lines.append(("robot radius", f"{judged.robot_radius:g} {unit}{whole}"))
@@ -265,7 +289,7 @@ def _told(judged: api.Judged, planner: str, settings: dict[str, Any], stop: str,
     lines.append(("length", f"{judged.length:.6g} {unit}, {_told_number(100 * judged.gap, 3)} % above the shortest path"))
     corners = ", and corners" if judged.corners else ""
     lines.append(("curvature", f"at most {_told_number(judged.curvature, 6)} / {unit}{corners}"))
-    if planner == legs.ROUNDED:
+    if planner in legs.TURNING:
         asked = settings["turning_radius"]
         met = kept >= asked * (1 - 1e-9)
         lines.append(("turning radius", f"{asked:.6g} {unit} asked{' and kept' if met else f', {kept:.6g} {unit} kept'}"))
@@ -284,21 +308,37 @@ def _told_number(value: float, digits: int) -> str:
     return f"{value:.{digits}g}" if abs(value) > checker.TOLERANCE else "0"
 
 
-def _planner(given: Namespace) -> tuple[str, dict[str, Any]]:
+def _places(given: Namespace) -> tuple[dict[str, tuple[float, float]], dict[str, float]]:
+    """Start and target, as far as they are given, and the headings there, by the names of their settings."""
+    places, headings = {}, {}
+    with _as_options():
+        for end in () if given.scenario else ("start", "target"):
+            places[end], heading = map_files.pose(end, getattr(given, end))
+            if heading is not None:
+                headings[f"{end}_heading"] = heading
+    return places, headings
+
+
+def _planner(given: Namespace, headings: dict[str, float]) -> tuple[str, dict[str, Any]]:
     """The planner and its settings, as far as they are known without the map."""
     own = checked.parse(given.settings, "--settings")
     if not isinstance(own, dict):
         raise Fault(f"--settings: {given.settings}: expected '{{name: value, ...}}'")
+    if twice := headings.keys() & own.keys():
+        raise Fault(f"--settings: {min(twice)}: given with --{min(twice).removesuffix('_heading')} as well; expected once")
     if given.like:
         planner, preset = _like(given.like)
     else:
-        planner = given.planner or "rounded_shortest_path"
+        planner = given.planner or (legs.DRIVEN if {"start_heading", "target_heading"} & (headings.keys() | own.keys()) else legs.ROUNDED)
         if not planner.endswith(".py") and planner not in known_planners():
             raise Fault(f"--planner: {planner}: unknown{closest(planner, known_planners())}")
         interface.loaded(planner, f"--planner: {planner}")
-        preset = {} if planner == "rounded_shortest_path" or planner.endswith(".py") else _preset(planner)
+        preset = {} if planner in legs.TURNING or planner.endswith(".py") else _preset(planner)
+    if headings and planner != legs.DRIVEN:
+        end = min(headings).removesuffix("_heading")
+        raise Fault(f"--{end}: {getattr(given, end)}: a heading is only for {legs.DRIVEN}; the planner is {planner}")
     interface.refuse_unknown(planner_module(planner), own, "--settings")
-    return planner, preset | own
+    return planner, preset | own | headings
 
 
 def _like(name: str) -> tuple[str, dict[str, Any]]:
@@ -327,21 +367,21 @@ def _preset(planner: str) -> dict[str, Any]:
     return {}
 
 
-def _problem(given: Namespace, planner: str) -> Problem:
+def _problem(given: Namespace, planner: str, places: dict[str, tuple[float, float]], regions: Regions) -> Problem:
     """The map with start and target; as a grid if the planner needs cells."""
     served = getattr(planner_module(planner), "workspaces", None)
     if given.robot_radius is not None:
         robot.check_radius(given.robot_radius)
-    options = {name: getattr(given, name) for name in ("cell", "rule", "unit", "most_pixels", "scenario")}
+    names = ("cell", "rule", "unit", "margin", "resolution", "unknown", "most_pixels", "scenario")
+    options = {name: getattr(given, name) for name in names}
     described = map_files.described(given.map, **options, cells=map_files.needs_cells(served))
     workspace = robot.suited(map_files.read(given.map, described, given.robot_radius), served)
     met = "polygons" if isinstance(workspace, Polygons) else "grid"
     if served is not None and met not in served:
         raise Fault(f"--planner: {planner}: serves workspaces of kind {', '.join(served)}, and a map is {met}")
     if given.scenario:
-        return problems.build("", _scenario(given, described, robot.original(workspace)), workspace)
-    ends = {end: map_files.point(end, getattr(given, end)) for end in ("start", "target")}
-    return problems.build("", ends, workspace)
+        return problems.build("", _scenario(given, described, original(workspace)), workspace, regions)
+    return problems.build("", places, workspace, regions)
 
 
 def _scenario(given: Namespace, described: dict, workspace: Workspace) -> dict:

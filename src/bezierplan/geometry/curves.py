@@ -139,6 +139,13 @@ def bezier_pieces(path: Path) -> np.ndarray:
     return piece_matrix(path.curve, len(points)) @ points
 
 
+def moved(path: Path, by: tuple[float, float]) -> Path:
+    """A path whose coordinates are larger by a shift. Of a `ferguson` curve every other control point is a tangent, which stays."""
+    points = np.array(path.points, dtype=float)
+    points[:: 2 if path.curve == "ferguson" else 1] += by
+    return Path(path.curve, points)
+
+
 def bernstein(degree: int, t: np.ndarray) -> np.ndarray:
     """Bernstein polynomials (len(t), degree + 1) at parameters t in [0, 1] (song2016, eq. 2; tharwat2018, eq. 2)."""
     k = np.arange(degree + 1)

@@ -16,7 +16,7 @@ from bezierplan.geometry import curves, shortest_paths
 from bezierplan.geometry.checker import first_collision
 from bezierplan.geometry.region import Region, from_origin, region
 from bezierplan.kernels import compiled
-from bezierplan.planners import About, Plan, Range
+from bezierplan.planners import About, Plan, Range, dubins_search
 from bezierplan.planners.parts.settings import UNITS, with_settings
 from bezierplan.workspaces import robot
 from bezierplan.workspaces.circles import Circles
@@ -41,6 +41,9 @@ _PIECE_ANGLE = math.pi / 4
 # Wishes that are tried where the turning radius is not kept, for each halving, and the relative difference that decides no further.
 _STEPS_PER_OCTAVE = 4
 _SAME_RADIUS = 1e-4
+
+# The same where each try is a search.
+_SAME_SEARCHED = 0.02
 
 # The smallest wish that is tried, as a share of the map's circumference.
 _SMALLEST_WISH = 1e-5
@@ -94,17 +97,41 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
 
 
 @with_settings(Settings)
-def gentlest(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan:
-    """The same, but where the turning radius cannot be kept, another wish is taken if its tightest turn is wider: the largest that is kept.
+def gentlest(problem: Problem, rng: np.random.Generator | None, settings: Settings, bound: shortest_paths.Bound, blocked: Region) -> Plan:
+    """The same, but where the circles have no room for the turning radius, a path that keeps it is searched (`dubins_search`).
 
-    So a larger wish gives no tighter turn than a smaller one. Wishes shrink on a fixed scale until one is kept, and then the largest
-    between it and the one before is found by halving.
+    If none is found, the largest radius is kept that is: wishes shrink on a fixed scale until the circles have room for one, the largest
+    between it and the one before is found by halving, and from there to the turning radius the search is asked likewise. So a larger wish
+    gives no tighter turn than a smaller one, within `_SAME_SEARCHED`. bound, blocked: the exact shortest path and the region of the map.
     """
-    bound = shortest_paths.shortest_path(problem)
-    blocked = region(problem.workspace)
     first = _answer(problem, bound, blocked, settings)
     if math.isinf(bound.length) or first.extra["tight_turns"] == 0:
         return first
+    if found := _searched(problem, bound, blocked, settings.turning_radius):
+        return found
+    best = _largest(problem, bound, blocked, settings, first)
+    x_low, x_high, y_low, y_high = problem.workspace.bounds
+    kept, failed = best.extra["least_radius"], min(settings.turning_radius, 2 * (x_high - x_low + y_high - y_low))
+    while kept > 0 and failed > kept * (1 + _SAME_SEARCHED):
+        wish = math.sqrt(kept * failed)
+        if found := _searched(problem, bound, blocked, wish):
+            best, kept = found, wish
+        else:
+            failed = wish
+    return best._replace(extra=best.extra | {"tight_turns": best.extra["turns"]})
+
+
+def _searched(problem: Problem, bound: shortest_paths.Bound, blocked: Region, radius: float) -> Plan | None:
+    """A path that turns no tighter than a radius; None if the search finds none."""
+    found = dubins_search.searched(problem, dubins_search.Settings(radius, math.nan, math.nan), bound, blocked)
+    if not found.claimed_feasible:
+        return None
+    turns = len(turns_of(bound.points, problem.workspace).side)
+    return found._replace(extra={"turns": turns, "tight_turns": 0, "least_radius": radius})
+
+
+def _largest(problem: Problem, bound: shortest_paths.Bound, blocked: Region, settings: Settings, first: Plan) -> Plan:
+    """The rounded path with the largest radius for which the circles have room, or the `first` one if its tightest turn is as wide."""
     x_low, x_high, y_low, y_high = problem.workspace.bounds
     around = 2 * (x_high - x_low + y_high - y_low)
     failed, tries, kept = min(settings.turning_radius, around), first.evaluations, None
@@ -120,7 +147,7 @@ def gentlest(problem: Problem, rng: np.random.Generator, settings: Settings) -> 
             failed = wish
         else:
             kept = wish, found
-    best = kept[1]._replace(extra=kept[1].extra | {"tight_turns": kept[1].extra["turns"]})
+    best = kept[1]
     if best.extra["least_radius"] <= first.extra["least_radius"] * (1 + _SAME_RADIUS):
         best = first
     return best._replace(evaluations=tries)

@@ -3,37 +3,61 @@
 import math
 from collections.abc import Sequence
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
 from bezierplan.geometry import shortest_paths
-from bezierplan.planners import Plan
+from bezierplan.geometry.region import Region
+from bezierplan.planners import Plan, dubins_search, rounded_shortest_path
+from bezierplan.planners.parts.settings import filled
 from bezierplan.running import problems
-from bezierplan.workspaces.problem import Path, Problem
+from bezierplan.running.problems import Regions, near_region
+from bezierplan.workspaces import shifted
+from bezierplan.workspaces.limits import SMALLEST_FEATURE
+from bezierplan.workspaces.problem import Path, Problem, Workspace
 
-ROUNDED = "rounded_shortest_path"
-CHAINED = (ROUNDED, "shortest_path")
+ROUNDED, DRIVEN = "rounded_shortest_path", "dubins_search"
+TURNING = (ROUNDED, DRIVEN)
+"""Planners of this package that keep a turning radius: they get the exact shortest path and the region, which are known already."""
+CHAINED = (*TURNING, "shortest_path")
 """Planners whose paths can be joined: chains of pieces."""
 
+SHARE = 0.02
+"""The turning radius without a wish, as a share of the map's longer side."""
+
 # Two directions that differ by less, in radians, are no corner.
-_STRAIGHT = 1e-9
+_STRAIGHT = 1e-8
+
+# A radius that is smaller by less, as a share, is the same.
+_SAME = 1e-9
 
 
 def check_planner(planner: str, via: Sequence[tuple[float, float]], strict: bool) -> None:
     """Raise ValueError for way points or a strict turning radius with a planner that does not have them."""
     own = planner.removeprefix("bezierplan.planners.")
     if via and own not in CHAINED:
-        raise ValueError(f"via: only for {' and '.join(CHAINED)}; the planner is {own}")
-    if strict and own != ROUNDED:
-        raise ValueError(f"strict: only for {ROUNDED}, which has a turning radius; the planner is {own}")
+        raise ValueError(f"via: only for {', '.join(CHAINED[:-1])} and {CHAINED[-1]}; the planner is {own}")
+    if strict and own not in TURNING:
+        raise ValueError(f"strict: only for {' and '.join(TURNING)}, which have a turning radius; the planner is {own}")
 
 
-def legs(problem: Problem, via: Sequence[tuple[float, float]]) -> list[Problem]:
-    """The problems from start to the first way point, and so on to the target. Raises ValueError for a way point that is not free."""
+def preset(planner: str, workspace: Workspace) -> dict[str, Any]:
+    """Settings of a planner with a turning radius where none are given."""
+    x_low, x_high, y_low, y_high = workspace.bounds
+    radius = {"turning_radius": SHARE * max(x_high - x_low, y_high - y_low)}
+    return radius | ({"offset": 0.0} if planner == ROUNDED else {"start_heading": None, "target_heading": None})
+
+
+def legs(problem: Problem, via: Sequence[tuple[float, float]], regions: Regions = near_region) -> list[Problem]:
+    """The problems from start to the first way point, and so on to the target, on the map where it is computed with.
+
+    Raises ValueError for a way point that is not free.
+    """
     places = [problem.start]
     for point in via:
         try:
-            placed = problems.build("", {"start": point, "target": point}, problem.workspace).start
+            placed = problems.build("", {"start": point, "target": point}, problem.workspace, regions).start
         except ValueError as error:
             raise ValueError(f"via{str(error).removeprefix('start')}") from None
         if placed == places[-1]:
@@ -41,14 +65,59 @@ def legs(problem: Problem, via: Sequence[tuple[float, float]]) -> list[Problem]:
         places.append(placed)
     if via and places[-1] == problem.target:
         raise ValueError(f"via: {via[-1]}: the same place as the target; expected another")
-    ends = [*places, problem.target]
-    return [problem._replace(start=start, target=target) for start, target in pairwise(ends)]
+    near = shifted.near_problem(problem)
+    shift = shifted.shift_of(problem.workspace)
+    ends = [shifted.lowered(place, shift) for place in (*places, problem.target)]
+    return [near._replace(start=start, target=target) for start, target in pairwise(ends)]
 
 
-def shortest(parts: Sequence[Problem]) -> shortest_paths.Bound:
+def shortest(parts: Sequence[Problem], blocked: Region) -> list[shortest_paths.Bound]:
+    """The exact shortest path of each leg. blocked: the region of their map."""
+    return [shortest_paths.shortest_path(part, blocked=blocked) for part in parts]
+
+
+def whole(bounds: Sequence[shortest_paths.Bound]) -> shortest_paths.Bound:
     """The exact shortest path through all legs."""
-    bounds = [shortest_paths.shortest_path(part) for part in parts]
     return shortest_paths.Bound(sum(bound.length for bound in bounds), np.concatenate([bound.points for bound in bounds]))
+
+
+def solved(
+    planner: str, parts: Sequence[Problem], bounds: Sequence[shortest_paths.Bound], blocked: Region, settings: dict[str, Any]
+) -> Plan:
+    """The answer of a planner with a turning radius to all legs. Where rounding leaves a corner at a way point, the legs are searched."""
+    if planner == DRIVEN:
+        return joined(_driven(parts, bounds, blocked, settings))
+    rounded = joined([rounded_shortest_path.gentlest(part, None, bound, blocked, **settings) for part, bound in zip(parts, bounds)])
+    radius = settings["turning_radius"]
+    if len(parts) == 1 or rounded.path is None or radius < SMALLEST_FEATURE or rounded.extra["least_radius"] >= radius * (1 - _SAME):
+        return rounded
+    driven = joined(_driven(parts, bounds, blocked, preset(DRIVEN, parts[0].workspace) | {"turning_radius": radius}))
+    if driven.path is None:
+        return rounded
+    return driven._replace(extra={"turns": rounded.extra["turns"], "tight_turns": 0, "least_radius": radius})
+
+
+def _driven(parts: Sequence[Problem], bounds: Sequence[shortest_paths.Bound], blocked: Region, settings: dict[str, Any]) -> list[Plan]:
+    """A search on each leg, which begins with the heading in which the one before ends; up to the first one that finds nothing."""
+    answers: list[Plan] = []
+    heading = settings["start_heading"]
+    for number, (part, bound) in enumerate(zip(parts, bounds), start=1):
+        last = settings["target_heading"] if number == len(parts) else None
+        ends = {"start_heading": heading, "target_heading": last}
+        given = filled(dubins_search.Settings, settings | ends)
+        answers.append(dubins_search.searched(part, given, bound, blocked))
+        if answers[-1].path is None:
+            break
+        along = np.diff(answers[-1].path.points[-2:], axis=0)[0]
+        heading = math.atan2(along[1], along[0])
+    return answers
+
+
+def kept(planner: str, plan: Plan, settings: dict[str, Any]) -> float:
+    """Radius of a path's tightest turn, by a planner with a turning radius; nan of others and without a path."""
+    if planner == ROUNDED:
+        return plan.extra["least_radius"]
+    return settings["turning_radius"] if planner == DRIVEN and plan.path is not None else math.nan
 
 
 def joined(answers: Sequence[Plan]) -> Plan:
@@ -60,10 +129,10 @@ def joined(answers: Sequence[Plan]) -> Plan:
     if lost:
         return lost
     corners = sum(_has_corner(one, other) for one, other in pairwise(paths))
-    extra = answers[0].extra
+    extra = {name: sum(answer.extra[name] for answer in answers) for name in answers[0].extra}
     if "least_radius" in extra:
-        extra = {name: sum(answer.extra[name] for answer in answers) + corners for name in ("turns", "tight_turns")}
         extra["least_radius"] = 0.0 if corners else min(answer.extra["least_radius"] for answer in answers)
+        extra |= {name: extra[name] + corners for name in ("turns", "tight_turns")}
     objective = sum(answer.objective for answer in answers)
     return answers[0]._replace(
         path=Path(paths[0].curve, np.concatenate([paths[0].points, *(path.points[1:] for path in paths[1:])])),
@@ -83,6 +152,8 @@ def _has_corner(one: Path, other: Path) -> bool:
 
 
 def check_kept(asked: float, kept: float, unit: str) -> None:
-    """Raise ValueError if the tightest turn of a path is tighter than asked."""
-    if kept < asked * (1 - 1e-9):
+    """Raise ValueError if the tightest turn of a path is tighter than asked, or if there is no path."""
+    if math.isnan(kept):
+        raise ValueError(f"turning_radius: {asked:g} {unit} asked: no path was found; expected one that can be kept, or not strict")
+    if kept < asked * (1 - _SAME):
         raise ValueError(f"turning_radius: {asked:g} {unit} asked, {kept:.6g} {unit} kept; expected one that can be kept, or not strict")

@@ -5,7 +5,7 @@ JSON: `workspaces.files.to_json`). Columns of a file of bounds: `columns.Bound`.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,10 +13,11 @@ import numpy as np
 
 from bezierplan.geometry import cell_length
 from bezierplan.geometry.checker import check
-from bezierplan.geometry.region import blocks, region
+from bezierplan.geometry.region import Region, blocks, region
 from bezierplan.running.columns import Bound
-from bezierplan.workspaces import files, lattice, random_blocks, robot
+from bezierplan.workspaces import files, lattice, random_blocks, robot, shifted
 from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.grown import grown_of, original
 from bezierplan.workspaces.problem import Problem, Workspace
 
 if TYPE_CHECKING:
@@ -25,15 +26,37 @@ if TYPE_CHECKING:
     from bezierplan.geometry import shortest_paths
 
 
-def build(name: str, description: dict, workspace: Workspace) -> Problem:
+Regions = Callable[[Workspace], Region]
+"""The blocked region of a map, where it is computed with (`shifted`)."""
+
+
+def near_region(workspace: Workspace) -> Region:
+    """The blocked region of a map, where it is computed with."""
+    return region(shifted.near(workspace))
+
+
+def remembered() -> Regions:
+    """`near_region` that builds the one of each map once, for callers who keep their maps."""
+    known: dict[int, tuple[Workspace, Region]] = {}
+
+    def find(workspace: Workspace) -> Region:
+        if id(workspace) not in known:
+            known[id(workspace)] = workspace, near_region(workspace)
+        return known[id(workspace)][1]
+
+    return find
+
+
+def build(name: str, description: dict, workspace: Workspace, regions: Regions = near_region) -> Problem:
     """A problem from its description: start and target, (x, y) in units, or start_cell and target_cell, cell numbers of a grid.
 
     Raises ValueError, naming key and value, unless start and target lie in free space.
     """
-    return Problem(name, workspace, _end("start", description, workspace), _end("target", description, workspace))
+    start, target = (_end(end, description, workspace, regions) for end in ("start", "target"))
+    return Problem(name, workspace, start, target)
 
 
-def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, float]:
+def _end(end: str, description: dict, workspace: Workspace, regions: Regions) -> tuple[float, float]:
     key = end if end in description else f"{end}_cell"
     value = description[key]
     if key == end:
@@ -45,16 +68,17 @@ def _end(end: str, description: dict, workspace: Workspace) -> tuple[float, floa
             raise ValueError(f"{key}: {error}") from None
     else:
         raise ValueError(f"{key}: {value}: only a grid has cell numbers; expected {end}: [x, y]")
-    grown, home = robot.grown_of(workspace), robot.original(workspace)
+    grown, home = grown_of(workspace), original(workspace)
     x_low, x_high, y_low, y_high = home.bounds
     if not (x_low <= point[0] <= x_high and y_low <= point[1] <= y_high):
         raise ValueError(
-            f"{key}: {value}: outside the workspace; expected x from {x_low:g} to {x_high:g} and y from {y_low:g} to {y_high:g}"
+            f"{key}: {value}: outside the workspace; expected x from {x_low:.12g} to {x_high:.12g} and y from {y_low:.12g} to {y_high:.12g}"
         )
-    if blocks(region(home), point):
+    near = shifted.lowered(point, shifted.shift_of(home))
+    if blocks(regions(home), near):
         raise ValueError(f"{key}: {value}: in an obstacle; expected a free place of the workspace")
-    if grown and blocks(region(workspace), point):
-        distance = check(np.array([[point, point]]), region(home)).clearance
+    if grown and blocks(regions(workspace), near):
+        distance = check(np.array([[near, near]]), regions(home)).clearance
         least = grown.radius if distance < grown.radius else (1 + robot.ARC_EXCESS) * grown.radius
         cells = ", by whole cells" if isinstance(workspace, Grid) and not workspace.drawn else ""
         raise ValueError(

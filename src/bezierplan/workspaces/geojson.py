@@ -1,15 +1,21 @@
-"""Polygons from GeoJSON (RFC 7946), read strictly: anything not understood is rejected by name, since no obstacle may be lost.
+"""Polygons from GeoJSON (RFC 7946), as studies write it and as GIS programs do: anything not understood is rejected by name, since no
+obstacle may be lost.
 
-A feature is a Polygon with `properties.role` `border` (one, a rectangle) or `obstacle`. Features with the role `start` or `target` are
-ignored: a study's problems define them.
+The file is a collection of features, one feature, or a bare geometry: Polygon, MultiPolygon, or a GeometryCollection of these. What has no
+`properties.role` is an obstacle. The border is the polygon with the role `border`, of any shape; without one, the bounding box of all
+obstacles with a margin, or the file's `bbox`. What lies outside of it is blocked, so obstacles are cut there. Features with the role
+`start` or `target` are ignored: problems define them. A third coordinate, the height, is dropped.
 """
 
 import json
-from typing import Any
+import logging
+from collections.abc import Iterator
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from bezierplan.workspaces.limits import (
+    LARGEST,
     SMALLEST_ANGLE,
     SMALLEST_FEATURE,
     SMALLEST_GAP,
@@ -20,47 +26,69 @@ from bezierplan.workspaces.limits import (
 )
 from bezierplan.workspaces.polygons import Polygons
 
+logger = logging.getLogger(__name__)
+
 ROLES = ("border", "obstacle", "start", "target")
 
 MOST_POSITIONS = 100_000
 """Most positions in a file, which its text could exceed within its own limit."""
 
 Rings = tuple[np.ndarray, ...]
+Bounds = tuple[float, float, float, float]
 
 
-def polygons_from_geojson(text: str, unit: str) -> Polygons:
+class Shape(NamedTuple):
+    """A polygon of a file. role: border or obstacle. name: for messages. rings: each (n, 2 or 3), without its last position."""
+
+    role: str
+    name: str
+    rings: Rings
+
+
+def polygons_from_geojson(text: str, unit: str, margin: float | None = None, largest: float = LARGEST) -> Polygons:
     """Polygons from the text of a GeoJSON file.
 
-    Raises ValueError, naming the feature, for text that is not a feature collection, an unknown role, a geometry other than Polygon, a ring
-    that is not closed, positions that are not [x, y], coordinates out of range, a border that is not a rectangle, an obstacle that is
-    invalid, extends beyond the border, or is too thin for the checker, and gaps that are neither closed nor open.
+    margin: between obstacles and border, in units, of a file without a border of its own. largest: size of a coordinate. Warns of heights
+    that are dropped, and of obstacles that are cut at the border.
+
+    Raises ValueError, naming the feature, for text that is not GeoJSON, an unknown role, a geometry without an area, a ring that is not
+    closed, positions that are not [x, y], coordinates out of range, no border, a margin beside a border, an obstacle that is invalid or too
+    thin for the checker, and gaps that are neither closed nor open.
     """
-    shapes = [shape for number, feature in enumerate(_features(text)) if (shape := _shape(number, feature))]
-    borders = [rings for role, _, rings in shapes if role == "border"]
-    if len(borders) != 1:
-        raise ValueError(f"{len(borders)} features with role border; expected one")
-    if sum(len(ring) for _, _, rings in shapes for ring in rings) > MOST_POSITIONS:
+    content = _content(text)
+    shapes = [shape for number, feature in enumerate(_features(content)) for shape in _shapes(number, feature)]
+    if sum(len(ring) for shape in shapes for ring in shape.rings) > MOST_POSITIONS:
         raise ValueError(f"more than {MOST_POSITIONS:,} positions; expected at most so many")
-    outer, *holes = borders[0]
-    low, high = outer.min(axis=0).tolist(), outer.max(axis=0).tolist()
-    limits = (low[0], high[0], low[1], high[1])
-    check_bounds(limits)
-    obstacles = [(name, rings) for role, name, rings in shapes if role == "obstacle"]
-    _check_shapes(limits, (outer, *holes), obstacles)
-    return Polygons(limits, tuple(rings for _, rings in obstacles), unit)
+    shapes = _flat(shapes)
+    for shape in shapes:
+        check_numbers(np.concatenate(shape.rings), shape.name, largest)
+    obstacles = [shape for shape in shapes if shape.role == "obstacle"]
+    limits, outside = _border([shape for shape in shapes if shape.role == "border"], obstacles, content.get("bbox"), margin, largest)
+    return Polygons(limits, tuple(_within(limits, [*obstacles, *outside])), unit)
 
 
-def _features(text: str) -> list:
+def _content(text: str) -> dict[str, Any]:
     try:
         content = json.loads(text, object_pairs_hook=_object, parse_constant=_no_number)
     except ValueError as error:
         raise ValueError(f"not a GeoJSON feature collection ({error})") from None
     except RecursionError:
         raise ValueError("not a GeoJSON feature collection: nested too deeply") from None
-    if not isinstance(content, dict) or not isinstance(content.get("features"), list):
+    if not isinstance(content, dict):
+        raise ValueError("not a GeoJSON feature collection: expected an object with a list of features")
+    _check_lengths(content)
+    return content
+
+
+def _features(content: dict[str, Any]) -> list[Any]:
+    """The features of a file, which may also be one feature or a bare geometry."""
+    if content.get("type") == "Feature":
+        return [content]
+    if content.get("type") in _GEOMETRIES and "features" not in content:
+        return [{"geometry": content}]
+    if not isinstance(content.get("features"), list):
         raise ValueError("not a GeoJSON feature collection: expected an object with a list of features")
     _check_kind("the file", content, "FeatureCollection")
-    _check_lengths(content)
     return content["features"]
 
 
@@ -90,66 +118,155 @@ def _check_lengths(content: dict[str, Any]) -> None:
         raise ValueError("crs: longitudes and latitudes, in degrees; expected x and y as lengths, in the workspace's unit")
 
 
-def _shape(number: int, feature: Any) -> tuple[str, str, Rings] | None:
-    """Role, name for messages, and rings of a feature, without their last positions; None for a role that is not part of a workspace."""
-    if isinstance(feature, dict):
-        _check_kind(f"feature {number}", feature, "Feature")
-    properties, geometry = (feature.get(key) if isinstance(feature, dict) else None for key in ("properties", "geometry"))
-    if not isinstance(properties, dict) or "role" not in properties:
-        raise ValueError(f"feature {number}: properties: role: missing; expected border or obstacle")
-    role = properties["role"]
+_GEOMETRIES = ("Polygon", "MultiPolygon", "GeometryCollection")
+
+
+def _shapes(number: int, feature: Any) -> Iterator[Shape]:
+    """The polygons of a feature; none for a role that is not part of a workspace."""
+    if not isinstance(feature, dict):
+        raise ValueError(f"feature {number}: {str(feature)[:60]}; expected a feature with a geometry")
+    _check_kind(f"feature {number}", feature, "Feature")
+    properties = feature.get("properties") or {}
+    role = properties.get("role", "obstacle") if isinstance(properties, dict) else properties
     if role not in ROLES:
         from bezierplan.schema.checked import closest
 
         raise ValueError(f"feature {number}: properties: role: {role!r}: unknown{closest(str(role), ROLES)}")
-    if role in ("start", "target"):
-        return None
-    name = f"feature {number} ({role})"
+    if role in ("border", "obstacle"):
+        for rings in _polygons(feature.get("geometry"), f"feature {number} ({role})"):
+            yield Shape(role, f"feature {number} ({role})", rings)
+
+
+def _polygons(geometry: Any, name: str) -> Iterator[Rings]:
+    """The rings of each polygon of a geometry."""
     kind = geometry.get("type") if isinstance(geometry, dict) else None
-    if kind != "Polygon":
-        raise ValueError(f"{name}: geometry: {kind}; expected a Polygon, a feature for each")
-    rings = geometry.get("coordinates")
-    if not isinstance(rings, list) or not rings:
-        raise ValueError(f"{name}: geometry: coordinates: expected a list of rings")
-    return role, name, tuple(_ring(ring, f"{name}: ring {place}") for place, ring in enumerate(rings))
+    if kind not in _GEOMETRIES:
+        raise ValueError(f"{name}: geometry: {str(kind)[:60]}; expected a Polygon, a MultiPolygon, or a GeometryCollection of these")
+    key = "geometries" if kind == "GeometryCollection" else "coordinates"
+    parts = geometry.get(key)
+    if not isinstance(parts, list) or not parts:
+        raise ValueError(f"{name}: geometry: {key}: expected a list of {'rings' if kind == 'Polygon' else 'polygons'}")
+    if kind == "GeometryCollection":
+        for part in parts:
+            yield from _polygons(part, name)
+    else:
+        for rings in parts if kind == "MultiPolygon" else [parts]:
+            if not isinstance(rings, list) or not rings:
+                raise ValueError(f"{name}: geometry: coordinates: expected a list of rings")
+            yield tuple(_ring(ring, f"{name}: ring {place}") for place, ring in enumerate(rings))
 
 
 def _ring(positions: Any, where: str) -> np.ndarray:
-    """A ring (n, 2) without its last position, which repeats the first."""
+    """A ring (n, 2), or (n, 3) with heights, without its last position, which repeats the first."""
     if not isinstance(positions, list) or len(positions) < 4:
         raise ValueError(f"{where}: expected at least four positions, the last one the first again (RFC 7946, 3.1.6)")
     for position in positions:
-        pair = isinstance(position, list) and len(position) == 2
-        if not (pair and all(isinstance(value, int | float) and not isinstance(value, bool) for value in position)):
-            raise ValueError(f"{where}: position {str(position)[:60]}; expected [x, y]")
+        fits = isinstance(position, list) and len(position) in (2, 3) and len(position) == len(positions[0])
+        if not (fits and all(isinstance(value, int | float) and not isinstance(value, bool) for value in position)):
+            raise ValueError(f"{where}: position {str(position)[:60]}; expected [x, y], or [x, y, height] throughout")
     try:
         ring = np.array(positions, dtype=float)
     except OverflowError:
         raise ValueError(f"{where}: a number is too large for a coordinate") from None
-    check_numbers(ring, where)
     if positions[0] != positions[-1]:
         raise ValueError(f"{where}: is not closed: begins at {positions[0]}, ends at {positions[-1]}; expected the same (RFC 7946, 3.1.6)")
     return ring[:-1]
 
 
-def _check_shapes(limits: tuple[float, float, float, float], border: Rings, obstacles: list[tuple[str, Rings]]) -> None:
+def _flat(shapes: list[Shape]) -> list[Shape]:
+    """The same without heights, of which it warns."""
+    heights = sum(len(ring) for shape in shapes for ring in shape.rings if ring.shape[1] == 3)
+    if heights:
+        logger.warning("%d positions have a height, which is dropped: the map is flat", heights)
+    return [shape._replace(rings=tuple(ring[:, :2] for ring in shape.rings)) for shape in shapes]
+
+
+def _border(borders: list[Shape], obstacles: list[Shape], bbox: Any, margin: float | None, largest: float) -> tuple[Bounds, list[Shape]]:
+    """The bounds of a map, and as obstacles what lies within them and yet outside its border, which may have any shape."""
+    if len(borders) > 1:
+        raise ValueError(f"{len(borders)} polygons with role border; expected one")
+    if borders and margin is not None:
+        raise ValueError(f"margin: {margin:g}: the file has a border of its own; expected no margin")
+    if borders:
+        import shapely
+
+        name, (outer, *holes) = borders[0].name, borders[0].rings
+        limits = _box([outer])
+        check_bounds(limits)
+        border = shapely.Polygon(outer, holes)
+        if not border.is_valid:
+            raise ValueError(f"{name}: {shapely.is_valid_reason(border)}; expected a simple polygon")
+        beyond = [part for part in shapely.get_parts(_frame(limits).difference(border)) if not part.is_empty]
+        return limits, [Shape("obstacle", f"{name}: outside of it", _rings_of(part)) for part in beyond]
+    if margin is not None:
+        if not obstacles:
+            raise ValueError(f"margin: {margin:g}: the file has no obstacle; expected a border")
+        low_x, high_x, low_y, high_y = _box([shape.rings[0] for shape in obstacles])
+        limits = (low_x - margin, high_x + margin, low_y - margin, high_y + margin)
+        check_bounds(limits)
+        return limits, []
+    if bbox is None:
+        raise ValueError("no border; expected a polygon with role border, a bbox, or a margin around the obstacles")
+    return _checked_bbox(bbox, largest), []
+
+
+def _checked_bbox(bbox: Any, largest: float) -> Bounds:
+    """The bounds that a file states, with or without heights."""
+    numbers = isinstance(bbox, list) and all(isinstance(value, int | float) and not isinstance(value, bool) for value in bbox)
+    if not numbers or len(bbox) not in (4, 6):
+        raise ValueError(f"bbox: {str(bbox)[:60]}; expected [x low, y low, x high, y high]")
+    low, high = bbox[: len(bbox) // 2], bbox[len(bbox) // 2 :]
+    try:
+        limits = float(low[0]), float(high[0]), float(low[1]), float(high[1])
+    except OverflowError:
+        raise ValueError("bbox: a number is too large for a coordinate") from None
+    check_numbers(np.array(limits), "bbox", largest)
+    check_bounds(limits)
+    return limits
+
+
+def _box(rings: list[np.ndarray]) -> Bounds:
+    """Lowest and highest x, lowest and highest y."""
+    positions = np.concatenate(rings)
+    low, high = positions.min(axis=0).tolist(), positions.max(axis=0).tolist()
+    return low[0], high[0], low[1], high[1]
+
+
+def _frame(limits: Bounds) -> Any:
     import shapely
 
-    frame = shapely.box(limits[0], limits[2], limits[1], limits[3])
-    if not shapely.Polygon(border[0], border[1:]).equals(frame):
-        raise ValueError("border: expected a rectangle with sides along the axes, without a hole")
-    shapes = np.array([shapely.Polygon(rings[0], rings[1:]) for _, rings in obstacles], dtype=object)
-    for (name, _), shape in zip(obstacles, shapes):
+    return shapely.box(limits[0], limits[2], limits[1], limits[3])
+
+
+def _rings_of(polygon: Any) -> Rings:
+    return tuple(np.array(ring.coords)[:-1] for ring in (polygon.exterior, *polygon.interiors))
+
+
+def _within(limits: Bounds, obstacles: list[Shape]) -> list[Rings]:
+    """The rings of obstacles, checked, and cut at the border."""
+    import shapely
+
+    frame = _frame(limits)
+    shapes = np.array([shapely.Polygon(each.rings[0], each.rings[1:]) for each in obstacles], dtype=object)
+    for each, shape in zip(obstacles, shapes):
         if not shape.is_valid:
-            raise ValueError(f"{name}: {shapely.is_valid_reason(shape)}; expected a simple polygon")
-        if not frame.covers(shape):
-            raise ValueError(f"{name}: reaches over the border")
-    for (name, rings), shape in zip(obstacles, shapes):
-        _check_thickness(name, rings, shape)
+            raise ValueError(f"{each.name}: {shapely.is_valid_reason(shape)}; expected a simple polygon")
+    for each, shape in zip(obstacles, shapes):
+        _check_thickness(each.name, each.rings, shape)
     near = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=SMALLEST_GAP)
-    for i, ((name, _), shape) in enumerate(zip(obstacles, shapes)):
+    for i, (each, shape) in enumerate(zip(obstacles, shapes)):
         beside = shapes[near[1][(near[0] == i) & (near[1] > i)]]
-        check_gaps(np.append(shapely.distance(beside, shape), shape.distance(frame.exterior)), name)
+        check_gaps(np.append(shapely.distance(beside, shape), shape.distance(frame.exterior)), each.name)
+    covered = shapely.covers(frame, shapes)
+    over = [each.name for each, inside in zip(obstacles, covered) if not inside]
+    if over:
+        first = over[0] if len(over) == 1 else f"{over[0]} and {len(over) - 1} more"
+        logger.warning("%s: beyond the border, and cut there", first)
+    kept = []
+    for each, shape, inside in zip(obstacles, shapes, covered):
+        parts = [] if inside else [part for part in shapely.get_parts(shape.intersection(frame)) if isinstance(part, shapely.Polygon)]
+        kept += [each.rings] if inside else map(_rings_of, parts)
+    return kept
 
 
 def _check_thickness(name: str, rings: Rings, shape: Any) -> None:

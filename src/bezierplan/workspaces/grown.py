@@ -16,3 +16,15 @@ class Grown(NamedTuple):
     radius: float
     original: "Workspace"
     centres: np.ndarray
+
+
+def grown_of(workspace: "Workspace") -> Grown | None:
+    """By how much a map has grown and from which; None for a map as it was given."""
+    drawn = getattr(workspace, "drawn", None)
+    return (drawn.grown if drawn else None) or workspace.grown
+
+
+def original(workspace: "Workspace") -> "Workspace":
+    """The map before it grew."""
+    grown = grown_of(workspace)
+    return grown.original if grown else workspace

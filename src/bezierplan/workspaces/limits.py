@@ -5,6 +5,9 @@ import numpy as np
 LARGEST = 1e5
 """Largest size of a coordinate, in units: beyond it the certified checker could not keep its tolerance."""
 
+FARTHEST = 3e7
+"""Largest size of a coordinate of a map that is shifted before anything is computed: beyond all projected coordinates of the earth."""
+
 SMALLEST_GAP = 1e-7
 """Between obstacles, or an obstacle and the border, a smaller gap, in units, is meant to be closed: the checker could not tell."""
 
@@ -15,11 +18,11 @@ SMALLEST_ANGLE = 1e-3
 """Least angle at a corner of an obstacle, in radians: the tip of a sharper one is thinner than the checker's tolerance for long."""
 
 
-def check_numbers(values: np.ndarray, where: str) -> None:
-    """Raise ValueError, beginning with the location, unless all values are finite and at most `LARGEST` in absolute value."""
-    wrong = values[~(np.abs(values) <= LARGEST)]
+def check_numbers(values: np.ndarray, where: str, largest: float = LARGEST) -> None:
+    """Raise ValueError, beginning with the location, unless all values are finite and at most `largest` in absolute value."""
+    wrong = values[~(np.abs(values) <= largest)]
     if wrong.size:
-        raise ValueError(f"{where}: {wrong[0]:g} is not a coordinate; expected finite numbers of at most {LARGEST:g} in size")
+        raise ValueError(f"{where}: {wrong[0]:g} is not a coordinate; expected finite numbers of at most {largest:g} in size")
 
 
 def check_bounds(bounds: tuple[float, float, float, float]) -> None:

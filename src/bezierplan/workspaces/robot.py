@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bezierplan.workspaces import raster
+from bezierplan.workspaces import raster, shifted
 from bezierplan.workspaces.arrays import read_only
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.files import Workspace
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.grown import Grown
+from bezierplan.workspaces.grown import Grown, grown_of
 from bezierplan.workspaces.limits import SMALLEST_FEATURE
 from bezierplan.workspaces.polygons import Polygons
 
@@ -54,6 +54,11 @@ def grow(workspace: Workspace, radius: float) -> Workspace:
     check_radius(radius)
     if radius == 0:
         return workspace
+    shift = shifted.shift_of(workspace)
+    return shifted.moved(_grow(shifted.near(workspace), radius), shift)
+
+
+def _grow(workspace: Workspace, radius: float) -> Workspace:
     if before := grown_of(workspace):
         raise ValueError(f"robot_radius: {radius:g}: the map has grown by {before.radius:g} before; expected it once")
     if isinstance(workspace, Circles):
@@ -83,19 +88,6 @@ def check_radius(radius: float) -> None:
     """Raise ValueError unless a robot can have this radius."""
     if not (0 <= radius < math.inf) or 0 < radius < SMALLEST_FEATURE:
         raise ValueError(f"robot_radius: {radius:g}; expected 0 or a number of at least {SMALLEST_FEATURE:g}")
-
-
-def grown_of(workspace: Workspace) -> Grown | None:
-    """By how much a map has grown and from which; None for a map as it was given."""
-    if isinstance(workspace, Grid) and isinstance(workspace.drawn, Polygons):
-        return workspace.drawn.grown
-    return workspace.grown
-
-
-def original(workspace: Workspace) -> Workspace:
-    """The map before it grew."""
-    grown = grown_of(workspace)
-    return grown.original if grown else workspace
 
 
 def _shrunk(bounds: tuple[float, float, float, float], radius: float) -> tuple[float, float, float, float]:

@@ -1,30 +1,38 @@
-"""Occupancy maps in the format of ROS's map_server: an image and a YAML file that says what its pixels mean.
+"""Occupancy maps in the format of ROS's map_server: an image and a YAML file that says what its pixels mean; or an image alone.
 
 YAML keys: image (a file beside it, or elsewhere in the folder of the maps), resolution (units per pixel), origin [x, y, yaw] of the lower
-left pixel's corner, negate (0: dark pixels are occupied), occupied_thresh and free_thresh. A pixel is free if its occupancy is below
-free_thresh, occupied above occupied_thresh, and unknown in between; the last two both count as occupied here. The image's first row is the
-top of the map.
+left pixel's corner, negate (0: dark pixels are occupied), occupied_thresh, free_thresh, and mode. A pixel is free if its occupancy is below
+free_thresh, occupied above occupied_thresh. In between it is unknown (mode trinary) or occupied in part (mode scale, where transparent
+pixels are unknown). In mode raw a pixel's value is its occupancy in percent, and above 100 it is unknown. What is occupied in part counts
+as occupied, and so does what is unknown, unless it is asked to be free. The image's first row is the top of the map.
 """
 
+import logging
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path, PureWindowsPath
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from bezierplan.schema import checked
 from bezierplan.workspaces import robot
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.limits import check_numbers, check_thickness
+from bezierplan.workspaces.limits import LARGEST, check_numbers, check_thickness
 from bezierplan.workspaces.text_file import read_text
+
+logger = logging.getLogger(__name__)
+
+Unknown = Literal["occupied", "free"]
+"""What pixels that nobody has seen count as."""
 
 MOST_PIXELS = 16_000_000
 """Most pixels of an image unless the description says otherwise: 4,000 x 4,000."""
 
 _KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
-_THRESHOLDS = {"occupied_thresh": 0.65, "free_thresh": 0.196}
+_DEFAULTS = {"occupied_thresh": 0.65, "free_thresh": 0.196, "negate": 0, "mode": "trinary"}
+_MODES = ("trinary", "scale", "raw")
 _TRUTHS = {"0": False, "1": True, "false": False, "true": True, "no": False, "yes": True, "off": False, "on": True}
 """What ROS reads as a truth value: YAML 1.1 has more of them than the YAML of this project."""
 
@@ -32,22 +40,46 @@ SMALLEST_YAW = 1e-6
 """A map that is turned by less, in radians, counts as not turned: over 1,000 m it is a millimetre."""
 
 
-def read(file: Path, folder: Path, unit: str, robot_radius: float = 0.0, most_pixels: int = MOST_PIXELS) -> Grid:
+def read(
+    file: Path,
+    folder: Path,
+    unit: str,
+    robot_radius: float = 0.0,
+    most_pixels: int = MOST_PIXELS,
+    unknown: Unknown = "occupied",
+    largest: float = LARGEST,
+) -> Grid:
     """The grid of a map_server YAML file, one cell per pixel.
 
     folder: where the image must lie, also through links. robot_radius: in units; cells that come closer than that to an occupied cell
-    or to the border also count as occupied.
+    or to the border also count as occupied. largest: size of a coordinate.
 
     Raises ValueError, naming the key and what is expected.
     """
     content = _content(file)
-    resolution = content["resolution"]
-    check_thickness(resolution, "resolution:")
-    occupied = _occupied(image_of(file, folder, content), content, most_pixels)
-    grid = Grid(occupied, float(resolution), unit, (float(content["origin"][0]), float(content["origin"][1])))
-    check_numbers(np.array(grid.bounds), "origin, resolution: the border")
+    grid = _grid(image_of(file, folder, content), content, unit, most_pixels, unknown)
+    check_numbers(np.array(grid.bounds), "origin, resolution: the border", largest)
     robot.check_radius(robot_radius)
     return robot.by_cells(grid, robot_radius) if robot_radius > 0 else grid
+
+
+def read_image(file: Path, resolution: float, unit: str, most_pixels: int = MOST_PIXELS, unknown: Unknown = "occupied") -> Grid:
+    """The grid of an image without a YAML file, with its lower left corner at 0, 0. resolution: units per pixel.
+
+    Raises ValueError, naming the key and what is expected.
+    """
+    if not file.is_file():
+        raise ValueError("cannot be read (no such file)")
+    content = _DEFAULTS | {"image": file.name, "resolution": resolution, "origin": [0.0, 0.0, 0.0]}
+    grid = _grid(file, content, unit, most_pixels, unknown)
+    check_numbers(np.array(grid.bounds), "resolution: the border")
+    return grid
+
+
+def _grid(image: Path, content: dict[str, Any], unit: str, most_pixels: int, unknown: Unknown) -> Grid:
+    check_thickness(content["resolution"], "resolution:")
+    occupied = _occupied(image, content, most_pixels, unknown)
+    return Grid(occupied, float(content["resolution"]), unit, (float(content["origin"][0]), float(content["origin"][1])))
 
 
 def image_of(file: Path, folder: Path, content: dict[str, Any] | None = None) -> Path:
@@ -74,7 +106,7 @@ def _content(file: Path) -> dict[str, Any]:
     content = checked.parse(read_text(file), file.name)
     if not isinstance(content, dict) or "image" not in content:
         raise ValueError(f"image: missing; expected the keys {', '.join(_KEYS)} of a ROS map_server file")
-    content = _THRESHOLDS | {"negate": 0} | content
+    content = _DEFAULTS | content
     _expect(isinstance(content["image"], str), "image", content["image"], "the name of an image")
     for key in ("resolution", "occupied_thresh", "free_thresh"):
         _expect(_is_number(content.get(key)), key, content.get(key), "a number")
@@ -84,12 +116,15 @@ def _content(file: Path) -> dict[str, Any]:
     _expect(0 <= free <= content["occupied_thresh"], "free_thresh", free, "a number from 0 to occupied_thresh")
     negate = _TRUTHS.get(str(content["negate"]).lower())
     _expect(negate is not None, "negate", content["negate"], "0 or 1")
-    _expect(content.get("mode", "trinary") == "trinary", "mode", content.get("mode"), "trinary")
+    _expect(content["mode"] in _MODES, "mode", content["mode"], f"one of {', '.join(_MODES)}")
     origin = content.get("origin")
     _expect(isinstance(origin, list) and len(origin) == 3 and all(map(_is_number, origin[:2])), "origin", origin, "[x, y, yaw]")
-    turned = not _is_number(origin[2]) or abs(origin[2]) > SMALLEST_YAW
+    if str(origin[2]).lower().lstrip("-+.") == "nan":
+        logger.warning("%s: origin: yaw %s counts as 0; map_saver writes it for an orientation that is not valid", file.name, origin[2])
+        origin = [*origin[:2], 0.0]
+    turned = not _is_number(origin[2]) or abs(math.remainder(origin[2], math.tau)) > SMALLEST_YAW
     _expect(not turned, "origin", f"yaw {origin[2]}", "a yaw of 0: a map that is not turned")
-    return content | {"negate": negate}
+    return content | {"negate": negate, "origin": origin}
 
 
 def _is_number(value: Any) -> bool:
@@ -101,8 +136,8 @@ def _expect(right: bool, key: str, value: Any, wanted: str) -> None:
         raise ValueError(f"{key}: {'missing' if value is None else value}; expected {wanted}")
 
 
-def _occupied(file: Path, content: dict[str, Any], most_pixels: int) -> np.ndarray:
-    """Which pixels are occupied or unknown: bool (rows, columns), the bottom row first."""
+def _occupied(file: Path, content: dict[str, Any], most_pixels: int, unknown: Unknown) -> np.ndarray:
+    """Which pixels count as occupied: bool (rows, columns), the bottom row first."""
     from PIL import Image
 
     with _without_limit(Image):
@@ -116,8 +151,22 @@ def _occupied(file: Path, content: dict[str, Any], most_pixels: int) -> np.ndarr
             raise ValueError(f"image: {content['image']}: cannot be read as an image ({type(error).__name__})") from None
     if light is None:
         raise _too_large(columns, rows, most_pixels)
-    share = light if content["negate"] else 1.0 - light
-    return ~((share < content["free_thresh"]) & known)[::-1]
+    return ~_free(light, known, content, unknown)[::-1]
+
+
+def _free(light: np.ndarray, known: np.ndarray, content: dict[str, Any], unknown: Unknown) -> np.ndarray:
+    """Which pixels count as free, by their lightness from 0 to 1 and by whether they are known: bool (rows, columns)."""
+    if content["mode"] == "raw":
+        share = np.rint(255 * light) / 100
+        known = known & (share <= 1)
+    else:
+        share = light if content["negate"] else 1.0 - light
+    free = (share < content["free_thresh"]) & known
+    if unknown == "free":
+        free |= ~known
+        if content["mode"] == "trinary":
+            free |= share <= content["occupied_thresh"]
+    return free
 
 
 @contextmanager

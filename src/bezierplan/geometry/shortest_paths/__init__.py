@@ -9,7 +9,7 @@ from typing import Literal
 import numpy as np
 
 from bezierplan.geometry.checker import TOLERANCE, check
-from bezierplan.geometry.region import CircleRegion, GridRegion, region
+from bezierplan.geometry.region import CircleRegion, GridRegion, Region, region
 from bezierplan.geometry.shortest_paths.circles import shortest_around_circles
 from bezierplan.geometry.shortest_paths.graph import Bound, no_path
 from bezierplan.geometry.shortest_paths.grid import centre_path, shortest_on_grid
@@ -20,7 +20,7 @@ from bezierplan.workspaces.problem import Problem
 __all__ = ["Bound", "centre_path", "lattice_path", "least_length", "shortest_path"]
 
 
-def shortest_path(problem: Problem, corner_cutting: Literal["open", "closed"] = "open") -> Bound:
+def shortest_path(problem: Problem, corner_cutting: Literal["open", "closed"] = "open", blocked: Region | None = None) -> Bound:
     """The shortest path from start to target.
 
     Parameters
@@ -29,6 +29,8 @@ def shortest_path(problem: Problem, corner_cutting: Literal["open", "closed"] = 
         The workspace with both ends.
     corner_cutting : {'open', 'closed'}
         Whether it may pass between two occupied cells that share only a corner; only matters on grids.
+    blocked : Region, optional
+        The region of the workspace, if it is known.
 
     Returns
     -------
@@ -58,7 +60,7 @@ def shortest_path(problem: Problem, corner_cutting: Literal["open", "closed"] = 
     >>> found.points.tolist()
     [[0.5, 0.5], [1.0, 2.0], [3.5, 2.5]]
     """
-    blocked = region(problem.workspace)
+    blocked = region(problem.workspace) if blocked is None else blocked
     for point in (problem.start, problem.target):
         if not check(np.array([[point, point]]), blocked, corner_cutting).feasible:
             return no_path()

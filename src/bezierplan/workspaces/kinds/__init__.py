@@ -86,6 +86,7 @@ CircleCount = Annotated[int, value(lambda given: type(given) is int and 1 <= giv
 
 # Descriptions of keys shared by several kinds.
 REFLECTED = "[x low, x high, y low, y high]; centres of circles that move are reflected there"
+MARGIN = "in a file without a border, how far the border lies from the obstacles, in units, a number of at least 0"
 CIRCLES = "how many circles a layout has, a whole number from 1 to 10000"
 
 

@@ -4,8 +4,9 @@ from pathlib import Path
 
 from pydantic import Field
 
+from bezierplan.schema.model import NotNegative
 from bezierplan.workspaces.geojson import polygons_from_geojson
-from bezierplan.workspaces.kinds import File, Workspace, naming, text
+from bezierplan.workspaces.kinds import MARGIN, File, Workspace, naming, text
 from bezierplan.workspaces.polygons import Polygons
 
 
@@ -13,10 +14,11 @@ class Options(Workspace):
     """Keys of a workspace."""
 
     file: File = Field(description="a GeoJSON file in the study's folder")
+    margin: NotNegative = Field(None, description=MARGIN)
 
 
 def load(description: dict, folder: Path) -> Polygons:
-    """The features of a GeoJSON file, with properties.role `border`, one rectangle, and `obstacle`."""
+    """The border and the obstacles of a GeoJSON file."""
     content = text(description, "file", folder)
     with naming(description["file"]):
-        return polygons_from_geojson(content, description["unit"])
+        return polygons_from_geojson(content, description["unit"], description.get("margin"))

@@ -5,10 +5,11 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
+from bezierplan.schema.model import NotNegative
 from bezierplan.workspaces import raster
 from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.kinds import File, Size, Workspace, naming, text
+from bezierplan.workspaces.kinds import MARGIN, File, Size, Workspace, naming, text
 from bezierplan.workspaces.limits import check_thickness
 
 
@@ -18,6 +19,7 @@ class Options(Workspace):
     made: ClassVar[str] = "grid"
 
     file: File = Field(description="a GeoJSON file in the study's folder")
+    margin: NotNegative = Field(None, description=MARGIN)
     cell: Size = Field(description="the side of a cell, a number of at least 1e-6")
     rule: Literal["overlap", "centre"] = Field(
         description="which cells are occupied: those that overlap an obstacle, or whose centre lies in one"
@@ -29,5 +31,5 @@ def load(description: dict, folder: Path) -> Grid:
     check_thickness(description["cell"], "cell:")
     content = text(description, "file", folder)
     with naming(description["file"]):
-        polygons = polygons_from_geojson(content, description["unit"])
+        polygons = polygons_from_geojson(content, description["unit"], description.get("margin"))
         return raster.from_polygons(polygons, float(description["cell"]), description["rule"])

@@ -1,7 +1,7 @@
 """An image with the YAML file of ROS's map_server."""
 
 from pathlib import Path
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -23,12 +23,13 @@ class Options(Workspace):
     most_pixels: Annotated[int, value(lambda given: type(given) is int and given >= 1, "")] = Field(
         None, description="the most pixels of an image, a whole number of at least 1"
     )
+    unknown: Literal["occupied", "free"] = Field(None, description="what pixels count as that are unknown; occupied without it")
 
 
 def load(description: dict, folder: Path) -> Grid:
     """The image that a YAML file names, which lies in the same folder."""
     with naming(description["file"]):
-        options = {key: description[key] for key in ("robot_radius", "most_pixels") if key in description}
+        options = {key: description[key] for key in ("robot_radius", "most_pixels", "unknown") if key in description}
         return ros.read(folder / description["file"], folder, description["unit"], **options)
 
 
