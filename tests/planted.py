@@ -1,15 +1,16 @@
 """Does the search find a reading that was planted? Synthetic surfaces with the choices of the five studies, on which no planner runs.
 
-    python -m tests.planted [readings]    how often several searches find it with so many readings (by default 150), two surfaces a study
+    python tests/planted.py [readings]    how often several searches find it with so many readings, two surfaces a study
 
-A surface gives each part of a study some printed numbers, whose means depend on the choices of the part, one by one and in pairs, as in runs
-of few repeats. The numbers are drawn under a reading that is then forgotten. It is found if the score of the best reading tried is at most
-`NEAR` below its own.
+A surface gives each part of a study some printed numbers, whose means depend on the choices of the part, one by one and in pairs, as in
+runs of few repeats. The numbers are drawn under a reading that is then forgotten. It is found if the score of the best reading tried is at
+most `NEAR` below its own.
 """
 
 import itertools
 import math
 import sys
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -179,10 +180,8 @@ def found_by(surface: Surface, most: int, how: Any = None) -> float:
         best = max(each.score for each in found.readings)
     else:
         paid = Paid(surface, most)
-        try:
+        with suppress(Spent):
             how(paid, surface.name)
-        except Spent:
-            pass
         best = paid.best
     return best - surface.score(surface.truth)
 

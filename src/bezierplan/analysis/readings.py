@@ -1,11 +1,11 @@
 """How likely are a paper's published numbers under a reading of what it leaves open? `search` looks for the best reading.
 
 A reading assigns a value to some choices (`study.choices`), by id; all others keep the value in force. It is scored by the joint likelihood
-of the numbers of each table and part: whole experiments are drawn from our runs, so that numbers from the same runs stay correlated, and the
-published numbers are placed in the multivariate t distribution of these draws. Numbers of different parts, which are methods that no metric
-compares with each other, count as independent given the reading. Beside the score stands how many published numbers lie in the central 95 % of what
-experiments of the paper's size would print (`statistics.prediction`). A reading under which a printed mean or extreme lies below the exact
-bound of its map is ruled out, whatever its score: no runs at all could have it.
+of the numbers of each table and part: whole experiments are drawn from our runs, so that numbers from the same runs stay correlated, and
+the published numbers are placed in the multivariate t distribution of these draws. Numbers of different parts, which are methods that no
+metric compares with each other, count as independent given the reading. Beside the score stands how many published numbers lie in the
+central 95 % of what experiments of the paper's size would print (`statistics.prediction`). A reading under which a printed mean or extreme
+lies below the exact bound of its map is ruled out, whatever its score: no runs at all could have it.
 """
 
 import hashlib
@@ -87,7 +87,8 @@ def in_world(spec: dict, job: dict, reading: Reading) -> tuple[dict, dict]:
 
 
 def under_metrics(spec: dict, published: pd.DataFrame, reading: Reading, choices: list[dict]) -> tuple[dict, pd.DataFrame]:
-    """A table's description and its published numbers with the metrics that a reading assigns to printed words, and the keys that it changes.
+    """A table's description and its published numbers with the metrics that a reading assigns to printed words, and the table's keys that
+    it changes.
 
     A metric that the table has in another entry already stays once.
     """
@@ -198,7 +199,9 @@ class Evaluator:
         self.worlds: dict[str, tuple[dict, pd.DataFrame]] = {}
 
     def __call__(self, methods: list[str], reading: Reading) -> Evaluated | None:
-        """The part of a reading that some methods' numbers decide; None if its settings exclude each other, or no workspace is as it says."""
+        """The part of a reading that some methods' numbers decide; None if its settings exclude each other, or if no
+        workspace is as it says.
+        """
         found = []
         for name, table in self.job["tables"].items():
             jobs = [job for method, job in table["jobs"].items() if method in methods]

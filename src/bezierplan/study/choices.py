@@ -77,7 +77,7 @@ def choices(study: Study) -> list[dict[str, Any]]:
 
 
 def _methods(study: Study, name: str, table: Pivot) -> list[str]:
-    """Methods of a table that are the paper's own: no baselines, no variants, and none without a printed number, unless all are compared."""
+    """Methods of a table that are the paper's own: no baselines, no variants, and none without a printed number unless all are compared."""
     methods = one_or_list(table.where.get("method", study.experiments[table.experiment].methods))
     own = [method for method in methods if method not in study.baselines and not study.methods[method].variant_of]
     rows = _published(study, name)

@@ -120,7 +120,7 @@ class Assumption(Model):
     )
     table: Literal["within"] = Field(
         None,
-        description="within: it governs this key of the tables, instead of a setting; the default is then `all`, and each alternative a column",
+        description="within: it governs this key of the tables, instead of a setting; the default is then `all`, alternatives are columns",
     )
     along: dict[Name, dict[Name, Setting]] = Field(
         {}, alias="with", description="method → further settings that go along with every alternative", min_length=1
