@@ -1,6 +1,6 @@
 """Does the search find a reading that was planted? Synthetic surfaces with the choices of the five studies, on which no planner runs.
 
-    python -m tests.planted [readings]    how often several searches find it with so many readings (by default 150), two surfaces a study
+    python tests/planted.py [readings]    how often several searches find it with so many readings, two surfaces a study
 
 A surface gives each part of a study some printed numbers, whose means depend on the choices of the part, one by one and in pairs, as in
 runs of few repeats. The numbers are drawn under a reading that is then forgotten. It is found if the score of the best reading tried is
