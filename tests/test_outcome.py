@@ -114,8 +114,8 @@ def test_verdict_at_the_papers_size_stands_next_to_that_of_many_runs():
 
 
 def test_missing_results_are_told_in_one_line(tmp_path, monkeypatch):
-    monkeypatch.setattr(outcome, "FULL", tmp_path / "full")
-    with pytest.raises(Fault, match=r"full/\w+/sensitivity.csv: not there yet; `make outcome` makes it$"):
+    monkeypatch.setattr(outcome, "RESULTS", tmp_path / "extended")
+    with pytest.raises(Fault, match=r"extended/claims.csv: not there yet; `make outcome` makes it$"):
         outcome.main(ArgumentParser(), [])
 
 

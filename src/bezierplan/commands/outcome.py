@@ -1,7 +1,8 @@
 """The outcome kept in the repository: docs/outcome and the README's table.
 
 Verdicts and numbers are those of scale extended: they are about the methods, not about the papers' samples. Next to each verdict stand the
-verdict at the paper's own number of runs, and how many readings of what the paper leaves open agree; both come from scale full.
+verdict at the paper's own number of runs and, of studies whose alternatives were tried, how many readings of what the paper leaves open
+agree; both come from scale full.
 """
 
 import shutil
@@ -44,10 +45,11 @@ def write() -> None:
     """Copy the outcome, and insert its table into the README. Raises FileNotFoundError if results are missing."""
     studies = reading.load(reading.read_config({}))
     titles = {key: study.title for key, study in studies.items()}
-    tried = pd.concat(pd.read_csv(FULL / key / SENSITIVITY) for key in titles)
-    searched = [key for key in titles if (FULL / key / READINGS[0]).is_file()]
+    varied, searched = ([key for key in titles if (FULL / key / name).is_file()] for name in (SENSITIVITY, READINGS[0]))
     found = tuple(pd.concat(pd.read_csv(FULL / key / name) for key in searched) for name in READINGS) if searched else None
-    claims = summary.with_readings(pd.read_csv(RESULTS / "claims.csv"), tried)
+    claims = pd.read_csv(RESULTS / "claims.csv")
+    if varied:
+        claims = summary.with_readings(claims, pd.concat(pd.read_csv(FULL / key / SENSITIVITY) for key in varied))
     claims = summary.with_papers_size(claims, pd.read_csv(FULL / "claims.csv"))
     numbers = pd.read_csv(RESULTS / "numbers.csv")
     measured = pd.read_csv(RESULTS / WORTH)
@@ -57,8 +59,11 @@ def write() -> None:
     shutil.copyfile(FULL / "numbers.csv", KEPT / NUMBERS_FULL)
     (KEPT / "summary.md").write_text(summary.report(numbers, claims, measured, titles, RESULTS.name, found), encoding="utf-8")
     for key in titles:
-        for name in (SENSITIVITY, *(READINGS if key in searched else ())):
-            shutil.copyfile(FULL / key / name, KEPT / f"{key}_{name}")
+        for name in (SENSITIVITY, *READINGS):
+            kept = KEPT / f"{key}_{name}"
+            kept.unlink(missing_ok=True)  # what was not made again is of another state
+            if key in (varied if name == SENSITIVITY else searched):
+                shutil.copyfile(FULL / key / name, kept)
     shutil.copyfile(RESULTS / WORTH, KEPT / WORTH)
     forecast.keep(studies, Path())
     shutil.copyfile(FULL / PICTURE, KEPT / PICTURE.replace("/figures/", "_"))
