@@ -91,8 +91,9 @@ PAGE = {"page": 1}
 
 
 def with_page(jobs):
-    """Jobs with those that they make run again: before the page, runs are judged again from their points."""
-    return jobs | PAGE | ({"verified": 1} if any(name.startswith("runs ") for name in jobs) else {})
+    """Jobs with those that they make run again: before the page, runs are judged again from their points; tables are set in LaTeX."""
+    again = {"verified": "runs ", "latex": "table "}
+    return jobs | PAGE | {job: 1 for job, kind in again.items() if any(name.startswith(kind) for name in jobs)}
 
 
 @pytest.fixture(scope="module")
@@ -166,7 +167,7 @@ EDITS = {
         {name: 1 for name in TABLES if name != "claims"},
     ),
     "how a job is logged": ("src/bezierplan/running/log.py", 'LAST = "CRITICAL "', 'LAST = "CRITICAL " + ""', {}),
-    "a title": ("config/studies/song2016/artefacts.yaml", "title: ", "title: The same, ", PAGE),
+    "a title": ("config/studies/song2016/artefacts.yaml", "title: ", "title: The same, ", PAGE | {"latex": 1}),
     "a comment": ("src/bezierplan/planners/parts/genetic.py", "# A draw close to 1", "# Hence a draw close to 1", {}),
     # Paths and convergence share code with the kind `lines`, which reads the units of metrics; the audit reads what a metric can be.
     "a metric": (
