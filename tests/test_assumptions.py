@@ -8,6 +8,7 @@ from studies import studies
 
 from bezierplan.geometry.region import region
 from bezierplan.running import execution, problems
+from bezierplan.study import choices
 from bezierplan.study.alternatives import alternatives, methods_changed, methods_of_claims, tried, with_alternative
 from bezierplan.study.jobs import job, problems_job
 
@@ -73,7 +74,11 @@ def test_alternatives_run_only_what_their_claims_compare(claim, experiment, meth
 
 @pytest.mark.parametrize("key", STUDIES)
 def test_every_setting_that_a_paper_leaves_open_is_tried(key):
-    assert tried(STUDIES[key]) == list(alternatives(STUDIES[key]))
+    """On claims, or, as a setting of competing methods alone, in the search for an interpretation."""
+    study = STUDIES[key]
+    searched = {choice["id"] for choice in choices.choices(study)}
+    left = {identity for name, (identity, _) in alternatives(study).items() if name not in tried(study)}
+    assert left <= searched
 
 
 @pytest.mark.parametrize("key", STUDIES)

@@ -141,7 +141,7 @@ def test_forecast_of_a_figure_in_a_clone(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     found = forecast.planned(["results/full/song2016/figures/figure4.svg"], anew=False)
     names = sorted(records.job_of(step.log).name for step in found)
-    runs = [f"song2016/runs/routes/{method}" for method in ("smooth", "smooth_single") for _ in range(2)]
+    runs = [f"song2016/runs/routes/{method}" for method in ("smooth", "smooth_cubic", "smooth_single") for _ in range(2)]
     assert names == ["song2016/bounds/routes", "song2016/figures/figure4", "song2016/problems/routes", *runs]
     estimated = forecast.estimates(studies(), found, tmp_path)
     assert all(estimated.values())

@@ -53,7 +53,7 @@ SENTENCES = {
     ),
     "an event": (
         SHARE | {"metric": "collided", "unit": "-"},
-        {"threshold": "none"},
+        {"threshold": "none", "metric": "feasible"},
         "in none",
         "Case 1: the robot is in an obstacle at any time in 39 % of the runs (95 % interval 29 to 49 %); the claim needs it in no run.",
     ),
@@ -116,6 +116,6 @@ def test_a_limit_of_ours_is_said_to_be_ours():
 
 
 def test_the_line_in_a_picture_is_what_a_share_is_compared_with():
-    assert [why.reference(check_of("share", threshold=each)) for each in ("all", "none", "some")] == [1.0, 0.0, 0.0]
-    assert why.reference(check_of("share", threshold=0.5, direction="at_least")) == 0.5
+    assert [why.reference(check_of("share", threshold=each, metric="feasible")) for each in ("all", "none", "some")] == [1.0, 0.0, 0.0]
+    assert why.reference(check_of("share", threshold=0.5, direction="at_least", metric="feasible")) == 0.5
     assert why.reference(check_of("lower", direction="lower")) == 0.0

@@ -18,6 +18,7 @@ WORK = {
     "clairvoyant": "problems and exact bounds",
     "table": "tables, claims, statistics",
     "listing": "tables, claims, statistics",
+    "latex": "tables, claims, statistics",
     "claims": "tables, claims, statistics",
     "audit": "tables, claims, statistics",
     "worth": "tables, claims, statistics",
@@ -26,6 +27,7 @@ WORK = {
     "alternative": "alternatives: their runs and claims",
     "readings_of": "readings: their runs and comparisons",
     "figure": "drawing figures",
+    "narrow_figure": "drawing figures",
     "verified": "judging stored runs again",
     "page": "the page",
 }
