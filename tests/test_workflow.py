@@ -352,7 +352,7 @@ def test_workflow_that_is_killed_again_and_again_leaves_no_job_and_make_goes_on_
         {file.name: file.read_bytes() for file in place.glob("results/full/song2016/figures/*")} for place in (finished, tree)
     )
     assert drawings.keys() == drawn_again.keys()
-    assert {name for name, content in drawings.items() if drawn_again[name] != content} <= {"work.csv", "work.png", "work.svg"}
+    assert {name for name, content in drawings.items() if drawn_again[name] != content} <= {"work.csv", "work.pdf", "work.png", "work.svg"}
 
 
 # One kernel that calls another one of another module.
