@@ -70,7 +70,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
     unit = scene.problems[panel["experiment"]][row["problem"]].workspace.unit
     axes.set_xlim(0, 1)
     axes.set_xlabel("curve parameter t")
-    axes.set_ylabel(f"{row['quantity']}, left turns positive (1/{unit})")
+    axes.set_ylabel(f"signed {row['quantity']} (1/{unit})")
     axes.grid(visible=True)
     if not math.isnan(row["limit"]):
         axes.axhline(
