@@ -12,6 +12,7 @@ from studies import studies
 
 from bezierplan.analysis import results
 from bezierplan.running import columns, log, problems, rows
+from bezierplan.running.inputs import Files
 from bezierplan.study import definition, jobs, page, targets
 from bezierplan.study.experiments import Experiment
 from bezierplan.workspaces.grid import from_lines
@@ -41,8 +42,7 @@ def behind(given, scale):
     )
     files = targets.files_of_smoke(given) if scale == "smoke" else []
     for key, name in shown:
-        kind = "table" if name in given[key].tables else "figure"
-        files += targets.artefact_inputs(given, scale, key, **{kind: name})["runs"]
+        files += [chunk for shown in targets.shown_by(given[key], scale, name).values() for chunk in shown.chunks]
     return {(place[2], place[4], place[5]) for place in (Path(file).parts for file in files) if place[3] == "runs"}
 
 
@@ -92,8 +92,8 @@ def chunks(tmp_path):
 
 
 def read(folder):
-    files = [str(folder / "runs/first/mine" / f"{chunk}.parquet") for chunk in range(2)]
-    return results.read(files, 6, str(folder / "problems.parquet"), str(folder / "bounds.parquet")).runs
+    chunks = [str(folder / "runs/first/mine" / f"{chunk}.parquet") for chunk in range(2)]
+    return results.read(Files({"mine": chunks}, str(folder / "problems.parquet"), str(folder / "bounds.parquet")), 6, "first").runs
 
 
 def test_results_are_cut_at_the_number_of_repeats(chunks):

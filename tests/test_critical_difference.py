@@ -5,10 +5,11 @@ import pandas as pd
 import pytest
 from matplotlib.figure import Figure
 from matplotlib.text import Text
+from panels import options_of, panels_of
 
 from bezierplan.analysis.results import Results
 from bezierplan.figures import sheet
-from bezierplan.figures.panels import boxes, critical_difference
+from bezierplan.figures.panels import Sources, boxes, critical_difference, panel_of
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.problem import Problem
 
@@ -48,7 +49,7 @@ DEMSAR = {
 
 
 def test_ranks_and_critical_difference_are_demsars():
-    frame = critical_difference.data(results(DEMSAR))
+    frame = critical_difference.data(results(DEMSAR), options_of(critical_difference))
     ranks = frame[frame["part"] == "rank"].set_index("method")["value"]
     assert ranks.round(3).to_dict() == {"with_both": 1.964, "with_m": 2.000, "with_cf": 2.893, "c45": 3.143}
     assert list(ranks) == sorted(ranks)
@@ -60,9 +61,9 @@ def test_ranks_and_critical_difference_are_demsars():
 
 
 def test_bars_overlap_where_ranks_differ_by_at_most_the_critical_difference():
-    frame = critical_difference.data(results(DEMSAR))
+    frame = critical_difference.data(results(DEMSAR), options_of(critical_difference))
     axes = Figure().subplots()
-    critical_difference.draw(axes, frame, sheet.Scene({}, {}, {}, "m"), critical_difference.Options.complete({}))
+    critical_difference.draw(axes, frame, sheet.Scene({}, {}, {}, "m"), options_of(critical_difference))
     bars = [line.get_xdata() for line in axes.lines if line.get_label() == "critical difference"]
     ranks = frame.loc[frame["part"] == "rank", "value"].to_numpy()
     for one in range(4):
@@ -73,16 +74,16 @@ def test_bars_overlap_where_ranks_differ_by_at_most_the_critical_difference():
 
 def test_ranks_need_three_methods_in_every_repeat():
     with pytest.raises(ValueError, match="at least three methods"):
-        critical_difference.data(results({"a": [1, 2], "b": [2, 1]}))
+        critical_difference.data(results({"a": [1, 2], "b": [2, 1]}), options_of(critical_difference))
     found = results({"a": [1, 2], "b": [2, 1], "c": [3, 4]})
     with pytest.raises(ValueError, match="in every repeat"):
-        critical_difference.data(found._replace(runs=found.runs.iloc[1:]))
+        critical_difference.data(found._replace(runs=found.runs.iloc[1:]), options_of(critical_difference))
 
 
 def drawn(found: Results, panel: dict, folder) -> list[str]:
     file = str(folder / "figure.csv")
-    sheet.write_data(sheet.data([panel], {"routes": found}, {}), file)
-    figure = sheet.draw([panel], sheet.read_data(file), sheet.Scene({"routes": found.problems}, {}, {"c45": "C4.5"}, "m"), 1)
+    sheet.write_data(sheet.data(panels_of([panel]), Sources({"routes": found})), file)
+    figure = sheet.draw(panels_of([panel]), sheet.read_data(file), sheet.Scene({"routes": found.problems}, {}, {"c45": "C4.5"}, "m"), 1)
     return [text.get_text() for text in figure.findobj(Text) if text.get_text()]
 
 
@@ -99,8 +100,8 @@ def test_published_ranks_stand_beside_ours(tmp_path):
     assert "published mean rank" in drawn(found, panel, tmp_path)
     assert "published mean rank" not in drawn(found, {key: panel[key] for key in ("kind", "experiment")}, tmp_path)
     axes = Figure().subplots()
-    frame = critical_difference.data(found, printed="table5")
-    critical_difference.draw(axes, frame, sheet.Scene({}, {}, {}, "m"), critical_difference.Options.complete(panel))
+    frame = critical_difference.data(found, options_of(critical_difference, printed="table5"))
+    critical_difference.draw(axes, frame, sheet.Scene({}, {}, {}, "m"), panel_of(panel))
     (mark,) = [line for line in axes.lines if line.get_label() == "published mean rank"]
     assert (mark.get_xdata().tolist(), mark.get_ydata()) == ([2.5], [3]), "in the row of its method, the last one"
 
@@ -112,9 +113,9 @@ def test_far_published_means_stand_at_the_edge(tmp_path):
     assert {"30.25", "published mean", "published mean, off the scale"} <= set(words)
     axes = Figure().subplots()
     near = results({"near": [8.0, 9.0, 10.0], "far": [8.0, 8.5, 9.0]}, printed("objective", {"near": 10.4, "far": 30.25}))
-    drawn_frame = boxes.data(near, metric="objective")
-    boxes.draw(axes, drawn_frame, sheet.Scene({}, {}, {}, "m"), boxes.Options.complete(panel))
+    drawn_frame = boxes.data(near, options_of(boxes, metric="objective"))
+    boxes.draw(axes, drawn_frame, sheet.Scene({}, {}, {}, "m"), panel_of(panel))
     assert axes.get_xlim()[0] < 8 < 10.4 < axes.get_xlim()[1] < 11, "what is not far stays in sight"
-    frame = boxes.data(found, metric="objective", limits=True).query("method.isna()")
+    frame = boxes.data(found, options_of(boxes, metric="objective", limits=True)).query("method.isna()")
     assert dict(zip(frame["part"], frame["value"])) == {"reference": 2.5, "bound": 2.0}
     assert {"best known path of the same kind", "exact shortest path"} <= set(words)

@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.figure import Figure
+from panels import options_of
 
 from bezierplan.figures import sheet
 from bezierplan.figures.panels import along_path, boxes, convergence, dots, lines
@@ -15,9 +16,9 @@ SCENE = sheet.Scene({"first": {"across": Problem("across", GRID, (0.5, 0.5), (1.
 COUNTS = {"runs": 10, "feasible_runs": 9}
 
 
-def drawn(kind, frame, **panel):
+def drawn(kind, frame, **keys):
     axes = Figure().add_subplot()
-    kind.draw(axes, frame, SCENE, kind.Options.complete({"experiment": "first"} | panel))
+    kind.draw(axes, frame, SCENE, options_of(kind, experiment="first", **keys))
     return axes
 
 
@@ -114,7 +115,7 @@ def test_a_dot_stands_at_its_statistic():
 def test_a_quantity_along_a_path_stands_over_the_parameter(monkeypatch):
     monkeypatch.setattr(along_path, "run_note", lambda *_: "")
     frame = pd.DataFrame({"t": [0.0, 0.5, 1.0], "value": [0.25, 0.75, 0.5], "limit": 0.6, "problem": "across", "quantity": "curvature"})
-    axes = drawn(along_path, frame, quantity="curvature")
+    axes = drawn(along_path, frame, pick={"repeat": 3}, quantity="curvature")
     assert labelled(axes, "path") == [[0, 0.5, 1], [0.25, 0.75, 0.5]]
     assert labelled(axes, "largest magnitude") == [[0.5], [0.75]]
     assert labelled(axes, "published limit: 0.6 1/m, for turns to either side")[1] == pytest.approx([0.6, 0.6])

@@ -6,6 +6,7 @@ from pathlib import Path as File
 import numpy as np
 import pandas as pd
 import pytest
+from panels import options_of
 from studies import arguments, study
 
 from bezierplan.analysis.papers import elhoseny2017
@@ -103,7 +104,7 @@ def curve_of(marks):
 
 
 def test_the_genes_of_a_chromosome_are_those_of_its_field():
-    marks = drawing.data(elhoseny2017.chromosome(**given("chromosome")))
+    marks = drawing.data(elhoseny2017.chromosome(**given("chromosome")), options_of(drawing))
     genes = marks[marks["mark"] == "cell"].sort_values(["gene", "width"])
     assert len(genes) == 50
     assert (genes["value"].to_numpy()[::2] == genes["value"].to_numpy()[1::2]).all()
@@ -126,7 +127,7 @@ def test_the_genes_of_a_chromosome_are_those_of_its_field():
 
 
 def test_ten_points_are_judged_in_turn():
-    marks = drawing.data(elhoseny2017.validation(**given("validation")))
+    marks = drawing.data(elhoseny2017.validation(**given("validation")), options_of(drawing))
     circles = marks[marks["mark"] == "circle"]
     assert len(circles) == 3
     assert set(circles["radius"]) == {1.0}

@@ -14,12 +14,13 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PolyCollection
 from matplotlib.figure import Figure
 from matplotlib.text import Text
+from panels import options_of, panels_of
 
 from bezierplan.analysis import metrics
 from bezierplan.analysis.results import Results
 from bezierplan.figures import panels as kinds_of_panel
 from bezierplan.figures import sheet, style
-from bezierplan.figures.panels import along_path, boxes, convergence, dots, drawing, lines, paths, workspace
+from bezierplan.figures.panels import Sources, along_path, boxes, convergence, dots, drawing, lines, paths, workspace
 from bezierplan.geometry import curves
 from bezierplan.workspaces import ground, random_field
 from bezierplan.workspaces.circles import Circles
@@ -169,11 +170,16 @@ def gallery(panels: int) -> list[dict]:
     return [{"kind": "paths", "title": f"n = {n}", **run, "control": "points", "view": [-9, 9, -4, 5]} for n in range(panels)]
 
 
+def sources(found: Results) -> Sources:
+    """What panels of a figure draw from."""
+    return Sources({"routes": found}, scene(found).workspaces, {"sequence": sequence, "marks": marks})
+
+
 def drawn(found: Results, own: list[dict], columns: int, folder: File) -> Figure:
     """A figure as the workflow makes it: by way of the csv."""
     file = str(folder / "figure.csv")
-    sheet.write_data(sheet.data(own, {"routes": found}, scene(found).workspaces, {"sequence": sequence, "marks": marks}), file)
-    return sheet.draw(own, sheet.read_data(file), scene(found), columns)
+    sheet.write_data(sheet.data(panels_of(own), sources(found)), file)
+    return sheet.draw(panels_of(own), sheet.read_data(file), scene(found), columns)
 
 
 def words(figure: Figure) -> list[str]:
@@ -183,7 +189,7 @@ def words(figure: Figure) -> list[str]:
 
 def test_csv_keeps_every_number(tmp_path):
     found = results()
-    frame = sheet.data(panels(), {"routes": found}, scene(found).workspaces)
+    frame = sheet.data(panels_of(panels()), sources(found))
     assert frame.columns[0] == "panel"
     assert sorted(frame["panel"].unique()) == [0, 1, 2, 3, 4]
     sheet.write_data(frame, str(tmp_path / "figure.csv"))
@@ -194,7 +200,7 @@ def test_csv_keeps_every_number(tmp_path):
 
 def test_paths_data_holds_all_that_is_drawn():
     found = results()
-    frame = paths.data(found, pick=LOWEST)
+    frame = paths.data(found, options_of(paths, pick=LOWEST))
     assert set(frame["run"]) == {"study/routes/0_15/smooth/1"}, "the shortest run is not feasible"
     parts = {part: points[["x", "y"]].to_numpy() for part, points in frame.groupby("part")}
     assert set(parts) == {"start", "target", "bound", "hull", "control", "path"}
@@ -208,10 +214,10 @@ def test_paths_side_by_side(tmp_path):
     found = results()
     other = found.runs.assign(method="other", id=found.runs["id"].str.replace("smooth", "other"), length=found.runs["length"] + 1)
     both = found._replace(runs=pd.concat([found.runs, other], ignore_index=True))
-    frame = paths.data(both, pick=LOWEST, hue="method")
+    frame = paths.data(both, options_of(paths, pick=LOWEST, hue="method"))
     assert set(frame["part"]) == {"start", "target", "bound", "path"}, "no control points"
     for method, own in frame.groupby("method"):
-        alone = paths.data(both._replace(runs=both.runs[both.runs["method"] == method]), pick=LOWEST, control="none")
+        alone = paths.data(both._replace(runs=both.runs[both.runs["method"] == method]), options_of(paths, pick=LOWEST, control="none"))
         pd.testing.assert_frame_equal(own.reset_index(drop=True)[alone.columns], alone)
     panel = {"kind": "paths", "experiment": "routes", "pick": LOWEST, "hue": "method", "where": {"method": ["other", "smooth"]}}
     figure = drawn(both, [panel], 1, tmp_path)
@@ -240,7 +246,7 @@ def test_paths_side_by_side_give_the_measure_that_is_asked_for(tmp_path):
 
 def test_a_bare_field_shows_no_path(tmp_path):
     panel = panels()[0] | {"bare": True, "letters": ["S", "T"]}
-    assert set(paths.data(results(), pick=LOWEST, bare=True)["part"]) == {"start", "target"}
+    assert set(paths.data(results(), options_of(paths, pick=LOWEST, bare=True))["part"]) == {"start", "target"}
     figure = drawn(results(), [panel], 1, tmp_path)
     assert {"S", "T", "start", "target"} <= set(words(figure))
     assert not any("run" in text or "path" in text for text in words(figure))
@@ -250,7 +256,7 @@ def test_only_runs_that_have_some_of_a_metric_are_picked():
     found = results((True, True, True))
     inside = [5.0, 5.0, 25.0, 15.0, 5.0, 35.0, 5.0, 35.0, 35.0, 35.0]  # the second one is the centre of an occupied cell
     found.runs.at[0, "path_points"] = inside
-    best, having = (paths.data(found, pick=LOWEST | more) for more in ({}, {"having": "occupied_points"}))
+    best, having = (paths.data(found, options_of(paths, pick=LOWEST | more)) for more in ({}, {"having": "occupied_points"}))
     assert best["run"].iloc[0].endswith("/2")
     assert having["run"].iloc[0].endswith("/0")
     assert having.loc[having["part"] == "occupied", ["x", "y"]].to_numpy().tolist() == [[25, 15]]
@@ -261,7 +267,7 @@ def test_cells_that_changed_are_marked(tmp_path):
     found = results()
     other = found.problems["0_15"]._replace(name="before", workspace=from_lines(["....", ".#..", "..##", "...."], 10.0, "unit"))
     found = found._replace(problems=found.problems | {"before": other})
-    frame = paths.data(found, pick=LOWEST, changed_from="before")
+    frame = paths.data(found, options_of(paths, pick=LOWEST, changed_from="before"))
     changed = {part: own[["x", "y"]].to_numpy().tolist() for part, own in frame.groupby("part") if part in ("appeared", "vanished")}
     now, before = found.problems["0_15"].workspace.occupied, other.workspace.occupied
     assert {part: len(cells) for part, cells in changed.items()} == {"appeared": (now & ~before).sum(), "vanished": (before & ~now).sum()}
@@ -272,12 +278,12 @@ def test_cells_that_changed_are_marked(tmp_path):
     figure = drawn(found, [panels()[0] | {"changed_from": "before"}], 1, tmp_path)
     assert {"occupied since the change", "free since the change"} <= set(words(figure))
     with pytest.raises(ValueError, match="changed_from: gone: not a problem of the experiment"):
-        paths.data(found, pick=LOWEST, changed_from="gone")
+        paths.data(found, options_of(paths, pick=LOWEST, changed_from="gone"))
 
 
 def test_the_shortest_path_from_cell_to_cell_has_the_length_of_the_optimum(tmp_path):
     found = results()
-    frame = paths.data(found, pick=LOWEST, cell_optimum=True)
+    frame = paths.data(found, options_of(paths, pick=LOWEST, cell_optimum=True))
     way = frame.loc[frame["part"] == "optimum", ["x", "y"]].to_numpy()
     np.testing.assert_array_equal(way[[0, -1]], [[5, 5], [35, 35]])
     least = ground.least_energy(grid(), 1.0, False, 0, 15)
@@ -291,7 +297,7 @@ def test_a_path_stands_beside_the_shortest_one_printed(tmp_path):
     numbers = {"table": ["table1", "table1", "table2"], "method": "smooth", "metric": "length", "statistic": ["min", "max", "min"]}
     found = results()._replace(published=pd.DataFrame({**numbers, "value": [44.125, 70.0, 1.0]}))
     panel = panels()[0] | {"printed": "table1"}
-    assert set(paths.data(found, pick=LOWEST, printed="table1")["printed"]) == {44.125}
+    assert set(paths.data(found, options_of(paths, pick=LOWEST, printed="table1"))["printed"]) == {44.125}
     assert any("shortest printed 44.12 unit" in text for text in words(drawn(found, [panel], 1, tmp_path)))
 
 
@@ -310,17 +316,17 @@ def test_functions_get_the_published_tables_that_they_ask_for():
 
     published = {"table1": pd.DataFrame({"k": [1, 2], "value": [3.0, 4.0]})}
     panel = {"kind": "lines", "data": "double", "published": True, "x": "k", "metric": "value"}
-    assert sheet.data([panel], {}, {}, {"double": double}, published)["value"].tolist() == [6, 8]
+    assert sheet.data(panels_of([panel]), Sources(functions={"double": double}, published=published))["value"].tolist() == [6, 8]
 
 
 def test_paths_meet_the_corners_of_a_polyline():
-    frame = paths.data(results(curve="polyline"), pick=LOWEST)
+    frame = paths.data(results(curve="polyline"), options_of(paths, pick=LOWEST))
     points = {part: {tuple(point) for point in own[["x", "y"]].round(9).to_numpy()} for part, own in frame.groupby("part")}
     assert points["control"] <= points["path"]
 
 
 def test_convergence_prolongs_runs_that_stopped_early():
-    frame = convergence.data(results(), pick=LOWEST)
+    frame = convergence.data(results(), options_of(convergence, pick=LOWEST))
     assert list(frame["generation"]) == [0, 1, 2]
     assert list(frame["objective"]) == [90, 70, 59]
     assert frame["median"].iloc[2] == 60
@@ -328,7 +334,7 @@ def test_convergence_prolongs_runs_that_stopped_early():
 
 
 def test_convergence_of_groups_holds_last_values():
-    frame = convergence.data(comparison(), hue="method")
+    frame = convergence.data(comparison(), options_of(convergence, hue="method"))
     assert set(frame["method"]) == {"smooth", "coarse", "random"}
     assert list(frame["problem"].unique()) == ["field"]
     assert set(frame["runs"]) == {24}
@@ -336,21 +342,21 @@ def test_convergence_of_groups_holds_last_values():
     coarse = frame.loc[frame["method"] == "coarse", "objective"]
     middle = 20 + np.mean([2, 3, 5]) + np.mean(range(8))
     np.testing.assert_allclose(coarse, [middle + 9, middle, middle])
-    median = convergence.data(comparison(), hue="points", statistic="median")
+    median = convergence.data(comparison(), options_of(convergence, hue="points", statistic="median"))
     np.testing.assert_allclose(median.loc[median["points"] == 3, "objective"].iloc[-1], 33 + 3.5)
 
 
 def test_convergence_goes_on_to_the_end_that_is_asked_for():
-    frame = convergence.data(comparison(), hue="method", until=5)
+    frame = convergence.data(comparison(), options_of(convergence, hue="method", until=5))
     coarse = frame[frame["method"] == "coarse"]
     assert list(coarse["generation"]) == [0, 1, 2, 3, 4, 5]
     assert coarse["objective"].iloc[2:].nunique() == 1
-    assert list(convergence.data(results(), pick=LOWEST, until=4)["objective"]) == [90, 70, 59, 59, 59]
-    assert list(convergence.data(results(), pick=LOWEST, until=1)["generation"]) == [0, 1, 2], "no run is cut"
+    assert list(convergence.data(results(), options_of(convergence, pick=LOWEST, until=4))["objective"]) == [90, 70, 59, 59, 59]
+    assert list(convergence.data(results(), options_of(convergence, pick=LOWEST, until=1))["generation"]) == [0, 1, 2], "no run is cut"
 
 
 def test_convergence_of_groups_has_the_interval_of_its_statistic():
-    frame = convergence.data(comparison(), hue="method", until=5)
+    frame = convergence.data(comparison(), options_of(convergence, hue="method", until=5))
     assert (frame["low95"] < frame["objective"]).all()
     assert (frame["objective"] < frame["high95"]).all()
     assert frame[frame["generation"] > 2].groupby("method")[["low95", "high95"]].nunique().eq(1).all(axis=None)
@@ -362,7 +368,7 @@ def test_convergence_of_groups_has_the_interval_of_its_statistic():
 def test_convergence_marks_the_printed_means_of_one_table(tmp_path):
     published = pd.concat([printed_means().assign(table="table3"), printed_means().assign(table="table4", value=1.0)], ignore_index=True)
     found = comparison(published[published["points"].isna()])
-    frame = convergence.data(found, hue="method", until=5, printed="table3")
+    frame = convergence.data(found, options_of(convergence, hue="method", until=5, printed="table3"))
     marked = frame[frame["printed"].notna()]
     assert marked[["method", "generation", "printed"]].to_numpy().tolist() == [["smooth", 5, 36.5]]
     panel = {"kind": "convergence", "experiment": "routes", "hue": "method", "printed": "table3"}
@@ -371,13 +377,13 @@ def test_convergence_marks_the_printed_means_of_one_table(tmp_path):
     (strip,) = figure.axes[0].child_axes
     (mark,) = [line for line in strip.lines if line.get_label() == "published final mean"]
     assert mark.get_ydata() == [36.5]
-    assert "printed" not in convergence.data(comparison(), hue="method", printed="table3")
+    assert "printed" not in convergence.data(comparison(), options_of(convergence, hue="method", printed="table3"))
 
 
 def test_last_values_stand_beside_the_lines_with_their_intervals(tmp_path):
     panel = comparing_panels()[0]
     figure = drawn(comparison(), [panel], 1, tmp_path)
-    frame = convergence.data(comparison(), hue="method").groupby("method").last()
+    frame = convergence.data(comparison(), options_of(convergence, hue="method")).groupby("method").last()
     (strip,) = figure.axes[0].child_axes
     marks = [line for line in strip.lines if line.get_marker() not in ("", "None")]
     assert [line.get_ydata()[0] for line in marks] == pytest.approx(list(frame.loc[panel["where"]["method"], "objective"]))
@@ -393,20 +399,14 @@ def test_at_most_five_bands_lie_on_each_other():
         own = comparison()._replace(runs=many[many["method"].isin([f"m{n}" for n in range(count)])].reset_index(drop=True))
         for kind, options in ((convergence, {"hue": "method"}), (lines, {"x": "points", "metric": "objective", "hue": "method"})):
             axes = Figure().subplots()
-            panel = kind.Options.complete({"experiment": "routes", **options})
-            kind.draw(axes, kind.data(own, **options), sheet.Scene({}, {}, {}, "m"), panel)
+            panel = options_of(kind, **options)
+            kind.draw(axes, kind.data(own, panel), sheet.Scene({}, {}, {}, "m"), panel)
             bands = [each for each in axes.collections if isinstance(each, PolyCollection)]
             assert len(bands) == (count if banded else 0)
 
 
-@pytest.mark.parametrize("options", [{}, {"pick": LOWEST, "hue": "method"}])
-def test_convergence_needs_pick_or_hue(options):
-    with pytest.raises(ValueError, match="either pick or hue"):
-        convergence.data(comparison(), **options)
-
-
 def test_lines_have_intervals_and_single_repeats():
-    frame = lines.data(comparison(), x="points", metric="length", hue="method", repeats=[1])
+    frame = lines.data(comparison(), options_of(lines, x="points", metric="length", hue="method", repeats=[1]))
     statistic = frame[frame["part"] == "statistic"]
     assert len(statistic) == 9
     assert set(statistic["n"]) == {6}, "lengths are of feasible runs"
@@ -415,15 +415,17 @@ def test_lines_have_intervals_and_single_repeats():
     coarse = frame[(frame["part"] == "repeat") & (frame["method"] == "coarse")]
     assert list(coarse["value"]) == [23, 24, 26]
     with pytest.raises(ValueError, match="equal points"):
-        lines.data(comparison(), x="points", metric="length", repeats=[1])
+        lines.data(comparison(), options_of(lines, x="points", metric="length", repeats=[1]))
 
 
 def test_order_of_runs_changes_no_bit():
     found = comparison()
     other = found._replace(runs=found.runs.sample(frac=1, random_state=1).reset_index(drop=True))
     for kind, options in ((lines, {"x": "points", "hue": "method"}), (dots, {"x": "points", "hue": "method"}), (boxes, {})):
-        pd.testing.assert_frame_equal(kind.data(found, metric="objective", **options), kind.data(other, metric="objective", **options))
-    pd.testing.assert_frame_equal(convergence.data(found, hue="method"), convergence.data(other, hue="method"))
+        panel = options_of(kind, metric="objective", **options)
+        pd.testing.assert_frame_equal(kind.data(found, panel), kind.data(other, panel))
+    panel = options_of(convergence, hue="method")
+    pd.testing.assert_frame_equal(convergence.data(found, panel), convergence.data(other, panel))
 
 
 def test_lines_draw_the_table_of_a_function(tmp_path):
@@ -458,7 +460,7 @@ def test_what_has_no_order_is_not_joined(tmp_path):
 
 def test_boxes_show_published_ends_and_a_limit(tmp_path):
     ends = pd.DataFrame({"method": "smooth", "metric": "objective", "statistic": ["min", "max"], "value": [31.0, 44.0]})
-    frame = boxes.data(comparison(ends), metric="objective", limit=33.5)
+    frame = boxes.data(comparison(ends), options_of(boxes, metric="objective", limit=33.5))
     assert frame.loc[frame["part"] == "published_end", ["method", "value"]].to_numpy().tolist() == [["smooth", 31.0], ["smooth", 44.0]]
     assert frame.loc[frame["part"] == "limit", "value"].tolist() == [33.5]
     panel = {"kind": "boxes", "experiment": "routes", "metric": "objective", "limit": 33.5}
@@ -470,7 +472,7 @@ def test_boxes_end_at_the_last_value_within_reach():
     found = comparison()
     values = np.array([0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 90.0])
     found.runs["objective"] = np.tile(values, 9)
-    frame = boxes.data(found, metric="objective")
+    frame = boxes.data(found, options_of(boxes, metric="objective"))
     parts = frame[frame["method"] == "smooth"].groupby("part")["value"].agg(list)
     assert parts["quartile1"] == [pytest.approx(np.quantile(np.tile(values, 3), 0.25))]
     assert (parts["low"], parts["high"], parts["beyond"]) == ([0], [6], [90] * 3)
@@ -479,12 +481,12 @@ def test_boxes_end_at_the_last_value_within_reach():
 
 def test_boxes_show_the_published_means_of_their_runs(tmp_path):
     found = comparison(printed_means())
-    frame = boxes.data(found, metric="objective")
+    frame = boxes.data(found, options_of(boxes, metric="objective"))
     shown = frame.loc[frame["part"] == "published", ["method", "value"]].to_numpy().tolist()
     assert shown == [["smooth", 36.5]], "not that of one of their conditions"
     three = found._replace(runs=found.runs[found.runs["points"] == 3])
-    assert list(boxes.data(three, metric="objective").query("part == 'published'")["value"]) == [36.5]
-    assert "published" not in set(boxes.data(comparison(), metric="objective")["part"])
+    assert list(boxes.data(three, options_of(boxes, metric="objective")).query("part == 'published'")["value"]) == [36.5]
+    assert "published" not in set(boxes.data(comparison(), options_of(boxes, metric="objective"))["part"])
     figure = drawn(found, comparing_panels()[7:], 1, tmp_path)
     assert "published mean" in words(figure)
 
@@ -509,12 +511,12 @@ def test_published_means_off_the_scale_are_told_by_their_range(tmp_path):
 def test_dots_say_who_has_no_feasible_run_and_know_the_bound(tmp_path):
     found = comparison()
     found.runs.loc[found.runs["method"] == "random", "feasible"] = False
-    frame = dots.data(found, x="points", hue="method", metric="length")
+    frame = dots.data(found, options_of(dots, x="points", hue="method", metric="length"))
     assert len(frame) == 9
     assert set(frame.loc[frame["method"] != "random", "bound"]) == {18.5}
     assert frame.loc[frame["method"] == "random", "bound"].isna().all()
     assert frame.loc[frame["method"] == "random", "value"].isna().all()
-    assert dots.data(found, x="points", hue="method", metric="feasible", statistic="share")["bound"].isna().all()
+    assert dots.data(found, options_of(dots, x="points", hue="method", metric="feasible", statistic="share"))["bound"].isna().all()
     said = words(drawn(found, comparing_panels()[5:6], 1, tmp_path))
     assert {"hollow: some runs are not feasible", "no feasible run"} <= set(said)
     found.runs["feasible"] = True
@@ -527,7 +529,7 @@ def test_dots_without_a_bound_name_none(tmp_path):
 
 
 def test_dots_show_what_the_paper_prints_of_their_runs():
-    frame = dots.data(comparison(printed_means().iloc[1:]), x="points", hue="method", metric="objective")
+    frame = dots.data(comparison(printed_means().iloc[1:]), options_of(dots, x="points", hue="method", metric="objective"))
     printed = frame.set_index(["method", "points"])["published"]
     assert printed.dropna().to_dict() == {("smooth", 5): 38.0}
 
@@ -535,11 +537,11 @@ def test_dots_show_what_the_paper_prints_of_their_runs():
 def test_lines_show_what_the_paper_prints_where_it_belongs():
     printed = printed_means().assign(table="table6").iloc[1:2]
     options = {"x": "points", "metric": "objective", "hue": "method", "printed": "table6"}
-    frame = lines.data(comparison(pd.concat([printed, printed.assign(table="table7", value=1.0)])), **options)
+    frame = lines.data(comparison(pd.concat([printed, printed.assign(table="table7", value=1.0)])), options_of(lines, **options))
     shown = frame[frame["part"] == "published"]
     assert shown[["method", "points", "value"]].to_numpy().tolist() == [["smooth", 5, 38.0]]
     axes = Figure().subplots()
-    lines.draw(axes, frame, sheet.Scene({}, {}, {}, "m"), lines.Options.complete({"experiment": "routes", **options}))
+    lines.draw(axes, frame, sheet.Scene({}, {}, {}, "m"), options_of(lines, **options))
     (mark,) = [line for line in axes.lines if line.get_marker() == style.PUBLISHED_MARK["marker"] and len(line.get_xdata()) == 1]
     assert (mark.get_xdata().tolist(), mark.get_ydata().tolist()) == ([5], [38.0])
 
@@ -554,25 +556,26 @@ def test_tangents_are_no_control_points(tmp_path):
     found = results()
     found.runs["path_curve"] = "ferguson"
     found.runs["path_points"] = [[5, 5, 30, 0, 5, 25, 0, 30, 35, 35, 30, 0.0]] * 3
-    assert set(paths.data(found, pick=LOWEST)["part"]) == {"start", "target", "bound", "path"}
+    assert set(paths.data(found, options_of(paths, pick=LOWEST))["part"]) == {"start", "target", "bound", "path"}
     drawing = words(drawn(found, panels()[:1], 1, tmp_path))
     assert not any("no path" in text or "distinct" in text for text in drawing)
-    assert "hull" not in set(paths.data(results(curve="spline"), pick=LOWEST)["part"])
+    assert "hull" not in set(paths.data(results(curve="spline"), options_of(paths, pick=LOWEST))["part"])
 
 
 def test_control_points_alone_or_not_at_all():
-    parts = {control: set(paths.data(results(), pick=LOWEST, control=control)["part"]) for control in ("all", "points", "none")}
+    parts = {
+        control: set(paths.data(results(), options_of(paths, pick=LOWEST, control=control))["part"])
+        for control in ("all", "points", "none")
+    }
     assert parts["all"] - parts["none"] == {"control", "hull"}
     assert parts["points"] - parts["none"] == {"points"}
 
 
 def test_explicit_path_needs_no_run(tmp_path):
-    frame = paths.data(None, explicit={"curve": "bezier", "points": [[0, 0], [1, 2], [3, 0]]})
+    frame = paths.data(None, options_of(paths, explicit={"curve": "bezier", "points": [[0, 0], [1, 2], [3, 0]]}))
     assert frame.loc[frame["part"] == "target", ["x", "y"]].to_numpy().tolist() == [[3, 0]]
     figure = drawn(comparison(), comparing_panels()[6:7], 1, tmp_path)
     assert figure.axes[0].get_xlabel() == "x (unit)"
-    with pytest.raises(ValueError, match="either pick or explicit"):
-        paths.data(results())
 
 
 def test_view_cuts_what_is_drawn_but_not_what_is_listed(tmp_path):
@@ -593,7 +596,7 @@ def test_narrow_panels_have_short_notes_and_name_axes_once(tmp_path):
 
 def test_along_path_leaves_out_where_the_curve_stands_still(tmp_path):
     found = results()
-    frame = along_path.data(found, pick=LOWEST, quantity="curvature", limit=0.1)
+    frame = along_path.data(found, options_of(along_path, pick=LOWEST, quantity="curvature", limit=0.1))
     still = frame.loc[frame["value"].isna(), "t"]
     assert frame["value"].abs().max() == 0, "it is straight"
     assert len(still) > 0
@@ -604,7 +607,7 @@ def test_along_path_leaves_out_where_the_curve_stands_still(tmp_path):
 
 @pytest.mark.parametrize(("numbers", "printed"), [("all", 16), ("free", 13), ("none", 0)])
 def test_workspace_numbers(numbers, printed):
-    frame = workspace.data(grid(), numbers=numbers)
+    frame = workspace.data(grid(), options_of(workspace, numbers=numbers))
     assert frame["number"].notna().sum() == printed
     centre = frame[frame["number"] == 7]
     if printed:
@@ -612,15 +615,15 @@ def test_workspace_numbers(numbers, printed):
 
 
 def test_embedding_marks_surplus_cells():
-    frame = workspace.data(from_lines(["..."] * 3, 10.0, "unit"), numbers="all", embed=True)
+    frame = workspace.data(from_lines(["..."] * 3, 10.0, "unit"), options_of(workspace, numbers="all", embed=True))
     assert set(frame.loc[frame["part"] == "surplus", "number"]) == {3, 7, 11, 12, 13, 14, 15}
 
 
 @pytest.mark.parametrize(("name", "parts"), [("circles", {"corner", "circle"}), ("polygons", {"corner", "ring"})])
 def test_workspaces_without_cells(name, parts, tmp_path):
-    assert set(workspace.data(other_workspaces()[name])["part"]) == parts
+    assert set(workspace.data(other_workspaces()[name], options_of(workspace))["part"]) == parts
     with pytest.raises(ValueError, match="kind grid"):
-        workspace.data(other_workspaces()[name], embed=True)
+        workspace.data(other_workspaces()[name], options_of(workspace, embed=True))
     figure = drawn(results(), [{"kind": "workspace", "workspace": name}], 1, tmp_path)
     assert "x (m)" in words(figure)
 
@@ -641,7 +644,7 @@ def test_holes_of_polygons_stay_open(tmp_path):
 
 def test_no_feasible_run_is_said(tmp_path):
     found = results(feasible=(False, False))
-    assert set(paths.data(found, pick=LOWEST)["part"]) == {"start", "target"}
+    assert set(paths.data(found, options_of(paths, pick=LOWEST))["part"]) == {"start", "target"}
     figure = drawn(found, panels()[:3], 2, tmp_path)
     assert figure.get_label() == "(a), (b), (c) no feasible run among 2."
 
@@ -680,14 +683,14 @@ def test_one_run_needs_one_problem_and_one_method(column):
     found = results()
     found.runs.loc[0, column] = "another"
     with pytest.raises(ValueError, match=f"exactly one {column}"):
-        paths.data(found, pick=LOWEST)
+        paths.data(found, options_of(paths, pick=LOWEST))
 
 
 def test_peak_far_above_the_limit_is_cut_and_said(tmp_path):
     found = results()
     found.runs["path_points"] = [[5, 5, 35, 5, 5, 5.1, 5, 35, 35, 35.0]] * 3
     figure = drawn(found, panels()[2:3], 1, tmp_path)
-    highest = along_path.data(found, pick=LOWEST, quantity="curvature", limit=0.1)["value"].max()
+    highest = along_path.data(found, options_of(along_path, pick=LOWEST, quantity="curvature", limit=0.1))["value"].max()
     assert highest > 1
     assert figure.axes[0].get_ylim()[1] == pytest.approx(0.4)
     assert any(f"largest {highest:.3g} 1/unit" in text for text in words(figure))
@@ -749,9 +752,9 @@ def test_a_drawing_shows_the_marks_of_its_function_in_their_order(tmp_path):
 
 def test_a_mark_that_cannot_be_drawn_is_told():
     with pytest.raises(ValueError, match="has no mark star; known: cell"):
-        drawing.data(pd.DataFrame({"mark": ["star"], "x": [0], "y": [0]}))
+        drawing.data(pd.DataFrame({"mark": ["star"], "x": [0], "y": [0]}), options_of(drawing))
     with pytest.raises(ValueError, match="mark circle needs radius"):
-        drawing.data(pd.DataFrame({"mark": ["circle"], "x": [0], "y": [0]}))
+        drawing.data(pd.DataFrame({"mark": ["circle"], "x": [0], "y": [0]}), options_of(drawing))
 
 
 def save(folder: File) -> None:
@@ -773,26 +776,35 @@ def test_equal_data_gives_equal_bytes_in_another_process(tmp_path):
 
 
 @pytest.mark.parametrize("kind", kinds_of_panel.kinds())
-def test_options_of_a_kind_are_the_arguments_of_its_data(kind):
-    """Their defaults stand in the options alone. A kind that plans by itself is also given the name that seeds its runs."""
-    parameters = inspect.signature(sheet.kind_module(kind).data).parameters.values()
-    arguments = {parameter.name: parameter.default for parameter in parameters if parameter.kind is inspect.Parameter.KEYWORD_ONLY}
-    options = kinds_of_panel.kinds()[kind]
-    fields = options.model_fields.keys() - set(sheet.PANEL_KEYS) | ({"name"} if options.plans else set())
-    assert arguments == dict.fromkeys(fields, inspect.Parameter.empty)
+def test_options_stand_in_the_options_of_a_kind_alone(kind):
+    """`data` and `draw` get them as they are read, and declare none."""
+    module = kinds_of_panel.kind_module(kind)
+    assert list(inspect.signature(module.data).parameters)[1:] == ["options"]
+    assert list(inspect.signature(module.draw).parameters) == ["axes", "frame", "scene", "options"]
 
 
-def test_data_takes_the_defaults_of_the_options():
-    found = comparison()
-    given = {"metric": "objective", "by": "method", "limits": False, "limit": None}
-    pd.testing.assert_frame_equal(boxes.data(found, metric="objective"), boxes.data(found, **given))
-    with pytest.raises(TypeError, match="metric"):
-        boxes.data(found)
+def test_a_panel_of_a_job_has_the_defaults_of_its_kind():
+    panel = kinds_of_panel.panel_of({"kind": "boxes", "experiment": "routes", "metric": "objective"})
+    assert (panel.by, panel.limits, panel.limit) == ("method", False, None)
+    assert kinds_of_panel.panel_of(panel.plain()) == panel
+
+
+def test_a_function_is_called_once_for_panels_that_draw_the_same_table():
+    calls = []
+
+    def table(*workspaces, first=0):
+        calls.append((len(workspaces), first))
+        return marks(*workspaces)
+
+    one = {"kind": "drawing", "data": "table"}
+    given = [one, one | {"title": "again"}, one | {"workspace": "circles"}, one | {"arguments": {"first": 1}}]
+    sheet.data(panels_of(given), Sources(workspaces=other_workspaces(), functions={"table": table}))
+    assert calls == [(0, 0), (1, 0), (0, 1)]
 
 
 def test_a_band_around_occupied_cells_is_shaded_and_the_clearance_written(tmp_path):
     found = results((True, True, True))
-    frame = paths.data(found, pick=LOWEST, band=2.5)
+    frame = paths.data(found, options_of(paths, pick=LOWEST, band=2.5))
     clearance = frame["obstacle_clearance"].iloc[0]
     assert clearance == pytest.approx(metrics.values(found.runs, "obstacle_clearance", found.problems).iloc[-1])
     figure = drawn(found, [panels()[0] | {"band": 2.5}], 1, tmp_path)
@@ -808,4 +820,4 @@ def test_a_band_around_occupied_cells_is_shaded_and_the_clearance_written(tmp_pa
 def test_a_band_needs_occupied_cells():
     found = comparison()
     with pytest.raises(ValueError, match="band: field: not a grid"):
-        paths.data(found._replace(runs=found.runs[found.runs["method"] == "smooth"]), pick=LOWEST, band=1.0)
+        paths.data(found._replace(runs=found.runs[found.runs["method"] == "smooth"]), options_of(paths, pick=LOWEST, band=1.0))

@@ -8,11 +8,12 @@ import pytest
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 from matplotlib.text import Text
+from panels import panels_of
 from studies import study
-from test_figures import comparing_panels, comparison, gallery, marks, panels, printed_means, results, scene, sequence, ticks_beyond
+from test_figures import comparing_panels, comparison, gallery, panels, printed_means, results, scene, sources, ticks_beyond
 
 from bezierplan.figures import sheet, style
-from bezierplan.figures.panels import critical_difference, expected_running_time, performance_profile
+from bezierplan.figures.panels import critical_difference, expected_running_time, panel_of, performance_profile
 from bezierplan.study import jobs
 
 STUDIES = {name: study(name) for name in ("song2016", "elhoseny2017", "ma2020", "tharwat2018", "meledje")}
@@ -48,20 +49,20 @@ COMPARED = [
 
 def drawn(found, own, columns, folder, width=None) -> Figure:
     if own is COMPARED:
-        return sheet.draw(own, all_kinds(), scene(found), columns, width)
+        return sheet.draw(panels_of(own), all_kinds(), scene(found), columns, width)
     file = str(folder / "figure.csv")
-    sheet.write_data(sheet.data(own, {"routes": found}, scene(found).workspaces, {"sequence": sequence, "marks": marks}), file)
-    return sheet.draw(own, sheet.read_data(file), scene(found), columns, width)
+    sheet.write_data(sheet.data(panels_of(own), sources(found)), file)
+    return sheet.draw(panels_of(own), sheet.read_data(file), scene(found), columns, width)
 
 
 SHEETS = [
     (results(), panels(), 2, None),
     (comparison(printed_means()), comparing_panels(), 2, None),
-    (comparison(printed_means()), comparing_panels(), sheet.narrow_columns(comparing_panels()), style.NARROW),
+    (comparison(printed_means()), comparing_panels(), sheet.narrow_columns(panels_of(comparing_panels())), style.NARROW),
     (comparison(), gallery(10), 5, None),
-    (comparison(), gallery(10), sheet.narrow_columns(gallery(10)), style.NARROW),
+    (comparison(), gallery(10), sheet.narrow_columns(panels_of(gallery(10))), style.NARROW),
     (results(), COMPARED, 2, None),
-    (results(), COMPARED, sheet.narrow_columns(COMPARED), style.NARROW),
+    (results(), COMPARED, sheet.narrow_columns(panels_of(COMPARED)), style.NARROW),
 ]
 
 
@@ -190,7 +191,7 @@ def test_looks_are_declared_once_or_follow_the_planner():
 
 def test_kinds_of_comparison_say_in_the_caption_how_to_read_them():
     notes = [
-        kind.draw(Figure().subplots(), all_kinds().query("panel == @number"), scene(results()), kind.Options.complete(panel))
+        kind.draw(Figure().subplots(), all_kinds().query("panel == @number"), scene(results()), panel_of(panel))
         for number, (kind, panel) in enumerate(zip((critical_difference, expected_running_time, performance_profile), COMPARED))
     ]
     assert [note.shown for note in notes] == ["", "", ""]

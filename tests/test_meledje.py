@@ -7,6 +7,7 @@ from pathlib import Path as File
 import numpy as np
 import pandas as pd
 import pytest
+from panels import options_of
 from studies import arguments, study
 
 from bezierplan.analysis.papers import meledje
@@ -132,7 +133,7 @@ def test_the_robot_plans_again_from_the_cell_where_it_is(environment, percent):
 
 
 def test_chromosome_shows_the_numbers_of_the_paper():
-    marks = drawing.data(meledje.chromosome(**arguments("meledje", "chromosome")))
+    marks = drawing.data(meledje.chromosome(**arguments("meledje", "chromosome")), options_of(drawing))
     genes = marks[(marks["part"] == "genes") & (marks["mark"] == "text") & marks["text"].str.isdigit()]
     assert genes["text"].astype(int).to_list() == [1, 41, 65, 35, 38, 60, 100]
     line = marks[marks["mark"] == "line"]
@@ -141,7 +142,7 @@ def test_chromosome_shows_the_numbers_of_the_paper():
 
 
 def test_children_of_the_drawn_crossover_exchange_their_tails():
-    marks = drawing.data(meledje.crossover(**arguments("meledje", "crossover")))
+    marks = drawing.data(meledje.crossover(**arguments("meledje", "crossover")), options_of(drawing))
     texts = marks[marks["mark"] == "text"]
     rows = {part: [own["text"].astype(int).to_list() for _, own in of.groupby("y", sort=False)] for part, of in texts.groupby("part")}
     one, other = rows["parents"]
@@ -160,7 +161,7 @@ def test_drawn_mutations_have_the_settings_in_force():
 def test_drawn_mutations_show_what_is_said_of_them():
     home = workspace("operators")
     ground = ground_of(home, 1.0)
-    marks = drawing.data(meledje.mutations(home, **arguments("meledje", "mutations")))
+    marks = drawing.data(meledje.mutations(home, **arguments("meledje", "mutations")), options_of(drawing))
     met = {}
     for (operator, label), line in marks[marks["mark"] == "line"].groupby(["operator", "group"]):
         cells = (np.floor(line["y"]) * 10 + np.floor(line["x"])).astype(int).tolist()

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 from matplotlib.figure import Figure
+from panels import options_of
 from PIL import Image, ImageSequence
 
 from bezierplan.analysis import metrics, results, tables
@@ -27,6 +28,7 @@ import numpy as np
 
 from bezierplan.geometry import curves
 from bezierplan.planners import Path, Plan, Range
+from panels import options_of
 
 workspaces = ("grid",)
 
@@ -283,7 +285,7 @@ def test_the_caption_says_how_many_runs_a_point_has():
     found = paired_runs()
     runs = found.runs.assign(obstacles=5).pipe(results.select, {"method": ["one", "other"]})
     panel = {"experiment": "drives", "x": "obstacles", "metric": "paired_gap_arrival", "statistic": "median", "hue": "method"}
-    options = {name: panel[name] for name in ("x", "metric", "statistic", "hue")}
-    frame = lines.data(found._replace(runs=runs), **options)
-    note = lines.draw(Figure().subplots(), frame, sheet.Scene({}, {}, {}, "m"), lines.Options.complete(panel))
+    options = options_of(lines, **panel)
+    frame = lines.data(found._replace(runs=runs), options)
+    note = lines.draw(Figure().subplots(), frame, sheet.Scene({}, {}, {}, "m"), options)
     assert note.told == "median of 1 of 2 runs per point, 50 to 100 % feasible"

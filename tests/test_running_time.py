@@ -9,11 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from matplotlib.figure import Figure
 from matplotlib.text import Text
+from panels import options_of, panels_of
 
 from bezierplan.analysis import metrics, running_time
 from bezierplan.analysis.results import Results
 from bezierplan.figures import sheet
-from bezierplan.figures.panels import critical_difference, expected_running_time, performance_profile
+from bezierplan.figures.panels import Sources, critical_difference, expected_running_time, performance_profile
 
 
 def results(rows) -> Results:
@@ -80,7 +81,7 @@ def test_restarts_cost_what_is_expected(chance, seed):
 
 
 def profile(**options):
-    frame = performance_profile.data(TWO, **options)
+    frame = performance_profile.data(TWO, options_of(performance_profile, **options))
     return {method: list(zip(own["ratio"], own["share"])) for method, own in frame.groupby("method")}, frame.set_index("method")
 
 
@@ -116,17 +117,21 @@ def test_methods_need_shared_problems():
     part = TWO._replace(runs=TWO.runs[(TWO.runs["method"] == "good") | (TWO.runs["condition"] == "p")])
     for panel in (performance_profile, expected_running_time):
         with pytest.raises(ValueError, match="bad has no run under q"):
-            panel.data(part, cost="evaluations", **({"within": 0.05} if panel is performance_profile else {}))
+            panel.data(part, options_of(panel, cost="evaluations", **({"within": 0.05} if panel is performance_profile else {})))
 
 
 def test_expected_running_times_of_one_problem_and_of_several():
-    frame = expected_running_time.data(TWO, cost="evaluations").set_index(["method", "within"])
+    frame = expected_running_time.data(TWO, options_of(expected_running_time, cost="evaluations")).set_index(["method", "within"])
     row = frame.loc["good", 0.05]
     assert (row["value"], row["problems"], row["reached"], row["runs"], row["successes"]) == (10, 2, 2, 6, 4), "the lower of 500 and 10"
     assert frame.loc[("bad", 0.05), "reached"] == 1
     assert frame.loc[("bad", 0.01), "value"] == math.inf
     of_p = TWO._replace(runs=TWO.runs[TWO.runs["condition"] == "p"])
-    row = expected_running_time.data(of_p, cost="evaluations").set_index(["method", "within"]).loc["good", 0.05]
+    row = (
+        expected_running_time.data(of_p, options_of(expected_running_time, cost="evaluations"))
+        .set_index(["method", "within"])
+        .loc["good", 0.05]
+    )
     assert (row["value"], row["runs"], row["successes"]) == (500, 4, 2)
     assert row["low95"] <= 250 <= 500 < row["high95"]
 
@@ -148,7 +153,7 @@ def test_ranks_over_problems_are_those_of_the_median_run():
         for name, overs in {"a": (1.1, 3, 1.1), "b": (1.2, 1.2, 1), "c": (None, None, 1)}.items()
         for over in overs
     ]
-    frame = critical_difference.data(results(rows), metric="certified_length", unit="problem")
+    frame = critical_difference.data(results(rows), options_of(critical_difference, metric="certified_length", unit="problem"))
     ranks = frame[frame["part"] == "rank"].set_index("method")["value"]
     assert ranks.to_dict() == {"a": 1, "b": 2, "c": 3}
     assert frame["units"].unique().tolist() == [5]
@@ -169,15 +174,15 @@ def test_running_times_as_drawn(tmp_path):
 
 def drawn(panel, folder):
     file = str(folder / "figure.csv")
-    sheet.write_data(sheet.data([panel], {"e": TWO}, {}), file)
-    figure = sheet.draw([panel], sheet.read_data(file), sheet.Scene({"e": {}}, {}, {"good": "the good one"}, "m"), 1)
+    sheet.write_data(sheet.data(panels_of([panel]), Sources({"e": TWO})), file)
+    figure = sheet.draw(panels_of([panel]), sheet.read_data(file), sheet.Scene({"e": {}}, {}, {"good": "the good one"}, "m"), 1)
     return [text.get_text() for text in figure.findobj(Text) if text.get_text()] + [figure.get_label()]
 
 
 def test_a_profile_is_drawn_as_its_steps():
-    frame, _ = performance_profile.data(TWO, cost="length"), None
+    frame, _ = performance_profile.data(TWO, options_of(performance_profile, cost="length")), None
     axes = Figure().add_subplot()
-    performance_profile.draw(axes, frame, sheet.Scene({}, {}, {}, "m"), {"cost": "length"})
+    performance_profile.draw(axes, frame, sheet.Scene({}, {}, {}, "m"), options_of(performance_profile, cost="length"))
     (line,) = [line for line in axes.lines if line.get_drawstyle() == "steps-post" and len(line.get_xdata()) == 4]
     x, y = line.get_data()
     assert list(x[:3]) == pytest.approx([1, 1.04, 15 / 10.3])

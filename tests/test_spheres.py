@@ -8,9 +8,11 @@ import yaml
 from faults import told
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from panels import panels_of
 from studies import study
 
 from bezierplan.figures import sheet
+from bezierplan.figures.panels import Sources
 from bezierplan.figures.panels import spheres as panel
 from bezierplan.geometry import checker, curves, shortest_paths, spheres
 from bezierplan.geometry.region import region
@@ -197,9 +199,9 @@ def job():
 
 def test_the_figure_shows_what_its_runs_are():
     described = job()
-    panels = described["spec"]["panels"]
+    panels = panels_of(described["spec"]["panels"])
     bare = {name: files.load(each, study("tharwat2018").folder) for name, each in described["workspaces"].items()}
-    frame = sheet.data(panels, {}, bare)
+    frame = sheet.data(panels, Sources(workspaces=bare, study=described["study"]))
     for _, own in frame.groupby("panel"):
         runs = own[own["part"] == "run"]
         assert list(runs["run"]) == [f"tharwat2018/spheres/pso/{repeat}" for repeat in range(20)]
@@ -251,8 +253,8 @@ def test_a_reader_declares_spheres_in_a_few_lines(folder):
     (own,) = reading.load([folder]).values()
     (described,) = jobs.figure_job(own, "ball", "full")["spec"]["panels"]
     assert described["settings"] == own.resolved("swarm")
-    options = {key: value for key, value in described.items() if key not in ("kind", "workspace")}
-    frame = panel.data(files.load(own.workspaces["ball"].plain(), folder), **options)
+    (options,) = panels_of([described])
+    frame = panel.data((files.load(own.workspaces["ball"].plain(), folder), own.key), options)
     assert list(frame["run"].dropna().unique()) == ["mine/ball/swarm/0"]
 
 

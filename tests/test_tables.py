@@ -370,7 +370,7 @@ def test_too_few_runs_are_not_judged():
 def test_a_transcribed_table_is_printed_as_it_stands(tmp_path):
     file = tmp_path / "table1.csv"
     file.write_text("part,value\nmemory,4.0 GB\nNA,\n")
-    table = listing.table({"kind": "transcribed"}, [str(file)], {}, {})
+    table = listing.table({"kind": "transcribed"}, {"table1": str(file)}, {}, {})
     assert table.to_csv(index=False) == file.read_text()
 
 
@@ -378,7 +378,7 @@ def test_a_table_of_a_function_is_computed_from_the_published_numbers(tmp_path):
     file = tmp_path / "table2.csv"
     file.write_text("method,value\nplain,2.5\n")
     table = listing.table(
-        {"kind": "function", "function": "twice"}, [str(file)], {"twice": lambda tables: 2 * tables["table2"][["value"]]}, {}
+        {"kind": "function", "function": "twice"}, {"table2": str(file)}, {"twice": lambda tables: 2 * tables["table2"][["value"]]}, {}
     )
     assert table["value"].tolist() == [5.0]
 
@@ -393,7 +393,7 @@ def test_a_comparison_shows_published_numbers_with_what_chance_gives(tmp_path):
             tmp_path / f"{name}.comparison.csv", index=False
         )
     spec = {"kind": "comparison", "of": ["table3", "table6"], "metrics": ["length"], "where": {"workspace": "equal"}}
-    files = [str(tmp_path / f"{name}.comparison.csv") for name in spec["of"]]
+    files = {name: str(tmp_path / f"{name}.comparison.csv") for name in spec["of"]}
     shown = listing.table(spec, files, {}, {"plain": "plain curves", "equal": "equal circles"})
     assert shown["table"].to_list() == ["table3", "table6"]
     assert shown.columns[:4].to_list() == ["table", "method", "workspace", "obstacles"]

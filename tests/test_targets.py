@@ -125,12 +125,13 @@ def once():
 
 @pytest.mark.parametrize(("scale", "kept"), [("smoke", "smoke"), ("full", "full"), ("extended", "full")])
 def test_experiment_of_the_same_size_runs_once_for_both_scales(once, scale, kept):
-    inputs = targets.claims_inputs({"song2016": once}, scale, "song2016")
-    assert {file.split("/")[1] for name in ("runs", "problems", "bounds") for file in inputs[name]} == {kept}
+    (files,) = targets.judged_by_claims(once, scale).values()
+    assert {file.split("/")[1] for file in (*files.chunks, files.problems, files.bounds)} == {kept}
 
 
 def test_experiment_with_more_repeats_keeps_its_own_runs():
-    assert {file.split("/")[1] for file in targets.claims_inputs(STUDIES, "extended", "song2016")["runs"]} == {"extended"}
+    (files,) = targets.judged_by_claims(SONG, "extended").values()
+    assert {file.split("/")[1] for file in files.chunks} == {"extended"}
 
 
 def test_extended_leaves_out_what_would_be_as_at_full(once):

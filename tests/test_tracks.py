@@ -5,10 +5,11 @@ from pathlib import Path as File
 import numpy as np
 import pandas as pd
 import pytest
+from panels import options_of, panels_of
 
 from bezierplan.analysis import metrics, results
 from bezierplan.figures import sheet
-from bezierplan.figures.panels import landscape, tracks
+from bezierplan.figures.panels import Sources, landscape, tracks
 from bezierplan.planners import chaotic_pso
 from bezierplan.planners.parts import penalised
 from bezierplan.planners.parts.settings import filled
@@ -63,7 +64,7 @@ def panels() -> list[dict]:
 
 def test_ways_are_those_of_the_runs(found):
     """The objective along the way of all control points is the run's history: nothing but the run itself can do that."""
-    ways = [tracks.data(found, by="homotopy", runs=1, point=point).query("part == 'way'") for point in range(5)]
+    ways = [tracks.data(found, options_of(tracks, by="homotopy", runs=1, point=point)).query("part == 'way'") for point in range(5)]
     points = np.stack([way[["x", "y"]].to_numpy() for way in ways], axis=1)
     run = found.runs.set_index("id").loc[ways[0]["run"].iloc[0]]
     again = chaotic_pso._objective(FIELD, filled(chaotic_pso.Settings, JOB["settings"]))
@@ -76,7 +77,7 @@ def test_ways_are_those_of_the_runs(found):
 
 
 def test_the_best_run_of_each_of_the_commonest_values_is_drawn(found):
-    frame = tracks.data(found, by="homotopy", runs=2)
+    frame = tracks.data(found, options_of(tracks, by="homotopy", runs=2))
     runs = found.runs.assign(group=metrics.values(found.runs, "homotopy", found.problems)).query("feasible")
     counts = runs["group"].value_counts()
     assert len(counts) == 2, "paths pass the circle on either side"
@@ -84,24 +85,24 @@ def test_the_best_run_of_each_of_the_commonest_values_is_drawn(found):
     assert set(frame["run"].dropna()) == best
     assert set(frame["groups"]) == {2}
     assert set(frame.loc[frame["part"] == "path"].groupby("run")["iteration"].nunique()) == {2}
-    commonest = tracks.data(found, by="homotopy", runs=1)["run"].dropna().iloc[0]
+    commonest = tracks.data(found, options_of(tracks, by="homotopy", runs=1))["run"].dropna().iloc[0]
     assert runs.set_index("id")["group"][commonest] == counts.index[0] or counts.nunique() == 1
 
 
 def test_a_run_that_ends_elsewhere_is_a_fault(found):
     job = JOB | {"settings": JOB["settings"] | {"c1": 1.4}}
     with pytest.raises(ValueError, match=r"study/routes/field,inertia=0.7/swarm/\d: its rerun ends in another path"):
-        tracks.data(found._replace(jobs={"swarm": job}), by="homotopy", runs=1)
+        tracks.data(found._replace(jobs={"swarm": job}), options_of(tracks, by="homotopy", runs=1))
 
 
 def test_faults_of_panels_are_said(found):
     with pytest.raises(ValueError, match="point: 5; expected 0 to 4"):
-        tracks.data(found, by="homotopy", runs=1, point=5)
+        tracks.data(found, options_of(tracks, by="homotopy", runs=1, point=5))
     two = found._replace(runs=pd.concat([found.runs, found.runs.assign(problem="other")]))
     with pytest.raises(ValueError, match="exactly one problem"):
-        tracks.data(two, by="homotopy", runs=1)
+        tracks.data(two, options_of(tracks, by="homotopy", runs=1))
     with pytest.raises(ValueError, match="exactly one problem"):
-        landscape.data((two, surface(two)))
+        landscape.data((two, surface(two)), options_of(landscape))
 
 
 def test_no_feasible_run_is_said(found, tmp_path):
@@ -112,8 +113,8 @@ def test_no_feasible_run_is_said(found, tmp_path):
 
 def drawn(found: results.Results, own: list[dict], folder: File):
     file = str(folder / "figure.csv")
-    sheet.write_data(sheet.data(own, {"routes": found}, {}, {"surface": surface}), file)
-    return sheet.draw(own, sheet.read_data(file), sheet.Scene({"routes": found.problems}, {}, {}, "m"), 2)
+    sheet.write_data(sheet.data(panels_of(own), Sources({"routes": found}, functions={"surface": surface})), file)
+    return sheet.draw(panels_of(own), sheet.read_data(file), sheet.Scene({"routes": found.problems}, {}, {}, "m"), 2)
 
 
 def test_landscape_and_tracks_fit_on_a_sheet(found, tmp_path):

@@ -632,14 +632,17 @@ def results(folder: str | File, experiment: str) -> pd.DataFrame:
     place = File(folder) / "runs"
     if not place.is_dir():
         raise ValueError(f"folder: {folder}: no runs here; expected results of a study, such as results/full/song2016")
-    files = sorted(str(file) for file in place.glob(f"{experiment}/*/*.parquet") if file.stem.isdecimal())
-    if not files:
+    runs: dict[str, list[str]] = {}
+    for chunk in sorted(file for file in place.glob(f"{experiment}/*/*.parquet") if file.stem.isdecimal()):
+        runs.setdefault(chunk.parent.name, []).append(str(chunk))
+    if not runs:
         known = [each.name for each in place.iterdir()]
         raise ValueError(f"experiment: {experiment}: no runs of it in {place}{closest(experiment, known)}")
     from bezierplan.analysis import results as stored
+    from bezierplan.running.inputs import Files
 
     made = File(folder) / "problems" / experiment
-    return stored.read(files, 10**9, f"{made}.parquet", f"{made}.bounds.parquet").runs
+    return stored.read(Files(runs, f"{made}.parquet", f"{made}.bounds.parquet"), 10**9, experiment).runs
 
 
 def replay(run: str) -> Answer:

@@ -93,14 +93,14 @@ def repeated(made: pa.Table, repeats: range) -> pa.Table:
 def write_runs(study: Study) -> None:
     """Write problems, bounds and all chunks of runs of a study into `results` of the working folder."""
     made, workspaces = problems.build_all(jobs.problems_job(study, "all", SCALE), study.folder)
-    files = targets.artefact_inputs({study.key: study}, SCALE, study.key, table="lengths")
-    for file in (*files["problems"], *files["runs"]):
+    (files,) = targets.shown_by(study, SCALE, "lengths").values()
+    for file in (files.problems, *files.chunks):
         Path(file).parent.mkdir(parents=True, exist_ok=True)
-    problems.write(made, workspaces, files["problems"][0])
-    parquet.write_table(problems.bounds_of(problems.read(files["problems"][0])), files["bounds"][0])
+    problems.write(made, workspaces, files.problems)
+    parquet.write_table(problems.bounds_of(problems.read(files.problems)), files.bounds)
     for method in study.methods_of("all"):
         runs, times = execution.run_chunk(made, jobs.job(study, "all", method, SCALE, 0) | {"repeats": [0, MADE]})
-        for file in (Path(each) for each in files["runs"] if Path(each).parent.name == method):
+        for file in map(Path, files.runs[method]):
             first, last = jobs.job(study, "all", method, SCALE, int(file.stem))["repeats"]
             parquet.write_table(repeated(runs, range(first, last)), file)
             parquet.write_table(repeated(times, range(first, last)), file.with_suffix(".times.parquet"))

@@ -32,6 +32,7 @@ from bezierplan.analysis import comparison, results, tables
 from bezierplan.analysis.claims import job as claims_job
 from bezierplan.figures import sheet, style
 from bezierplan.figures.page import runs as page_runs
+from bezierplan.figures.panels import Sources
 from bezierplan.geometry import checker, shortest_paths
 from bezierplan.geometry.region import Region, region
 from bezierplan.planners import planner_module, planner_settings
@@ -123,8 +124,8 @@ def _gathered(repeats: int) -> Studies:
 
 def _runs(given: Studies, repeats: int) -> None:
     """A chunk of runs, made and written."""
-    ((key, study),) = given.items()
-    made = problems.read(targets.artefact_inputs(given, gathering.SCALE, key, table="lengths")["problems"][0])
+    (study,) = given.values()
+    made = problems.read(targets.shown_by(study, gathering.SCALE, "lengths")["all"].problems)
     runs, _ = execution.run_chunk(made, jobs.job(study, "all", "pso", gathering.SCALE, 0) | {"repeats": [0, repeats]})
     parquet.write_table(runs, "runs.parquet")
 
@@ -139,22 +140,24 @@ def _tables(given: Studies) -> None:
 
 def _figures(given: Studies) -> None:
     (study,) = given.values()
-    found = _read(given)._replace(published=results.read_published(study.published_files()))
+    published = {Path(file).stem: results.published_table(file) for file in study.published_files()}
+    found = _read(given)._replace(published=results.joined_numbers(published))
     for figure in study.figures:
-        sheet.data(jobs.figure_job(study, figure, gathering.SCALE)["spec"]["panels"], {"all": found}, {})
+        sheet.data(study.figures[figure].panels, Sources({"all": found}))
 
 
 def _read(given: Studies) -> results.Results:
     """All runs of a study."""
-    ((key, study),) = given.items()
-    files = targets.artefact_inputs(given, gathering.SCALE, key, table="lengths")
-    return results.read(files["runs"], study.experiments["all"].repeats[gathering.SCALE], files["problems"][0], files["bounds"][0])
+    (study,) = given.values()
+    files = targets.shown_by(study, gathering.SCALE, "lengths")["all"]
+    return results.read(files, study.experiments["all"].repeats[gathering.SCALE], "all")
 
 
 def _claims(given: Studies) -> None:
     (key,) = given
-    files = targets.claims_inputs(given, gathering.SCALE, key)
-    claims_job.run(targets.claims_params(given, gathering.SCALE, key)["job"], files["runs"], files, "claims.csv", "checks.csv")
+    files = targets.judged_by_claims(given[key], gathering.SCALE)
+    published = {Path(file).stem: file for file in given[key].published_files()}
+    claims_job.run(targets.claims_params(given, gathering.SCALE, key)["job"], files, published, "claims.csv", "checks.csv")
 
 
 def _viewer(given: Studies) -> None:

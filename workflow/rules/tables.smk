@@ -30,7 +30,7 @@ rule table:
 
 rule listing:
     input:
-        published=lambda wildcards: targets.listing_published(STUDIES, **wildcards),
+        inputs(targets.listing_inputs),
     output:
         report(
             f"{RESULTS}/tables/{{listing}}.csv",

@@ -3,7 +3,8 @@
 from bezierplan.running import log
 
 with log.job(snakemake) as output:
-    from bezierplan.analysis.claims import job as claims_job
+    from bezierplan.analysis.claims import job
+    from bezierplan.running import inputs
 
-    files = {name: list(snakemake.input[name]) for name in ("problems", "bounds", "published")}
-    claims_job.run(snakemake.params.job, list(snakemake.input.runs), files, output.claims, output.checks)
+    files, published = inputs.experiments(snakemake.input), inputs.part(snakemake.input, "published")
+    job.run(snakemake.params.job, files, published, output.claims, output.checks)

@@ -7,9 +7,10 @@ with log.job(snakemake) as output:
 
     from bezierplan.analysis import readings
     from bezierplan.figures import sheet, specification
+    from bezierplan.running import inputs
 
     job, params = snakemake.params.job, snakemake.params
-    published = dict(zip(job["screened"]["tables"], snakemake.input.published, strict=True))
+    published = inputs.part(snakemake.input, "published")
     found = readings.found_by(job, published, Path(params.folder), Path(params.kept), snakemake.threads)
     for name, table in found.items():
         table.to_csv(output[name], index=False, float_format="%.10g", lineterminator="\n")

@@ -6,8 +6,9 @@ with log.job(snakemake) as output:
     import pandas as pd
 
     from bezierplan.analysis import sensitivity
+    from bezierplan.running import inputs
 
-    described, files = snakemake.params.described, snakemake.input
-    tried = {name: pd.read_csv(file) for name, file in zip(described, files.alternatives, strict=True)}
-    table = sensitivity.sensitivity(pd.read_csv(files.claims), tried, described)
+    described, files = snakemake.params.described, inputs.part(snakemake.input, "alternatives")
+    tried = {name: pd.read_csv(files[name]) for name in described}
+    table = sensitivity.sensitivity(pd.read_csv(snakemake.input.claims), tried, described)
     table.to_csv(output[0], index=False, float_format="%.10g", lineterminator="\n")

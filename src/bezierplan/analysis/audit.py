@@ -8,17 +8,20 @@ rank) and from how a table is laid out: `of_cells` checks the statistics of one 
 `of_digits` last digits. `analysis.possible` has the closed forms.
 """
 
+import importlib
 import itertools
 import math
+from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any, NamedTuple
 
 import pandas as pd
 
-from bezierplan.analysis import possible
+from bezierplan.analysis import identified, possible
 from bezierplan.analysis.metrics import METRICS
 from bezierplan.analysis.possible import Printed
 from bezierplan.analysis.results import published_table
+from bezierplan.running import problems
 
 COLUMNS = ["study", "item", "place", "rule", "printed", "limit", "consistent", "arithmetic"]
 
@@ -364,6 +367,27 @@ def of_digits(tables: dict[str, pd.DataFrame]) -> list[dict]:
 
 def _text(number: Fraction) -> str:
     return f"{float(number):.10g}"
+
+
+def audited(job: dict, problem_files: Mapping[str, str], bound_files: Mapping[str, str], files: Mapping[str, str]) -> pd.DataFrame:
+    """The audit of a job (`study.targets.audit_params`) as a table with `COLUMNS`.
+
+    problem_files and bound_files: by experiment, problems of those alone whose printed lengths are identified. files: of published
+    numbers, by table.
+    """
+    published = {name: read_published(file) for name, file in files.items()}
+    bounds = {name: pd.read_parquet(file).set_index("problem") for name, file in bound_files.items()}
+    of_tables = {table: bounds[experiment] for table, experiment in job["tables"].items()}
+    compared = {table: published[table] for table in of_tables}
+    # Numbers to which a workspace was fitted lie above its bound by construction.
+    independent = {name: table for name, table in compared.items() if not job["layouts"][name]["fitted"]}
+    rows = below_bound(independent, of_tables, job["primary"]) + of_any_paper(compared, job["layouts"])
+    made = {name: problems.read(file) for name, file in problem_files.items()}
+    for name, layout in job["layouts"].items():
+        rows += identified.of_table(name, published[name], layout["identify"], made.get(job["tables"][name], {}))
+    if job["module"]:
+        rows += importlib.import_module(job["module"]).audit(published)
+    return table(job["study"], rows)
 
 
 def read_published(file: str) -> pd.DataFrame:

@@ -1,6 +1,7 @@
 """Tables as LaTeX, ready to be read by a paper that loads `booktabs` and `graphicx`."""
 
 import itertools
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import pandas as pd
@@ -22,6 +23,14 @@ class Captioned(NamedTuple):
     table: pd.DataFrame
     caption: str
     label: str
+
+
+def captioned(files: Mapping[str, str], captions: Mapping[str, str], study: str) -> list[Captioned]:
+    """Tables in csv files, by name, with their captions; their labels begin with the name of the study."""
+    return [
+        Captioned(pd.read_csv(file, dtype=str, keep_default_na=False), captions[name], f"tab:{study}-{name}")
+        for name, file in files.items()
+    ]
 
 
 def document(tables: list[Captioned]) -> str:

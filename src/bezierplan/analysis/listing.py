@@ -1,7 +1,6 @@
 """Tables without runs: what a paper prints besides its results, what a study's function computes, and published numbers next to ours."""
 
 from collections.abc import Callable, Mapping
-from pathlib import Path
 
 import pandas as pd
 
@@ -28,21 +27,21 @@ _DECIMALS = 3
 
 def table(
     spec: dict,
-    files: list[str],
+    files: Mapping[str, str],
     functions: Mapping[str, Callable[..., pd.DataFrame]],
     labels: Mapping[str, str],
 ) -> pd.DataFrame:
     """A table of kind `transcribed` (every cell as written), `function` (called with all published tables by file name, and with
     its arguments), or `comparison` (`beside`).
 
-    files: of published numbers; for a transcribed table its only file; for a comparison those of its tables.
+    files: of published numbers, by table; for a transcribed table its only file; for a comparison those of its tables.
     """
     if spec["kind"] == "transcribed":
-        (file,) = files
+        (file,) = files.values()
         return pd.read_csv(file, dtype=str, keep_default_na=False)
     if spec["kind"] == "comparison":
-        return beside(spec, {Path(file).name.partition(".")[0]: pd.read_csv(file) for file in files}, labels)
-    published = {Path(file).stem: published_table(file) for file in files}
+        return beside(spec, {name: pd.read_csv(file) for name, file in files.items()}, labels)
+    published = {name: published_table(file) for name, file in files.items()}
     return functions[spec["function"]](published, **spec.get("arguments", {}))
 
 

@@ -1,6 +1,6 @@
 """The results of one experiment, read back for tables and figures."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import PurePath
 from typing import NamedTuple
 
@@ -13,6 +13,7 @@ from bezierplan.running import problems as problem_files
 from bezierplan.running import rows as row_files
 from bezierplan.running import worlds
 from bezierplan.running.columns import TABLES, Table
+from bezierplan.running.inputs import Files
 from bezierplan.schema.model import one_or_list
 from bezierplan.workspaces.problem import Path, Problem
 from bezierplan.workspaces.worlds import World
@@ -34,34 +35,34 @@ class Results(NamedTuple):
     worlds: dict[str, World] | None = None
 
 
-def read(runs: list[str], repeats: int, problems: str, bounds: str) -> Results:
-    """The results in chunk files of runs, up to a number of repeats, with the problems and bounds of their experiment.
+def read(files: Files, repeats: int, experiment: str) -> Results:
+    """The results of an experiment, up to a number of repeats.
 
     Chunks always run whole, so a file may hold more repeats than requested. Raises ValueError, naming the run, if a feasible path is
     shorter than the shortest path, or a drive arrives before any robot can: then the checker or the bound is wrong; and naming the file, if
     one is damaged or not in its place.
     """
-    table = pd.concat(_chunks(runs), ignore_index=True)
+    table = pd.concat(_chunks(files.runs, experiment), ignore_index=True)
     table = table[table["repeat"] < repeats].reset_index(drop=True)
-    bound_table = _read(bounds)
+    bound_table = _read(files.bounds)
     bounded = bound_table.to_pandas()
-    for file, known in ((problems, _read(problems).to_pandas()), (bounds, bounded)):
+    for file, known in ((files.problems, _read(files.problems).to_pandas()), (files.bounds, bounded)):
         if "problem" not in known or not set(table["problem"]) <= set(known["problem"]):
             raise _misplaced(file, "not of the problems that the runs are of")
-    _refuse_unlike(bounds, bound_table, TABLES["bounds"], "least_arrival")
-    found = joined(table, problem_files.read(problems), bounded)
-    return found._replace(worlds=worlds.read(problems))
+    _refuse_unlike(files.bounds, bound_table, TABLES["bounds"], "least_arrival")
+    results = joined(table, problem_files.read(files.problems), bounded)
+    return results._replace(worlds=worlds.read(files.problems))
 
 
-def _chunks(files: list[str]) -> Iterator[pd.DataFrame]:
+def _chunks(files: Mapping[str, list[str]], experiment: str) -> Iterator[pd.DataFrame]:
     """The rows of each chunk file with their times. Raises ValueError for a file that is not the one that belongs in its place, or lacks a
     declared column.
     """
     seen: set[str] = set()
-    for file in files:
-        table, place = _read(file, row_files.edited), PurePath(file).parts
+    for method, file in ((method, chunk) for method, chunks in files.items() for chunk in chunks):
+        table = _read(file, row_files.edited)
         rows = table.to_pandas()
-        for column, wanted in zip(("experiment", "method"), place[-3:-1]):
+        for column, wanted in (("experiment", experiment), ("method", method)):
             others = set(rows[column]) - {wanted} if column in rows else {"no runs"}
             if others:
                 raise _misplaced(file, f"of {column} {min(map(str, others))}, not {wanted}")
@@ -122,13 +123,9 @@ def _refuse(runs: pd.DataFrame, below: pd.Series, column: str, bound: str) -> No
         raise ValueError(f"run {run['id']} is said to be feasible, but {values}")
 
 
-def read_all(runs: list[str], repeats: dict[str, int], problems: list[str], bounds: list[str]) -> dict[str, Results]:
-    """Results by experiment, from files of several experiments: problems and bounds in the order of `repeats`, runs in any order."""
-    found = {}
-    for (experiment, number), problem_file, bound_file in zip(repeats.items(), problems, bounds, strict=True):
-        own = [file for file in runs if PurePath(file).parts[-3] == experiment]
-        found[experiment] = read(own, number, problem_file, bound_file)
-    return found
+def read_all(files: Mapping[str, Files], repeats: Mapping[str, int]) -> dict[str, Results]:
+    """Results by experiment, each up to its number of repeats."""
+    return {experiment: read(files[experiment], number, experiment) for experiment, number in repeats.items()}
 
 
 def published_table(file: str) -> pd.DataFrame:
@@ -136,12 +133,12 @@ def published_table(file: str) -> pd.DataFrame:
     return pd.read_csv(file, keep_default_na=False, na_values=[""])
 
 
-def read_published(files: list[str]) -> pd.DataFrame | None:
-    """The published numbers of several files, concatenated, with each table's name (that of its file) in the column `table`.
+def joined_numbers(published: Mapping[str, pd.DataFrame]) -> pd.DataFrame | None:
+    """The published numbers of several tables, concatenated, with the name of each in the column `table`.
 
-    Files in another format are left out. None if no file remains.
+    Tables in another format are left out. None if none remains.
     """
-    tables = [published_table(file).assign(table=PurePath(file).stem) for file in files]
+    tables = [table.assign(table=name) for name, table in published.items()]
     tidy = [table for table in tables if {"metric", "statistic", "value"} <= set(table)]
     return pd.concat(tidy, ignore_index=True) if tidy else None
 

@@ -1,5 +1,8 @@
 """All studies together: every published number next to ours, every claim, and how many of them are confirmed."""
 
+from collections.abc import Mapping
+from typing import NamedTuple
+
 import numpy as np
 import pandas as pd
 
@@ -9,6 +12,21 @@ from bezierplan.analysis.markdown import table_text
 from bezierplan.analysis.metrics import METRICS
 
 HEADING = "# Outcome at scale "
+
+
+class Summary(NamedTuple):
+    """The numbers and claims of all studies, and the report on them as Markdown."""
+
+    numbers: pd.DataFrame
+    claims: pd.DataFrame
+    report: str
+
+
+def gathered(job: dict, comparison_files: Mapping[str, str], claims_files: list[str], worth_file: str, scale: str) -> Summary:
+    """The summary of a job (`study.targets.summary_params`). comparison_files: each by `study/table`."""
+    everything = numbers({(study, table): pd.read_csv(comparison_files[f"{study}/{table}"]) for study, table in job["tables"]})
+    claims = read_claims(claims_files)
+    return Summary(everything, claims, report(everything, claims, pd.read_csv(worth_file), job["titles"], scale))
 
 
 def read_claims(files: list[str]) -> pd.DataFrame:

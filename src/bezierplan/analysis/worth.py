@@ -15,11 +15,15 @@ each, the median of its runs is divided by the median of the baseline's runs; th
 | cpu | CPU time over the baseline's, all runs |
 """
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import metrics
-from bezierplan.analysis.results import Results
+from bezierplan.analysis.results import Results, read
+from bezierplan.running.inputs import Files
 
 COLUMNS = (
     *("study", "method", "baseline", "conditions", "feasible", "feasible_baseline"),
@@ -46,6 +50,19 @@ def measured(found: dict[str, Results], baseline: str) -> pd.DataFrame:
     for name in ("length", "curvature", "cpu"):
         pairs[name] /= pairs[f"{name}_baseline"]
     return pd.DataFrame([_row(method, pair, baseline) for method, pair in pairs.groupby("method", sort=False)], columns=COLUMNS[1:])
+
+
+def of_studies(job: Mapping[str, dict[str, Any]], files: Mapping[str, Files]) -> pd.DataFrame:
+    """One row for each method of all studies; `COLUMNS`.
+
+    job: study -> its `baseline`, and `repeats` of the experiments that are measured. files: of experiments, each by `study/experiment`.
+    """
+    tables = []
+    for study, described in job.items():
+        experiments = {name: read(files[f"{study}/{name}"], number, name) for name, number in described["repeats"].items()}
+        tables.append(measured(experiments, described["baseline"]).assign(study=study))
+    rows = pd.concat(tables) if tables else pd.DataFrame()
+    return rows.reindex(columns=COLUMNS)
 
 
 def _medians(results: Results) -> pd.DataFrame:

@@ -11,6 +11,7 @@ from bezierplan.analysis import results
 from bezierplan.commands import add_studies
 from bezierplan.commands.digest import read_rows, row_text
 from bezierplan.figures import animation, sheet
+from bezierplan.figures.panels import Sources, panel_of
 from bezierplan.geometry import checker, curves
 from bezierplan.running import rides
 from bezierplan.study import jobs, reading
@@ -93,12 +94,13 @@ def draw(made: results.Results, study: Study, file: Path) -> None:
     panel = {"kind": "paths", "experiment": run["experiment"], "pick": {"repeat": int(run["repeat"])}}
     if made.worlds:
         panel |= {"kind": "snapshot", "at": 1}
+    panels = [panel_of(panel)]
     unit = made.problems[run["problem"]].workspace.unit
     scene = sheet.Scene({run["experiment"]: made.problems}, {}, study.labels, unit, jobs.looks(study))
     file.parent.mkdir(parents=True, exist_ok=True)
-    frame = sheet.data([panel], {run["experiment"]: made}, {})
+    frame = sheet.data(panels, Sources({run["experiment"]: made}))
     sheet.write_data(frame, str(file.with_suffix(".csv")))
-    figure = sheet.draw([panel], sheet.read_data(str(file.with_suffix(".csv"))), scene, 1)
+    figure = sheet.draw(panels, sheet.read_data(str(file.with_suffix(".csv"))), scene, 1)
     sheet.save(figure, str(file.with_suffix(".svg")), str(file.with_suffix(".png")))
 
 

@@ -1,26 +1,15 @@
 """A figure: its panels on one sheet, and the table of everything drawn on it.
 
-A kind of panel is a module of `figures.panels` with two functions:
-
-    data(source, *, <options>) -> DataFrame         what is drawn; the source is Results, a Workspace if nothing is planned, the table
-                                                    of a study's function, Results with the table of a function of them, or None if
-                                                    the options are enough
-    draw(axes, frame, scene, panel) -> Note         draws the rows of its panel, labels its artists for the legend, computes no
-                                                    statistics; returns what it says in words: below its title, and in the caption
-
-The keyword-only arguments of `data` are the options that a panel may have; the class `Options` next to it describes them for authors of
-studies, with the keys that name what is shown. A kind with panels that are not flat has `PROJECTION`, matplotlib's name for it.
+A kind of panel is a module of `figures.panels`, which says what each has.
 """
 
-import importlib
 import itertools
-import json
 import math
 import re
 import string
-from collections.abc import Callable, Mapping
-from types import MappingProxyType, ModuleType
-from typing import Any, NamedTuple
+from collections.abc import Mapping
+from types import MappingProxyType
+from typing import NamedTuple
 
 import matplotlib as mpl
 import numpy as np
@@ -29,13 +18,9 @@ from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from bezierplan.analysis.results import Results, select
 from bezierplan.figures import style
-from bezierplan.figures.panels import Note
+from bezierplan.figures.panels import Note, Panel, Sources, kind_module
 from bezierplan.workspaces.problem import Problem, Workspace
-
-# Keys that any panel may have in addition to the options of its kind.
-PANEL_KEYS = ("kind", "title", "experiment", "where", "workspace", "data", "published", "arguments", "each")
 
 
 class Scene(NamedTuple):
@@ -54,62 +39,16 @@ class Scene(NamedTuple):
     narrow: bool = False
 
 
-def kind_module(name: str) -> ModuleType:
-    """The module of a kind of panel. Raises ModuleNotFoundError if there is none."""
-    return importlib.import_module(f"bezierplan.figures.panels.{name}")
-
-
-def data(
-    panels: list[dict[str, Any]],
-    results: dict[str, Results],
-    workspaces: dict[str, Workspace],
-    functions: Mapping[str, Callable[..., pd.DataFrame]] = MappingProxyType({}),
-    published: Mapping[str, pd.DataFrame] = MappingProxyType({}),
-) -> pd.DataFrame:
-    """Everything that is drawn: the rows of all panels, with the panel number (0, 1, ...) in the first column.
-
-    panels: kind, title, experiment or data with where (as in `analysis.results.select`) or workspace, and options of the kind. results: by
-    experiment. workspaces: by name. functions: what `data` may name; each is called once for all panels that draw the same table: with the
-    workspace if they name one, with the published tables if they ask for them, and with their arguments; for a panel with an experiment it
-    is called with the panel's results. published: all published tables by file name. Raises ValueError for options or runs that a kind
-    cannot draw.
+def data(panels: list[Panel], sources: Sources) -> pd.DataFrame:
+    """Everything that is drawn: the rows of all panels, with the panel number (0, 1, ...) in the first column. Raises ValueError for
+    options or runs that a kind cannot draw.
     """
-    alone = [panel for panel in panels if "data" in panel and "experiment" not in panel]
-    tables = {}
-    for panel in alone:
-        if _call(panel) not in tables:
-            given = [workspaces[panel["workspace"]]] if "workspace" in panel else []
-            given += [published] if panel.get("published") else []
-            tables[_call(panel)] = functions[panel["data"]](*given, **panel.get("arguments", {}))
     frames = []
     for number, panel in enumerate(panels):
-        options = {name: value for name, value in panel.items() if name not in PANEL_KEYS}
-        frame = kind_module(panel["kind"]).data(_source(panel, results, workspaces, tables, functions), **options)
+        frame = kind_module(panel.kind).data(panel.source(sources), panel)
         frame.insert(0, "panel", number)
         frames.append(frame)
     return pd.concat(frames, ignore_index=True)
-
-
-def _call(panel: dict[str, Any]) -> str:
-    """The call of a panel's function: equal for panels that draw the same table."""
-    return json.dumps([panel[key] for key in ("data", "workspace", "published", "arguments") if key in panel])
-
-
-def _source(
-    panel: dict[str, Any],
-    results: dict[str, Results],
-    workspaces: dict[str, Workspace],
-    tables: dict[str, pd.DataFrame],
-    functions: Mapping[str, Callable[..., pd.DataFrame]],
-) -> Results | tuple[Results, pd.DataFrame] | Workspace | pd.DataFrame | None:
-    """What a panel draws from."""
-    if "experiment" in panel:
-        found = results[panel["experiment"]]
-        found = found._replace(runs=select(found.runs, panel.get("where", {})))
-        return (found, functions[panel["data"]](found)) if "data" in panel else found
-    if "data" in panel:
-        return select(tables[_call(panel)], panel.get("where", {})).copy()
-    return workspaces[panel["workspace"]] if "workspace" in panel else None
 
 
 def write_data(frame: pd.DataFrame, file: str) -> None:
@@ -122,7 +61,7 @@ def read_data(file: str) -> pd.DataFrame:
     return pd.read_csv(file, low_memory=False)  # each column read whole, with one type
 
 
-def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, columns: int, width: float | None = None) -> Figure:
+def draw(panels: list[Panel], frame: pd.DataFrame, scene: Scene, columns: int, width: float | None = None) -> Figure:
     """The figure of a table made by `data`. Its label is its caption: for each panel the run that it shows, and what it counts.
 
     frame: preferably the csv file read back (`read_data`), so that the figure shows exactly its content. columns: panels per row. width:
@@ -139,8 +78,7 @@ def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, column
         titles, notes = [], []
         for number, panel in enumerate(panels):
             own = frame[frame["panel"] == number]
-            kind = kind_module(panel["kind"])
-            notes.append(kind.draw(grid.flat[number], own, scene, kind.Options.complete(panel)))
+            notes.append(kind_module(panel.kind).draw(grid.flat[number], own, scene, panel))
             titles.append(_title(panel, own, scene))
         for axes in grid.flat[len(panels) :]:
             axes.set_visible(False)
@@ -157,26 +95,26 @@ def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, column
     return figure
 
 
-# Kinds with names beside their rows, which take the room of a second panel, and the most panels of others below each other.
-_NAMED_ROWS, _MOST_BELOW = {"boxes", "critical_difference", "dots", "expected_running_time"}, 4
+# The most panels without names beside their rows below each other.
+_MOST_BELOW = 4
 
 
-def narrow_columns(panels: list[dict[str, Any]]) -> int:
+def narrow_columns(panels: list[Panel]) -> int:
     """Panels side by side on a sheet of one text column: one, or two of many, which would make the sheet longer than a page."""
-    return 1 if len(panels) <= _MOST_BELOW or any(panel["kind"] in _NAMED_ROWS for panel in panels) else 2
+    return 1 if len(panels) <= _MOST_BELOW or any(panel.named_rows for panel in panels) else 2
 
 
-def _places(figure: Figure, panels: list[dict[str, Any]], rows: int, columns: int) -> np.ndarray:
+def _places(figure: Figure, panels: list[Panel], rows: int, columns: int) -> np.ndarray:
     """Axes (rows, columns) for panels, row by row, including empty places in the last row."""
-    projections = [getattr(kind_module(panel["kind"]), "PROJECTION", None) for panel in panels]
+    projections = [getattr(kind_module(panel.kind), "PROJECTION", None) for panel in panels]
     projections += [None] * (rows * columns - len(panels))
     places = [figure.add_subplot(rows, columns, number + 1, projection=projection) for number, projection in enumerate(projections)]
     return np.array(places).reshape(rows, columns)
 
 
-def _title(panel: dict[str, Any], frame: pd.DataFrame, scene: Scene) -> list[str]:
+def _title(panel: Panel, frame: pd.DataFrame, scene: Scene) -> list[str]:
     """A panel's title, and the method whose runs it shows, if there is only one: it says how to read the curve."""
-    words = [_plain(panel["title"])] if "title" in panel else []
+    words = [_plain(panel.title)] if panel.title else []
     methods = frame["method"].dropna().unique() if "method" in frame else []
     return [*words, scene.labels.get(methods[0], methods[0])] if len(methods) == 1 else words
 

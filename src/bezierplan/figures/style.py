@@ -213,9 +213,9 @@ def in_milliseconds(axis: Any, values: Iterable[float]) -> None:
         axis.set_label_text(f"{axis.get_label_text().removesuffix('(s)')}(ms)")
 
 
-def in_order(values: pd.Series, panel: dict) -> list[Any]:
-    """The distinct values of a column: those in the panel's `where`, in its order, then the others, sorted."""
-    wanted = panel.get("where", {}).get(values.name)
+def in_order(values: pd.Series, where: dict[str, Any]) -> list[Any]:
+    """The distinct values of a column: those in a panel's `where`, in its order, then the others, sorted."""
+    wanted = where.get(values.name)
     listed = wanted if isinstance(wanted, list) else []
     present = values.dropna().unique().tolist()
     return [value for value in listed if value in present] + sorted(set(present) - set(listed))

@@ -8,9 +8,8 @@ A job is as in `execution`, with one more key: policy, the values of a `simulati
 import json
 import math
 import sys
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from functools import partial
-from pathlib import PurePath
 from typing import Any
 
 import numpy as np
@@ -188,10 +187,10 @@ def bounds_of(problems: dict[str, Problem], worlds: dict[str, World], arrivals: 
     return rows.table(bounds, Bound, DriveBound)
 
 
-def write_bounds(problems: dict[str, Problem], worlds: dict[str, World], runs: list[str], repeats: int, file: str) -> None:
+def write_bounds(problems: dict[str, Problem], worlds: dict[str, World], runs: Sequence[str], repeats: int, file: str) -> None:
     """Write the bounds of problems with the first arrivals of the drives in some files, up to a number of repeats, and whose they are."""
     table = bounds_of(problems, worlds, first_arrivals(runs, repeats))
-    drives = {"methods": sorted({_method(run) for run in runs}), "repeats": repeats}
+    drives = {"methods": sorted(set(map(_method, runs))), "repeats": repeats}
     parquet.write_table(table.replace_schema_metadata({_DRIVES: json.dumps(drives)}), file)
 
 
@@ -207,8 +206,8 @@ def bounds_again(problems: dict[str, Problem], worlds: dict[str, World], kept: p
 
 
 def _method(run: str) -> str:
-    """The method of a file of runs."""
-    return PurePath(run).parts[-2]
+    """The method of a file of runs, of which all rows have the same."""
+    return parquet.read_table(run, columns=["method"])["method"][0].as_py()
 
 
 def first_arrivals(files: Iterable[str], repeats: int) -> dict[str, float]:

@@ -95,7 +95,8 @@ def figure_job(study: Study, figure: str, scale: str) -> dict:
     experiments = experiments_of(study, figure)
     bare = sorted({panel.workspace for panel in spec.panels if getattr(panel, "workspace", None)})
     return {
-        "spec": spec.plain() | {"panels": [panel.plain() | _planned(study, panel) for panel in spec.panels]},
+        "study": study.key,
+        "spec": spec.plain() | {"panels": [_planned(study, panel).plain() for panel in spec.panels]},
         "module": study.module(),
         "labels": study.labels,
         "looks": looks(study),
@@ -111,11 +112,9 @@ def looks(study: Study) -> dict[str, str]:
     return style.looks_of({method: study.planner(method) for method in study.methods}, study.looks)
 
 
-def _planned(study: Study, panel: Panel) -> dict[str, Any]:
-    """What a panel that plans by itself is given: the settings in force, and the name from which its runs take their seeds."""
-    if not panel.plans:
-        return {}
-    return {"settings": study.resolved(panel.method) | panel.settings, "name": f"{study.key}/{panel.workspace}/{panel.method}"}
+def _planned(study: Study, panel: Panel) -> Panel:
+    """A panel with all settings in force, if it plans by itself."""
+    return panel.but(settings=study.resolved(panel.method) | panel.settings) if panel.plans else panel
 
 
 def _jobs_rerun(study: Study, figure: str, scale: str) -> dict[str, dict[str, dict]]:

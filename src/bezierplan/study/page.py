@@ -7,9 +7,11 @@ from typing import Any
 from bezierplan.figures import page
 from bezierplan.places import TREE
 from bezierplan.running.digest import content_digest, versioned_digest
+from bezierplan.running.inputs import Files
 from bezierplan.schema import checked
 from bezierplan.study import jobs, targets
 from bezierplan.study.artefacts import in_printed_order
+from bezierplan.study.definition import Study
 from bezierplan.study.targets import Studies
 
 _END = b"</html>"
@@ -29,20 +31,26 @@ def is_whole(page_file: Path) -> bool:
 
 def inputs(given: Studies, scale: str) -> dict[str, list[str]]:
     """Input files of the page: everything that is made at the scale, and the runs behind it."""
-    shown = _artefacts(given, scale)
-    made, runs = _made(given, scale, shown), [_runs(given, scale, key, names) for key, names in shown.items()]
-    named = [f"results/{scale}/{name}.csv" for name in ("numbers", "claims", "worth")] if _summary(scale) in made else []
-    merged = {
-        name: list(dict.fromkeys(each for files in runs for each in files[name])) for name in ("runs", "problems", "bounds", "traces")
-    }
-    return {"made": made, "summary": named, "verified": [f"results/{scale}/verified.json"]} | merged
+    made = _made(given, scale, _artefacts(given, scale))
+    tables = [f"results/{scale}/{name}.csv" for name in ("numbers", "claims", "worth")] if _summary(scale) in made else []
+    return {"made": made, "summary": tables, "verified": [f"results/{scale}/verified.json"]} | _shown(given, scale)
+
+
+def _shown(given: Studies, scale: str) -> dict[str, list[str]]:
+    """Files of all runs that the page shows, with their problems, bounds and traces."""
+    shown: dict[str, list[str]] = {"runs": [], "problems": [], "bounds": [], "traces": []}
+    for key, names in _artefacts(given, scale).items():
+        for experiment, files in _experiments_behind(given, scale, key, names).items():
+            shown["runs"] += files.chunks
+            shown["problems"].append(files.problems)
+            shown["bounds"].append(files.bounds)
+            shown["traces"] += _traces(given[key], experiment, files)
+    return shown
 
 
 def verified_inputs(given: Studies, scale: str) -> dict[str, list[str]]:
     """Input files of the check of all runs and bounds that the page shows. drives: those behind the bounds of worlds that move."""
-    found = inputs(given, scale)
-    shown = {name: found[name] for name in ("runs", "problems", "bounds", "traces")}
-    return shown | {"drives": list(dict.fromkeys(drive for *_, drives in _verified(given, scale) for drive in drives))}
+    return _shown(given, scale) | {"drives": list(dict.fromkeys(drive for *_, drives in _verified(given, scale) for drive in drives))}
 
 
 def verified_params(given: Studies, scale: str, root: str = "") -> dict[str, Any]:
@@ -57,12 +65,9 @@ def verified_params(given: Studies, scale: str, root: str = "") -> dict[str, Any
 def _verified(given: Studies, scale: str) -> Iterator[tuple[str, str, list[str], list[str]]]:
     """The files of problems, of bounds, of the runs that the page shows, and of all drives, of each experiment."""
     for key, names in _artefacts(given, scale).items():
-        found = _runs(given, scale, key, names)
-        for problems, bounds in zip(found["problems"], found["bounds"], strict=True):
-            experiment = Path(problems).stem
-            runs = [run for run in found["runs"] if _of(run) == experiment]
+        for experiment, files in _experiments_behind(given, scale, key, names).items():
             drives = targets.drives(given, scale, key, experiment) if given[key].moves(experiment) else []
-            yield problems, bounds, runs, drives
+            yield files.problems, files.bounds, files.chunks, drives
 
 
 def params(given: Studies, scale: str, root: str = "") -> dict[str, Any]:
@@ -92,7 +97,7 @@ def _artefacts(given: Studies, scale: str) -> dict[str, list[str]]:
     if scale == "smoke":
         made = jobs.smoke(given)[0]
         return {key: in_printed_order([name for study, name in made if study == key]) for key in given}
-    counted = set(targets.summary_inputs(given, scale)["comparisons"]) if _summary(scale) in targets.files_of_scale(given, scale) else set()
+    counted = set(targets.comparison_files(given, scale).values()) if _summary(scale) in targets.files_of_scale(given, scale) else set()
     return {
         key: [
             name
@@ -112,27 +117,21 @@ def _made(given: Studies, scale: str, shown: dict[str, list[str]]) -> list[str]:
     return own if scale == "smoke" else list(dict.fromkeys([*targets.files_of_scale(given, scale), *own]))
 
 
-def _runs(given: Studies, scale: str, key: str, names: list[str]) -> dict[str, list[str]]:
-    """The runs, problems and bounds behind some tables and figures of a study and its claims, and the traces of those runs that are
-    drives.
-    """
-    found: dict[str, list[str]] = {"runs": [], "problems": [], "bounds": []}
-    for name in names:
-        kind = "table" if name in given[key].tables else "figure"
-        _add(found, targets.artefact_inputs(given, scale, key, **{kind: name}))
+def _experiments_behind(given: Studies, scale: str, key: str, names: list[str]) -> dict[str, Files]:
+    """Files of the experiments behind some tables and figures of a study and its claims, with the methods that these show."""
+    shown = [targets.shown_by(given[key], scale, name) for name in names]
     if scale != "smoke" and given[key].claims:
-        _add(found, targets.claims_inputs(given, scale, key))
-    return found | {"traces": [str(Path(run).with_suffix(".traces.parquet")) for run in found["runs"] if given[key].moves(_of(run))]}
+        shown.append(targets.judged_by_claims(given[key], scale))
+    behind: dict[str, Files] = {}
+    for experiments in shown:
+        for name, files in experiments.items():
+            behind[name] = files._replace(runs=(behind[name].runs if name in behind else {}) | files.runs)
+    return behind
 
 
-def _of(run: str) -> str:
-    """The experiment of a file of runs."""
-    return Path(run).parts[-3]
-
-
-def _add(found: dict[str, list[str]], more: dict[str, list[str]]) -> None:
-    for name, files in found.items():
-        files[:] = dict.fromkeys([*files, *more[name]])
+def _traces(study: Study, experiment: str, files: Files) -> list[str]:
+    """Traces of the runs of an experiment, if these are drives."""
+    return [str(Path(chunk).with_suffix(".traces.parquet")) for chunk in files.chunks] if study.moves(experiment) else []
 
 
 def _study(given: Studies, scale: str, key: str, made: list[str], tried: dict[str, str], root: str) -> dict[str, Any]:
@@ -153,7 +152,7 @@ def _study(given: Studies, scale: str, key: str, made: list[str], tried: dict[st
         "figures": {name: described[name] for name in made if name in study.figures},
         "assumptions": [each.plain() for each in study.assumptions],
         "files": files | (tried if judged else {}),
-        "latex": f"{key}/tables.tex" if scale != "smoke" and targets.latex_inputs(given, scale, key)["tables"] else "",
+        "latex": f"{key}/tables.tex" if scale != "smoke" and targets.tables_of(study, scale) else "",
         "experiments": _experiments(given, scale, key, made, root),
     }
 
@@ -181,13 +180,15 @@ def _specs(study: Any, names: list[str]) -> dict[str, Any]:
 
 def _experiments(given: Studies, scale: str, key: str, made: list[str], root: str) -> dict[str, dict[str, Any]]:
     """The experiments whose runs the page shows: methods other than baselines, repeats, and files."""
-    study, found = given[key], _runs(given, scale, key, made)
-    experiments = {}
-    for problems, bounds in zip(found["problems"], found["bounds"], strict=True):
-        name = Path(problems).stem
-        runs, traces = ([f"{root}{each}" for each in found[kind] if _of(each) == name] for kind in ("runs", "traces"))
-        methods = [method for method in study.methods_of(name) if method not in study.baselines]
-        files = {"runs": runs, "problems": f"{root}{problems}", "bounds": f"{root}{bounds}", "traces": traces}
-        if runs:
-            experiments[name] = {"methods": methods, "repeats": study.experiments[name].repeats[scale]} | files
+    study, experiments = given[key], {}
+    for name, files in _experiments_behind(given, scale, key, made).items():
+        if files.chunks:
+            experiments[name] = {
+                "methods": [method for method in study.methods_of(name) if method not in study.baselines],
+                "repeats": study.experiments[name].repeats[scale],
+                "runs": [f"{root}{chunk}" for chunk in files.chunks],
+                "problems": f"{root}{files.problems}",
+                "bounds": f"{root}{files.bounds}",
+                "traces": [f"{root}{trace}" for trace in _traces(study, name, files)],
+            }
     return experiments

@@ -14,6 +14,7 @@ from typing import Any
 from bezierplan.analysis.claims.claim import Claim
 from bezierplan.places import TREE
 from bezierplan.running.digest import content_digest, versioned_digest
+from bezierplan.running.inputs import BOUNDS, PROBLEMS, Files, named, of_experiments, part
 from bezierplan.study import alternatives, choices, definition, design, jobs
 from bezierplan.study.artefacts import Comparison, Pivot
 from bezierplan.study.definition import Study
@@ -52,18 +53,22 @@ def _folder(scale: str, study: str, alternative: str | None = None) -> str:
     return f"results/{scale}/{study}" + (f"/sensitivity/{alternative}" if alternative else "")
 
 
-def _chunks(study: Study, scale: str, experiment: str, methods: Iterable[str]) -> list[str]:
-    """Chunk files of an experiment's methods as configured, whatever else the folder contains."""
-    folder = f"{_folder(study.home(experiment, scale), study.key)}/runs/{experiment}"
-    return [f"{folder}/{method}/{chunk}.parquet" for method in methods for chunk in jobs.chunks(study, experiment, scale)]
+def _files(study: Study, scale: str, experiment: str, methods: Iterable[str] = ()) -> Files:
+    """Files of an experiment: chunks of methods as configured, whatever else the folder contains, problems and bounds."""
+    folder, chunks = _folder(study.home(experiment, scale), study.key), jobs.chunks(study, experiment, scale)
+    runs = {method: [f"{folder}/runs/{experiment}/{method}/{chunk}.parquet" for chunk in chunks] for method in methods}
+    return Files(runs, f"{folder}/problems/{experiment}.parquet", f"{folder}/problems/{experiment}.bounds.parquet")
 
 
-def _problems(study: Study, scale: str, experiments: Iterable[str]) -> list[str]:
-    return [f"{_folder(study.home(name, scale), study.key)}/problems/{name}.parquet" for name in experiments]
+def _published(study: Study, table: str) -> dict[str, str]:
+    """The input file of a table's published numbers, if it has one."""
+    file = study.published_file(table)
+    return named("published", {Path(file).stem: file}) if file else {}
 
 
-def _bounds(study: Study, scale: str, experiments: Iterable[str]) -> list[str]:
-    return [f"{_folder(study.home(name, scale), study.key)}/problems/{name}.bounds.parquet" for name in experiments]
+def _all_published(study: Study) -> dict[str, str]:
+    """Input files of all published numbers, by table."""
+    return named("published", {Path(file).stem: file for file in study.published_files()})
 
 
 def _code(script: str, *modules: str | None) -> str:
@@ -116,7 +121,7 @@ def run_params(given: Studies, scale: str, study: str, experiment: str, method: 
 
 def drives(given: Studies, scale: str, study: str, experiment: str) -> list[str]:
     """All drives of an experiment."""
-    return _chunks(given[study], scale, experiment, given[study].methods_of(experiment))
+    return _files(given[study], scale, experiment, given[study].methods_of(experiment)).chunks
 
 
 def clairvoyant_params(given: Studies, scale: str, study: str, experiment: str) -> dict:
@@ -133,20 +138,15 @@ def moving(given: Studies, moves: bool) -> dict[str, list[str]]:
 # Tables and figures
 
 
-def artefact_inputs(given: Studies, scale: str, study: str, table: str = "", figure: str = "") -> dict[str, list[str]]:
-    """Runs, problems and bounds that a table or figure shows."""
-    name, own = table or figure, given[study]
-    experiments = jobs.experiments_of(own, name)
-    return {
-        "runs": [file for experiment in experiments for file in _chunks(own, scale, experiment, jobs.methods_of(own, name, experiment))],
-        "problems": _problems(own, scale, experiments),
-        "bounds": _bounds(own, scale, experiments),
-    }
+def shown_by(study: Study, scale: str, artefact: str) -> dict[str, Files]:
+    """Files of the experiments that a table or figure shows."""
+    methods = {name: jobs.methods_of(study, artefact, name) for name in jobs.experiments_of(study, artefact)}
+    return {name: _files(study, scale, name, shown) for name, shown in methods.items()}
 
 
-def table_inputs(given: Studies, scale: str, study: str, table: str) -> dict[str, str | list[str]]:
+def table_inputs(given: Studies, scale: str, study: str, table: str) -> dict[str, Any]:
     """Input files of a table of runs."""
-    return artefact_inputs(given, scale, study, table=table) | {"published": given[study].published_file(table) or []}
+    return of_experiments(shown_by(given[study], scale, table)) | _published(given[study], table)
 
 
 def table_params(given: Studies, scale: str, study: str, table: str) -> dict:
@@ -158,19 +158,22 @@ def table_params(given: Studies, scale: str, study: str, table: str) -> dict:
     }
 
 
-def listing_published(given: Studies, scale: str, study: str, listing: str) -> list[str]:
+def listing_inputs(given: Studies, scale: str, study: str, listing: str) -> dict[str, str]:
     """The file that a transcribed table shows, the comparison files of a comparison table, or all published files for a function."""
     spec, own = given[study].tables[listing], given[study]
-    if spec.kind == "comparison":
-        return [f"{_folder(scale, study)}/tables/{name}.comparison.csv" for name in spec.of]
-    file = own.published_file(listing)
-    return [file] if file else own.published_files()
+    if isinstance(spec, Comparison):
+        return named("published", {name: _comparison_file(scale, study, name) for name in spec.of})
+    return _published(own, listing) or _all_published(own)
+
+
+def _comparison_file(scale: str, study: str, table: str) -> str:
+    return f"{_folder(scale, study)}/tables/{table}.comparison.csv"
 
 
 def listing_params(given: Studies, scale: str, study: str, listing: str) -> dict:
     """Params of a table without runs."""
     job, kind = jobs.listing_job(given[study], listing), given[study].tables[listing].kind
-    sources = [] if kind == "comparison" else listing_published(given, scale, study, listing)
+    sources = [] if kind == "comparison" else listing_inputs(given, scale, study, listing).values()
     return {
         "job": _shown(given[study], listing, job),
         "published": content_digest(*sources),
@@ -178,43 +181,50 @@ def listing_params(given: Studies, scale: str, study: str, listing: str) -> dict
     }
 
 
-def latex_inputs(given: Studies, scale: str, study: str) -> dict[str, list[str]]:
+def latex_inputs(given: Studies, scale: str, study: str) -> dict[str, str]:
     """The tables of a study that are made at a scale."""
-    names = [name for name in artefacts_of(given[study], scale) if name in given[study].tables]
-    return {"tables": [f"{_folder(scale, study)}/tables/{name}.csv" for name in names]}
+    return named("tables", {name: f"{_folder(scale, study)}/tables/{name}.csv" for name in tables_of(given[study], scale)})
+
+
+def tables_of(study: Study, scale: str) -> list[str]:
+    """Names of the tables of a study that are made at a scale."""
+    return [name for name in artefacts_of(study, scale) if name in study.tables]
 
 
 def latex_params(given: Studies, scale: str, study: str) -> dict:
     """Params of the tables of a study as LaTeX."""
-    names = [Path(file).stem for file in latex_inputs(given, scale, study)["tables"]]
-    return {"captions": {name: jobs.caption(given[study], name, scale) for name in names}, "code": _code("latex")}
+    return {"captions": {name: jobs.caption(given[study], name, scale) for name in tables_of(given[study], scale)}, "code": _code("latex")}
 
 
-def figure_inputs(given: Studies, scale: str, study: str, figure: str) -> dict[str, list[str]]:
+def figure_inputs(given: Studies, scale: str, study: str, figure: str) -> dict[str, Any]:
     """Input files of a figure: published numbers only for the kinds that draw them and the functions that ask for them."""
-    drawn = jobs.published_drawn(given[study], figure)
-    bare = jobs.figure_job(given[study], figure, scale)["workspaces"]
-    sources = {"maps": given[study].maps(bare), "published": given[study].published_files() if drawn else []}
-    return artefact_inputs(given, scale, study, figure=figure) | sources
+    published = _all_published(given[study]) if jobs.published_drawn(given[study], figure) else {}
+    maps = {"maps": _maps_of_figure(given[study], scale, figure)}
+    return of_experiments(shown_by(given[study], scale, figure)) | maps | published
 
 
-def narrow_inputs(given: Studies, scale: str, study: str, figure: str) -> dict[str, str | list[str]]:
+def _maps_of_figure(study: Study, scale: str, figure: str) -> list[str]:
+    return study.maps(jobs.figure_job(study, figure, scale)["workspaces"])
+
+
+def narrow_inputs(given: Studies, scale: str, study: str, figure: str) -> dict[str, Any]:
     """Input files of a figure on a sheet of one text column: what it draws, and the problems and map files that it is drawn on."""
-    wide = figure_inputs(given, scale, study, figure)
-    return {"data": f"{_folder(scale, study)}/figures/{figure}.csv", "problems": wide["problems"], "maps": wide["maps"]}
+    problems = {name: files.problems for name, files in shown_by(given[study], scale, figure).items()}
+    wide = {"data": f"{_folder(scale, study)}/figures/{figure}.csv", "maps": _maps_of_figure(given[study], scale, figure)}
+    return wide | named(PROBLEMS, problems)
 
 
 def figure_params(given: Studies, scale: str, study: str, figure: str) -> dict:
     """Params of a figure."""
     job, inputs = jobs.figure_job(given[study], figure, scale), figure_inputs(given, scale, study, figure)
-    panels = job["spec"]["panels"]
-    kinds = {f"bezierplan.figures.panels.{panel['kind']}" for panel in panels}
-    module = given[study].module() if any("data" in panel for panel in panels) else None
+    panels = given[study].figures[figure].panels
+    kinds = {f"bezierplan.figures.panels.{panel.kind}" for panel in panels}
+    module = given[study].module() if any(getattr(panel, "data", None) for panel in panels) else None
     again = {_planner(each["planner"]) for methods in job["jobs"].values() for each in methods.values()}
     return {
         "job": _shown(given[study], figure, job),
         "folder": definition.relative(given[study].folder),
-        "sources": content_digest(*inputs["maps"], *inputs["published"]),
+        "sources": content_digest(*inputs["maps"], *part(inputs, "published").values()),
         "code": _code("figure", *sorted(kinds), module, *sorted(again), *_kinds_of_workspace(job)),
     }
 
@@ -268,17 +278,15 @@ def _labels(study: Study, artefact: str) -> dict[str, str]:
 # Claims, audit, alternatives
 
 
-def claims_inputs(given: Studies, scale: str, study: str) -> dict[str, list[str]]:
+def judged_by_claims(study: Study, scale: str) -> dict[str, Files]:
+    """Files of the experiments that claims judge."""
+    experiments = alternatives.experiments_of_claims(study.claims)
+    return {name: _files(study, scale, name, study.experiments[name].methods) for name in experiments}
+
+
+def claims_inputs(given: Studies, scale: str, study: str) -> dict[str, Any]:
     """Input files of claims."""
-    own = given[study]
-    experiments = alternatives.experiments_of_claims(own.claims)
-    runs = [file for name in experiments for file in _chunks(own, scale, name, own.experiments[name].methods)]
-    return {"runs": runs} | _judged_with(own, scale, experiments)
-
-
-def _judged_with(study: Study, scale: str, experiments: list[str]) -> dict[str, list[str]]:
-    problems, bounds = _problems(study, scale, experiments), _bounds(study, scale, experiments)
-    return {"problems": problems, "bounds": bounds, "published": study.published_files()}
+    return of_experiments(judged_by_claims(given[study], scale)) | _all_published(given[study])
 
 
 def claims_params(given: Studies, scale: str, study: str) -> dict:
@@ -302,30 +310,27 @@ def _claims_job(study: Study, scale: str, claims: list[Claim], primary_alone: bo
     return job | {"artefacts": artefacts, "repeats": {name: study.experiments[name].repeats[scale] for name in job["paired"]}}
 
 
-def alternative_inputs(given: Studies, scale: str, study: str, alternative: str) -> dict[str, list[str]]:
+def alternative_inputs(given: Studies, scale: str, study: str, alternative: str) -> dict[str, Any]:
     """Input files of an alternative: runs of the methods that it does not change."""
     own = given[study]
     claims, changed = alternatives.headline_claims(own, alternative), alternatives.methods_changed(own, alternative)
-    experiments = alternatives.experiments_of_claims(claims)
-    runs = []
-    for experiment in experiments:
-        methods = alternatives.methods_of_claims(own, claims, experiment)
-        runs += _chunks(own, scale, experiment, [name for name in methods if name not in changed])
-    return {"runs": runs} | _judged_with(own, scale, experiments)
+    methods = {name: alternatives.methods_of_claims(own, claims, name) for name in alternatives.experiments_of_claims(claims)}
+    files = {name: _files(own, scale, name, [method for method in known if method not in changed]) for name, known in methods.items()}
+    return of_experiments(files) | _all_published(own)
 
 
 def alternative_params(given: Studies, scale: str, study: str, alternative: str) -> dict:
-    """Params of an alternative: `chunks`, the jobs of the runs that it changes, keyed by output file."""
+    """Params of an alternative: `chunks`, the numbers and jobs of the chunks of runs that it changes."""
     own, tried = given[study], alternatives.with_alternative(given[study], alternative)
     claims, changed = alternatives.headline_claims(own, alternative), alternatives.methods_changed(own, alternative)
-    chunks = {
-        f"{experiment}/{method}/{chunk}.parquet": design.judged_only(jobs.job(tried, experiment, method, scale, chunk), claims)
+    chunks = [
+        [chunk, design.judged_only(jobs.job(tried, experiment, method, scale, chunk), claims)]
         for experiment in alternatives.experiments_of_claims(claims)
         for method in alternatives.methods_of_claims(own, claims, experiment)
         if method in changed
         for chunk in jobs.chunks(own, experiment, scale)
-    }
-    planners = sorted({_planner(job["planner"]) for job in chunks.values()})
+    ]
+    planners = sorted({_planner(job["planner"]) for _, job in chunks})
     return {
         "chunks": chunks,
         "job": _claims_job(own, scale, alternatives.claims_tried(own, alternative), primary_alone=True),
@@ -335,7 +340,7 @@ def alternative_params(given: Studies, scale: str, study: str, alternative: str)
 
 
 def _audited(study: Study) -> dict[str, Pivot]:
-    """Tables of published numbers, by the stem of their file."""
+    """Tables of published numbers, by the name of their file."""
     return {Path(table.published).stem: table for table in study.compared().values() if table.published}
 
 
@@ -356,11 +361,13 @@ def _audited_experiments(study: Study) -> list[str]:
     return sorted({table.experiment for table in _audited(study).values()})
 
 
-def audit_inputs(given: Studies, scale: str, study: str) -> dict[str, list[str]]:
+def audit_inputs(given: Studies, scale: str, study: str) -> dict[str, str]:
     """Input files of the audit."""
-    own, experiments = given[study], _audited_experiments(given[study])
-    found = {"bounds": _bounds(own, scale, experiments), "published": own.published_files()}
-    return found | {"problems": _problems(own, scale, [name for name in experiments if _identifies(own, name)])}
+    own = given[study]
+    files = {name: _files(own, scale, name) for name in _audited_experiments(own)}
+    bounds = named(BOUNDS, {name: each.bounds for name, each in files.items()})
+    problems = named(PROBLEMS, {name: each.problems for name, each in files.items() if _identifies(own, name)})
+    return bounds | problems | _all_published(own)
 
 
 def _identifies(study: Study, experiment: str) -> bool:
@@ -378,21 +385,16 @@ def audit_params(given: Studies, scale: str, study: str) -> dict:
             "tables": {name: table.experiment for name, table in _audited(own).items()},
             "primary": {name: table.primary for name, table in _audited(own).items()},
             "layouts": {name: _layout(table) for name, table in _audited(own).items()},
-            "experiments": _audited_experiments(own),
-            "identified": [name for name in _audited_experiments(own) if _identifies(own, name)],
         },
         "published": content_digest(*own.published_files()),
         "code": _code("audit", own.module()),
     }
 
 
-def sensitivity_inputs(given: Studies, scale: str, study: str) -> dict[str, str | list[str]]:
+def sensitivity_inputs(given: Studies, scale: str, study: str) -> dict[str, str]:
     """Input files of the table of alternatives."""
-    tried = alternatives.tried(given[study])
-    return {
-        "claims": f"{_folder(scale, study)}/claims.csv",
-        "alternatives": [f"{_folder(scale, study, name)}/claims.csv" for name in tried],
-    }
+    tried = {name: f"{_folder(scale, study, name)}/claims.csv" for name in alternatives.tried(given[study])}
+    return {"claims": f"{_folder(scale, study)}/claims.csv"} | named("alternatives", tried)
 
 
 def sensitivity_params(given: Studies, scale: str, study: str) -> dict:
@@ -400,10 +402,10 @@ def sensitivity_params(given: Studies, scale: str, study: str) -> dict:
     return {"described": alternatives.alternatives_described(given[study]), "code": _code("sensitivity")}
 
 
-def readings_inputs(given: Studies, scale: str, study: str) -> dict[str, list[str]]:
+def readings_inputs(given: Studies, scale: str, study: str) -> dict[str, Any]:
     """Input files of the search for a reading, which makes problems and runs of its own."""
     own = given[study]
-    return {"maps": choices.maps(own), "published": [own.published_file(name) for name in choices.printed_tables(own)]}
+    return {"maps": choices.maps(own)} | named("published", {name: own.published_file(name) for name in choices.printed_tables(own)})
 
 
 def readings_params(given: Studies, scale: str, study: str) -> dict:
@@ -428,34 +430,36 @@ def _published_tables(given: Studies) -> dict[tuple[str, str], Pivot]:
     return {(key, name): table for key, study in given.items() for name, table in study.compared().items() if table.published}
 
 
-def summary_inputs(given: Studies, scale: str) -> dict[str, list[str]]:
+def comparison_files(given: Studies, scale: str) -> dict[tuple[str, str], str]:
+    """The comparison of each table with published numbers, by study and table."""
+    return {(study, table): _comparison_file(scale, study, table) for study, table in _published_tables(given)}
+
+
+def summary_inputs(given: Studies, scale: str) -> dict[str, Any]:
     """Input files of the summary."""
-    return {
-        "comparisons": [f"{_folder(scale, study)}/tables/{table}.comparison.csv" for study, table in _published_tables(given)],
-        "claims": [f"{_folder(scale, key)}/claims.csv" for key, study in given.items() if study.claims],
-        "worth": f"results/{scale}/worth.csv",
-    }
+    claims = {key: f"{_folder(scale, key)}/claims.csv" for key, study in given.items() if study.claims}
+    comparisons = {f"{study}/{table}": file for (study, table), file in comparison_files(given, scale).items()}
+    return named("comparisons", comparisons) | named("claims", claims) | {"worth": f"results/{scale}/worth.csv"}
 
 
 def summary_params(given: Studies, scale: str) -> dict:
     """Params of the summary."""
-    tables = _published_tables(given)
     job = {
-        "tables": [list(name) for name in tables],
+        "tables": [list(name) for name in _published_tables(given)],
         "titles": {key: study.title for key, study in given.items()},
     }
     return {"job": job, "code": _code("summary")}
 
 
-def worth_inputs(given: Studies, scale: str) -> dict[str, list[str]]:
-    """Input files of the table `worth`."""
-    found: dict[str, list[str]] = {"runs": [], "problems": [], "bounds": []}
-    for study in given.values():
-        experiments = study.worth.experiments if study.worth else []
-        found["runs"] += [file for name in experiments for file in _chunks(study, scale, name, _measured(study, name))]
-        found["problems"] += _problems(study, scale, experiments)
-        found["bounds"] += _bounds(study, scale, experiments)
-    return found
+def worth_inputs(given: Studies, scale: str) -> dict[str, Any]:
+    """Input files of the table `worth`: experiments by study and name."""
+    files = {
+        f"{key}/{name}": _files(study, scale, name, _measured(study, name))
+        for key, study in given.items()
+        if study.worth
+        for name in study.worth.experiments
+    }
+    return of_experiments(files)
 
 
 def _measured(study: Study, experiment: str) -> list[str]:
@@ -518,7 +522,7 @@ def files_of_narrow(given: Studies, scale: str) -> list[str]:
 def files_of_study(given: Studies, scale: str, study: str) -> list[str]:
     """All tables and figures of a study that are made at a scale, its claims, and its audit if it has claims or published numbers."""
     files = [file for name in artefacts_of(given[study], scale) for file in files_of(given, scale, study, name)]
-    if latex_inputs(given, scale, study)["tables"]:
+    if tables_of(given[study], scale):
         files.append(f"{_folder(scale, study)}/tables.tex")
     if given[study].claims:
         files.append(f"{_folder(scale, study)}/claims.csv")

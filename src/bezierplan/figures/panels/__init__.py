@@ -1,15 +1,29 @@
-"""One file per kind of panel: `Options`, the keys that a panel of this kind may have; `data`, which makes the table to draw; `draw`.
+"""One file per kind of panel.
+
+Every file has `Options`, the keys that a panel of this kind may have, of which a panel is an instance, and
+
+| name | means |
+| --- | --- |
+| `data(source, options)` | the table of what is drawn, from what `source` of the options finds: runs, a workspace, a function's table |
+| `draw(axes, frame, scene, options)` | draws the rows of its panel in that table, and returns a `Note`: what the panel says in words |
+
+`draw` labels its artists for the legend, and computes no statistics. A kind whose panels are not flat has `PROJECTION`, matplotlib's name
+for it.
 
 Options are read at every start of the workflow, so these files import libraries for drawing and tables inside the functions that
 need them.
 """
 
+from __future__ import annotations
+
 import functools
 import importlib
-import inspect
-from collections.abc import Callable
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Annotated, Any, ClassVar, NamedTuple
+from types import ModuleType
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, NamedTuple
 
 from pydantic import Field, PrivateAttr, model_validator
 
@@ -29,9 +43,13 @@ from bezierplan.schema.model import (
     Where,
     Workspace,
     after,
-    defaults,
     wrong,
 )
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+    from bezierplan.analysis.results import Results
 
 MOST_PANELS = 26
 """Panels of a figure, each of which has a letter."""
@@ -54,12 +72,47 @@ EACH = (
 )
 
 
+@dataclass(frozen=True)
+class Sources:
+    """What the panels of a figure draw from.
+
+    results: by experiment. workspaces: by name. functions: those of the study's module, by name. published: all published tables by file
+    name. study: its name, from which with others the runs of panels that plan take their seeds.
+    """
+
+    results: Mapping[str, Results] = field(default_factory=dict)
+    workspaces: Mapping[str, Any] = field(default_factory=dict)
+    functions: Mapping[str, Callable[..., pd.DataFrame]] = field(default_factory=dict)
+    published: Mapping[str, pd.DataFrame] = field(default_factory=dict)
+    study: str = ""
+    _tables: dict[str, pd.DataFrame] = field(default_factory=dict)
+
+    def runs(self, experiment: str, where: dict[str, Any]) -> Results:
+        """Results of an experiment, with some of its runs."""
+        from bezierplan.analysis.results import select
+
+        results = self.results[experiment]
+        return results._replace(runs=select(results.runs, where))
+
+    def table(self, panel: TablePanel) -> pd.DataFrame:
+        """The table of a function, which is called once for all panels that draw the same one: with the workspace if they name one, with
+        the published tables if they ask for them, and with their arguments.
+        """
+        call = json.dumps([panel.data, panel.workspace, panel.published, panel.arguments])
+        if call not in self._tables:
+            given = [] if panel.workspace is None else [self.workspaces[panel.workspace]]
+            given += [self.published] if panel.published else []
+            self._tables[call] = self.functions[panel.data](*given, **panel.arguments)
+        return self._tables[call]
+
+
 class Panel(Model):
     """Keys common to all kinds of panel, and what a kind needs in addition to its panels.
 
     published_drawn: whether published numbers are drawn. rerun: whether runs are repeated to draw what no table keeps. plans: whether it
     plans by itself, with a method of the study. one: columns of which the runs that it shows have one value. drives: whether these are
-    drives. tracks: whether their planner must have `track`. fewest_methods: how many methods it compares at least.
+    drives. tracks: whether their planner must have `track`. fewest_methods: how many methods it compares at least. named_rows: whether
+    names stand beside its rows, which take the room of a second panel.
     """
 
     published_drawn: ClassVar[bool] = False
@@ -69,6 +122,7 @@ class Panel(Model):
     drives: ClassVar[bool] = False
     tracks: ClassVar[bool] = False
     fewest_methods: ClassVar[int] = 1
+    named_rows: ClassVar[bool] = False
 
     kind: Line = Field(description="the name of a file in `src/bezierplan/figures/panels`")
     title: Label = Field(None, description="one line above the panel, at most 80 characters, 30 a word")
@@ -76,22 +130,14 @@ class Panel(Model):
 
     _place: str = PrivateAttr("")
 
+    def source(self, sources: Sources) -> Any:
+        """What it draws from, as `data` of its kind takes it."""
+        raise NotImplementedError
+
     @property
     def place(self) -> str:
         """Where it stands in the list of panels in the file: the keys that lead to it."""
         return self._place
-
-    @classmethod
-    def filled(cls, data: Callable) -> Callable:
-        """The function `data` of a kind, called with the defaults of the options that a call leaves out."""
-        options = [name for name, each in inspect.signature(data).parameters.items() if each.kind is each.KEYWORD_ONLY]
-        left_out = {name: default for name, default in defaults(cls).items() if name in options}
-        return functools.wraps(data)(lambda *source, **given: data(*source, **(left_out | given)))
-
-    @classmethod
-    def complete(cls, panel: dict[str, Any]) -> dict[str, Any]:
-        """A panel as `draw` takes it: with the defaults of its kind, but without keys that have none."""
-        return {name: default for name, default in defaults(cls).items() if default is not None} | panel
 
 
 class RunsPanel(Panel):
@@ -99,6 +145,10 @@ class RunsPanel(Panel):
 
     experiment: Experiment = Field(description="the name of an experiment")
     where: Where = Field({}, description="column of the runs table → value or list of values: the runs that are shown")
+
+    def source(self, sources: Sources) -> Any:
+        """Results of the experiment, with the runs that are shown."""
+        return sources.runs(self.experiment, self.where)
 
 
 class TablePanel(Panel):
@@ -113,6 +163,12 @@ class TablePanel(Panel):
     arguments: Arguments = Field({}, description=ARGUMENTS)
     where: Where = Field({}, description="column of the table → value or list of values: the rows that are shown")
 
+    def source(self, sources: Sources) -> Any:
+        """The rows of the function's table that are shown."""
+        from bezierplan.analysis.results import select
+
+        return select(sources.table(self), self.where).copy()
+
 
 class Pick(Model):
     """One run."""
@@ -123,7 +179,7 @@ class Pick(Model):
     having: Metric = Field(None, description="beside one of these, the name of a metric: only runs that have more than 0 of it count")
 
     @model_validator(mode="after")
-    def _check_one(self) -> "Pick":
+    def _check_one(self) -> Pick:
         ways = self.model_fields_set - {"having"}
         if len(ways) != 1:
             raise wrong(f"{len(ways)} keys; expected {{lowest: column}}, {{median: column}} or {{repeat: number}}")
@@ -156,8 +212,18 @@ def exactly_one(panel: Model, *keys: str) -> None:
         raise wrong(f"{' and '.join(given) or 'neither'}: expected either {' or '.join(keys)}")
 
 
+def kind_module(name: str) -> ModuleType:
+    """The file of a kind of panel. Raises ModuleNotFoundError if there is none."""
+    return importlib.import_module(f"{__name__}.{name}")
+
+
+def panel_of(given: dict[str, Any]) -> Panel:
+    """The panel of a job, from its plain values."""
+    return kind_module(given["kind"]).Options.model_validate(given)
+
+
 @functools.cache
 def kinds() -> dict[str, type[Panel]]:
     """Kind of panel -> the options of its panels."""
     names = sorted(file.stem for file in Path(__file__).parent.glob("[!_]*.py"))
-    return {name: importlib.import_module(f"{__name__}.{name}").Options for name in names}
+    return {name: kind_module(name).Options for name in names}

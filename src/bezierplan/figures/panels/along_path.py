@@ -40,22 +40,20 @@ class Options(RunsPanel):
     limit: Number = Field(None, description="the published limit, a number")
 
 
-@Options.filled
-def data(results: Results, *, pick: dict[str, Any], quantity: Literal["curvature"], limit: float | None) -> pd.DataFrame:
+def data(results: Results, options: Options) -> pd.DataFrame:
     """One row per sample of a path, uniform in its parameter; columns: those of `paths.picked`, quantity, limit, t (0 to 1), value.
 
     The value of curvature has its sign, with left turns positive, in 1/unit, and is empty where the speed is zero. Without a path, one row
     without t and value.
 
-    pick: the run, as in `analysis.results.pick`. limit: the published one, in 1/unit. Raises ValueError unless all runs are of one problem
-    and one method.
+    Raises ValueError unless all runs are of one problem and one method.
     """
     import pandas as pd
 
     from bezierplan.analysis.results import path_of
 
-    run, names = picked(results, pick)
-    names |= {"quantity": quantity, "limit": math.nan if limit is None else limit}
+    run, names = picked(results, options.pick)
+    names |= {"quantity": options.quantity, "limit": math.nan if options.limit is None else options.limit}
     path = None if run is None else path_of(run)
     if path is None:
         return pd.DataFrame([names | {"t": math.nan, "value": math.nan}])
@@ -64,10 +62,10 @@ def data(results: Results, *, pick: dict[str, Any], quantity: Literal["curvature
     return frame[[*names, "t", "value"]]
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`."""
     row = frame.iloc[0]
-    unit = scene.problems[panel["experiment"]][row["problem"]].workspace.unit
+    unit = scene.problems[options.experiment][row["problem"]].workspace.unit
     axes.set_xlim(0, 1)
     axes.set_xlabel("curve parameter t")
     axes.set_ylabel(f"signed {row['quantity']} (1/{unit})")

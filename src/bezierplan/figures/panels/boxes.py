@@ -37,6 +37,7 @@ _BEHIND_TEXT = {"facecolor": "white", "edgecolor": "none", "alpha": 0.8, "pad": 
 class Options(RunsPanel):
     """Keys of a panel."""
 
+    named_rows: ClassVar[bool] = True
     published_drawn: ClassVar[bool] = True
 
     metric: Metric = Field(description="the name of a metric")
@@ -45,8 +46,7 @@ class Options(RunsPanel):
     limit: Number = Field(None, description="the published limit of the metric, a number")
 
 
-@Options.filled
-def data(results: Results, *, metric: str, by: str, limits: bool, limit: float | None) -> pd.DataFrame:
+def data(results: Results, options: Options) -> pd.DataFrame:
     """One row per part of a box; columns: those of `lines.constants`, `by` by its own name, runs and feasible_runs (counts), part, value.
 
     Parts: low and high (where the whiskers end), quartile1, median, quartile3; beyond, a value beyond the whiskers; mean; published, the
@@ -54,10 +54,11 @@ def data(results: Results, *, metric: str, by: str, limits: bool, limit: float |
     runs that have the metric. A group without such runs has a row: none. Rows without a group: limit; and, with limits, reference (the best
     known path of the kind) and bound (the exact shortest length), each if all runs share it.
 
-    by: a column of the runs table. limit: the published limit. Raises KeyError for an unknown metric or column.
+    Raises KeyError for an unknown metric or column.
     """
     import pandas as pd
 
+    metric, by = options.metric, options.by
     runs = results.runs.assign(value=metrics.values(results.runs, metric, results.problems))
     rows = []
     for group, own in runs.groupby(by):
@@ -66,10 +67,10 @@ def data(results: Results, *, metric: str, by: str, limits: bool, limit: float |
         for part, statistic in (("published", "mean"), ("published_end", "min"), ("published_end", "max")):
             parts += [(part, value) for value in published(results, own, metric, statistic)]
         rows += [named | {"part": part, "value": value} for part, value in parts]
-    if limits:
+    if options.limits:
         rows += [constants(runs) | {"part": name, "value": value} for name, value in shared_limits(runs).items()]
-    if limit is not None:
-        rows.append(constants(runs) | {"part": "limit", "value": limit})
+    if options.limit is not None:
+        rows.append(constants(runs) | {"part": "limit", "value": options.limit})
     return pd.DataFrame(rows)
 
 
@@ -85,10 +86,10 @@ def _box(values: np.ndarray) -> list[tuple[str, float]]:
     return box + [("beyond", value) for value in values[~inside]]
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`, the first box on top."""
-    by = panel["by"]
-    groups = style.in_order(frame[by], panel)
+    by = options.by
+    groups = style.in_order(frame[by], options.where)
     own = [frame[frame[by] == group].groupby("part")["value"].apply(list).to_dict() for group in groups]
     _draw_boxes(axes, own)
     for name, look in LIMITS.items():
@@ -96,7 +97,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
             axes.axvline(value, zorder=1.5, **look)
     for value in frame.loc[frame["part"] == "limit", "value"]:
         axes.axvline(value, zorder=1.5, label=f"published limit: {value:g} {scene.unit}", **style.PUBLISHED)
-    axes.set_xlabel(axis_label(panel["metric"], scene))
+    axes.set_xlabel(axis_label(options.metric, scene))
     medians = frame.loc[frame["part"] == "median", "value"]
     axes.locator_params(axis="x", nbins=4, steps=[1, 2, 5, 10])  # labels such as 0.0025 would touch each other
     if style.is_wide(medians):

@@ -28,8 +28,7 @@ class Options(RunsPanel):
     repeat: Repeat = Field(0, description="which run of each method is shown, a whole number; left out: 0")
 
 
-@Options.filled
-def data(results: Results, *, repeat: int) -> pd.DataFrame:
+def data(results: Results, options: Options) -> pd.DataFrame:
     """One row per step; columns: problem, method, run (its id), step (its end), clearance (least distance to an obstacle in it, in units,
     negative inside a circle), arrived. Raises ValueError for runs of several problems.
     """
@@ -42,18 +41,18 @@ def data(results: Results, *, repeat: int) -> pd.DataFrame:
             f"clearance over time needs runs of one problem, not of {results.runs['problem'].nunique()}; see the panel's `where`"
         )
     parts = []
-    for _, run in results.runs[results.runs["repeat"] == repeat].iterrows():
+    for _, run in results.runs[results.runs["repeat"] == options.repeat].iterrows():
         given = (results.problems[run["problem"]], results.worlds[run["problem"]])
-        ride, verdict = rides.rerun(results.jobs[run["method"]], run["condition"], repeat, *given)
+        ride, verdict = rides.rerun(results.jobs[run["method"]], run["condition"], options.repeat, *given)
         names = {"problem": run["problem"], "method": run["method"], "run": run["id"]}
         steps = np.arange(1, len(verdict.clearance) + 1)
         parts.append(pd.DataFrame({**names, "step": steps, "clearance": verdict.clearance, "arrived": ride.arrived}))
     return pd.concat(parts, ignore_index=True)
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`."""
-    methods = style.in_order(frame["method"], panel)
+    methods = style.in_order(frame["method"], options.where)
     for method, look in zip(methods, style.lines(methods, scene.looks)):
         own = frame[frame["method"] == method]
         axes.plot(

@@ -67,17 +67,7 @@ class Options(RunsPanel):
         return self
 
 
-@Options.filled
-def data(
-    results: Results,
-    *,
-    pick: dict[str, Any] | None,
-    hue: str | None,
-    statistic: Literal["mean", "median"],
-    reference: bool,
-    until: int | None,
-    printed: str | None,
-) -> pd.DataFrame:
+def data(results: Results, options: Options) -> pd.DataFrame:
     """One row per generation, and with `hue` also per value of it. A run that stopped early keeps its last objective.
 
     Objectives are the planner's own, in units, over all runs, feasible or not; bound is the exact shortest length.
@@ -88,20 +78,21 @@ def data(
     column of that name: the length of the best known path of the methods' own kind, empty if problems differ in it. With `printed`, a
     column of that name: the mean that this published table has for a group, in the row of the last generation.
 
-    pick: the run, as in `analysis.results.pick`. hue: a column of the runs table. until: the generation at which rows end, unless a run is
-    longer. Raises ValueError unless either pick or hue is given, and with `pick` unless all runs are of one problem and one method.
+    Rows end at the generation `until`, unless a run is longer. Raises ValueError with `pick` unless all runs are of one problem and one
+    method.
     """
-    if (pick is None) == (hue is None):
-        raise ValueError("a panel of kind convergence needs either pick or hue")
-    generations = max(results.runs["history"].map(len).max(), 0 if until is None else until + 1)
-    frame = _of_one_run(results, pick, generations) if hue is None else _of_groups(results, hue, statistic, generations)
-    if printed is not None and results.published is not None:
-        table = results.published[results.published["table"] == printed]
-        frame["printed"] = _published_ends(results._replace(published=table), frame, hue)
-    return frame.assign(reference=shared_limits(results.runs).get("reference", np.nan)) if reference else frame
+    generations = max(results.runs["history"].map(len).max(), 0 if options.until is None else options.until + 1)
+    if options.pick is not None:
+        frame = _of_one_run(results, options.pick, generations)
+    else:
+        frame = _of_groups(results, options.hue, options.statistic, generations)
+    if options.printed is not None and results.published is not None:
+        table = results.published[results.published["table"] == options.printed]
+        frame["printed"] = _published_ends(results._replace(published=table), frame, options.hue)
+    return frame.assign(reference=shared_limits(results.runs).get("reference", np.nan)) if options.reference else frame
 
 
-def _of_one_run(results: Results, pick: dict[str, Any], generations: int) -> pd.DataFrame:
+def _of_one_run(results: Results, pick: Pick, generations: int) -> pd.DataFrame:
     import pandas as pd
 
     run, names = picked(results, pick)
@@ -153,7 +144,7 @@ def _lengthened(history: list[float], generations: int) -> np.ndarray:
     return np.pad(np.asarray(history, dtype=float), (0, generations - len(history)), mode="edge")
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`."""
     axes.set_xlim(0, max(1, frame["generation"].max()))
     axes.xaxis.get_major_locator().set_params(integer=True)
@@ -162,8 +153,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
     for name, look in LIMITS.items():
         if name in frame and np.isfinite(frame[name].iloc[0]):
             axes.axhline(frame[name].iloc[0], **look)
-    if "hue" in panel:
-        return _draw_groups(axes, frame, scene, panel)
+    if options.hue is not None:
+        return _draw_groups(axes, frame, scene, options)
     _draw_one_run(axes, frame)
     axes.set_ylabel(f"objective ({scene.unit})")
     style.fit(axes.yaxis, frame["median"], [])
@@ -179,9 +170,9 @@ def _draw_one_run(axes: Axes, frame: pd.DataFrame) -> None:
         axes.plot(generation, frame["objective"], label="run shown", **style.RUN_SHOWN)
 
 
-def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
-    hue, statistic = panel["hue"], panel["statistic"]
-    groups = style.in_order(frame[hue], panel)
+def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
+    hue, statistic = options.hue, options.statistic
+    groups = style.in_order(frame[hue], options.where)
     looks = style.lines(groups, scene.looks)
     lines = [frame.loc[frame[hue] == group] for group in groups]
     for number, (group, own, look) in enumerate(zip(groups, lines, looks)):

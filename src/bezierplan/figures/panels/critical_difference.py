@@ -33,6 +33,7 @@ _ROW = 0.085
 class Options(RunsPanel):
     """Keys of a panel."""
 
+    named_rows: ClassVar[bool] = True
     fewest_methods: ClassVar[int] = 3
 
     metric: Metric = Field("objective", description="what is ranked, the name of a metric; left out: objective")
@@ -47,22 +48,21 @@ class Options(RunsPanel):
         return self.printed is not None
 
 
-@Options.filled
-def data(results: Results, *, metric: str, printed: str | None, unit: Literal["repeat", "problem"]) -> pd.DataFrame:
+def data(results: Results, options: Options) -> pd.DataFrame:
     """One row per rank; columns: method, part, value, methods and units (counts), chi2, p_value, difference.
 
     Parts: rank (the mean rank of a method, 1 for the lowest values; ties share the mean of their ranks), published (that of the paper). In
     a unit every method is ranked: a repeat of a condition or, with `problem`, a condition, by the lower median of its repeats. chi2 and
     p_value: Friedman's test; difference: Nemenyi's critical difference at 5 %.
 
-    metric: what is ranked. printed: the published table whose mean ranks are also shown. Raises ValueError for fewer than three
-    methods, and if a unit lacks one.
+    Raises ValueError for fewer than three methods, and if a unit lacks one.
     """
     import pandas as pd
     from scipy import stats
 
+    metric, printed = options.metric, options.printed
     runs = results.runs.assign(value=metrics.values(results.runs, metric, results.problems))
-    if unit == "problem":
+    if options.unit == "problem":
         table = running_time.by_problem(runs, runs["value"].to_numpy())
     else:
         table = runs.pivot_table(index=["condition", "repeat"], columns="method", values="value", dropna=False)
@@ -80,7 +80,7 @@ def data(results: Results, *, metric: str, printed: str | None, unit: Literal["r
     return pd.DataFrame(rows).reindex(columns=["method", "part", "value"]).assign(**tested)
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`, the best method on top."""
     tested = frame.iloc[0]
     ranks, printed = frame[frame["part"] == "rank"], frame[frame["part"] == "published"].set_index("method")["value"]
@@ -99,6 +99,6 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
     axes.set_xlabel("mean rank (1 is best)")
     axes.grid(visible=True, axis="x")
     chance = f"p = {tested['p_value']:.2g}" if tested["p_value"] >= 1e-4 else "p below 0.0001"
-    units = "problems" if panel.get("unit") == "problem" else "repeats"
+    units = "problems" if options.unit == "problem" else "repeats"
     words = f"methods whose bars overlap cannot be distinguished: {tested['units']:g} {units}, Friedman's chi-squared {tested['chi2']:.1f}"
     return Note("", f"{words}, {chance}; critical difference {tested['difference']:.2f}")

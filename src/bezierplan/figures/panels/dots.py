@@ -38,6 +38,7 @@ _NONE = {"linestyle": "", "marker": "x", "markersize": 3.5, "color": style.BLACK
 class Options(RunsPanel):
     """Keys of a panel."""
 
+    named_rows: ClassVar[bool] = True
     published_drawn: ClassVar[bool] = True
 
     metric: Metric = Field(description="the name of a metric")
@@ -46,18 +47,17 @@ class Options(RunsPanel):
     statistic: Literal["mean", "median", "share"] = Field("mean", description="mean (left out: this), median or share")
 
 
-@Options.filled
-def data(results: Results, *, x: str, hue: str, metric: str, statistic: Literal["mean", "median", "share"]) -> pd.DataFrame:
+def data(results: Results, options: Options) -> pd.DataFrame:
     """One row per dot; columns: those of `lines.summary`, with x and hue by their own names, bound, and published.
 
     bound is the mean exact shortest length of the problems of a dot's feasible runs (those that count for a length), in units; empty for
     metrics that it does not bound. published is the number that the paper prints, if it prints one.
 
-    x: a column, with a row for each of its values. hue: a column, with a dot in each row for each of its values. Raises KeyError for an
-    unknown metric or column.
+    Raises KeyError for an unknown metric or column.
     """
     import pandas as pd
 
+    x, hue, metric, statistic = options.x, options.hue, options.metric, options.statistic
     frame = summary(results, [x, hue], metric, statistic)
     feasible = results.runs[results.runs["feasible"]].sort_values("id")
     bounds = feasible.groupby([x, hue])["bound"].mean().rename("bound") if metric in _BOUNDED else pd.Series(dtype=float)
@@ -66,11 +66,11 @@ def data(results: Results, *, x: str, hue: str, metric: str, statistic: Literal[
     return frame.assign(bound=[bounds.get(dot, np.nan) for dot in dots], published=[printed[dot] for dot in dots])
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`, the first one on top."""
-    x, hue, metric = panel["x"], panel["hue"], panel["metric"]
-    rows, dots = style.in_order(frame[x], panel), style.in_order(frame[hue], panel)
-    axes.set_xlabel(axis_label(metric, scene, panel["statistic"]))
+    x, hue = options.x, options.hue
+    rows, dots = style.in_order(frame[x], options.where), style.in_order(frame[hue], options.where)
+    axes.set_xlabel(axis_label(options.metric, scene, options.statistic))
     axes.set_ylim(len(rows) - 0.5, -0.5)
     axes.set_yticks(range(len(rows)), [scene.labels.get(row, row) if isinstance(row, str) else f"{row:g}" for row in rows])
     axes.tick_params(axis="y", length=0)
@@ -88,7 +88,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
     for row, bound in bounds.items():
         middle = rows.index(row)
         axes.vlines(bound, middle - 0.45, middle + 0.45, label="exact shortest path", zorder=1.5, **style.BOUND)
-    return Note("", runs_note(frame, panel["statistic"], "dot"))
+    return Note("", runs_note(frame, options.statistic, "dot"))
 
 
 def _draw_dots(axes: Axes, frame: pd.DataFrame, at: np.ndarray, look: dict) -> None:

@@ -61,16 +61,14 @@ class Options(TablePanel):
     y_label: Line = Field(None, description="what the panel's height shows, with its unit")
 
 
-@Options.filled
-def data(marks: pd.DataFrame, *, x_label: str | None, y_label: str | None) -> pd.DataFrame:
+def data(marks: pd.DataFrame, options: Options) -> pd.DataFrame:
     """One row per mark, or per point of a line or arrow, with `COLUMNS` and the function's own extra columns, in drawing order.
 
     mark: cell (a box about x, y of a width and a height), circle (about x, y, of a radius), line and arrow (through the points of a group),
     dots (marks at x, y), text (at x, y). role: the style: obstacle, start, target, first, second, third, accent, muted or note.
     label: its entry in the legend; empty for none.
 
-    x_label, y_label: what the axes show, with the unit; without them, and without a workspace, a drawing has no scale. Raises
-    ValueError for an unknown mark, and for one that lacks a required value.
+    Raises ValueError for an unknown mark, and for one that lacks a required value.
     """
     for mark, own in marks.groupby("mark"):
         if mark not in _NEEDED:
@@ -82,11 +80,11 @@ def data(marks: pd.DataFrame, *, x_label: str | None, y_label: str | None) -> pd
     return marks.reindex(columns=[*columns, *marks.columns.difference(columns, sort=False)])
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data` to scale, over their workspace if the panel has one."""
     axes.set_aspect("equal")
-    if "workspace" in panel:
-        home = scene.workspaces[panel["workspace"]]
+    if options.workspace is not None:
+        home = scene.workspaces[options.workspace]
         workspaces.shade(axes, workspaces.parts(home))
         workspaces.scale(axes, home.unit)
     # Groups of neighbouring rows, so that later rows of the table lie on top.
@@ -94,14 +92,15 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
     changed = (names != names.shift()).cumsum()
     for level, (_, own) in enumerate(frame.groupby(changed, sort=True)):
         _draw_marks(axes, own, 3 + level / 1000)
-    if "workspace" not in panel:
+    if options.workspace is None:
         _fit(axes, frame)
-    for name in ("x", "y"):
-        if f"{name}_label" in panel:
-            axes.set(**{f"{name}label": panel[f"{name}_label"]})
-        elif "workspace" not in panel:
+    labels = {"x": options.x_label, "y": options.y_label}
+    for name, label in labels.items():
+        if label is not None:
+            axes.set(**{f"{name}label": label})
+        elif options.workspace is None:
             axes.set(**{f"{name}ticks": []})
-    if "workspace" not in panel and not {"x_label", "y_label"} & set(panel):
+    if options.workspace is None and not any(labels.values()):
         axes.set_frame_on(False)
     return Note()
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -33,10 +33,12 @@ _NAMES = {"evaluations": "expected evaluations", "cpu_s": "expected CPU time (s)
 class Options(RunsPanel):
     """Keys of a panel."""
 
+    named_rows: ClassVar[bool] = True
+
     cost: Literal["evaluations", "cpu_s"] = Field(description="what is counted: evaluations or cpu_s")
 
 
-def data(results: Results, *, cost: Literal["evaluations", "cpu_s"]) -> pd.DataFrame:
+def data(results: Results, options: Options) -> pd.DataFrame:
     """One row per method and target; columns: method, within, value, low95, high95, problems, reached, runs, successes.
 
     value: the expected running time, on several problems (conditions) the lower median over them; infinite where at least half of them are
@@ -47,6 +49,7 @@ def data(results: Results, *, cost: Literal["evaluations", "cpu_s"]) -> pd.DataF
     """
     import pandas as pd
 
+    cost = options.cost
     runs, rows = results.runs.sort_values("id"), []
     for within in running_time.TARGETS:
         marked = runs.assign(done=running_time.solves(runs, within))
@@ -94,17 +97,17 @@ def _interval(groups: list[tuple[np.ndarray, np.ndarray]], values: np.ndarray, r
     return float(low), float(high)
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`, a line of marks per method. An infinite time stands at the right edge."""
     from matplotlib.ticker import FixedLocator, FuncFormatter, LogLocator
 
-    methods, targets = style.in_order(frame["method"], panel), sorted(frame["within"].unique())
+    methods, targets = style.in_order(frame["method"], options.where), sorted(frame["within"].unique())
     finite = frame["value"][np.isfinite(frame["value"]) & (frame["value"] > 0)]
     low, high = (finite.min(), finite.max()) if len(finite) else (1.0, 10.0)
     never = high * max((high / low) ** _NEVER, 4.0)
     axes.set_xscale("log")
     axes.set_xlim(low / 2, never * 1.5)
-    axes.set_xlabel(_NAMES[panel["cost"]])
+    axes.set_xlabel(_NAMES[options.cost])
     for number, (target, look) in enumerate(zip(targets, style.lines([str(target) for target in targets]))):
         own = frame[frame["within"] == target].set_index("method").reindex(methods)
         heights = np.arange(len(methods)) + _APART * (number - (len(targets) - 1) / 2)
@@ -119,7 +122,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
     last = never / (never / low) ** _CLEAR
     steps = (1.0,) if high > 100 * low else (1.0, 3.0)
     ticks = [tick for tick in LogLocator(subs=steps, numticks=4).tick_values(low, high) if low / 2 <= tick <= last]
-    thousand = 1000 if panel["cost"] == "cpu_s" and high < _SHORT else 1
+    thousand = 1000 if options.cost == "cpu_s" and high < _SHORT else 1
     if thousand > 1:
         axes.set_xlabel(f"{_NAMES['cpu_s'].removesuffix('(s)')}(ms)")
     axes.xaxis.set_major_locator(FixedLocator([*ticks, never]))

@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import Note, RunsPanel
+from bezierplan.figures.panels import Note, RunsPanel, Sources
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.schema.model import Function
 
@@ -41,8 +41,13 @@ class Options(RunsPanel):
 
     data: Function = Field(description="the name of a function of the study's module that returns a table, called with the runs")
 
+    def source(self, sources: Sources) -> tuple[Results, pd.DataFrame]:
+        """Results, with the function's table of them."""
+        results = super().source(sources)
+        return results, sources.functions[self.data](results)
 
-def data(source: tuple[Results, pd.DataFrame]) -> pd.DataFrame:
+
+def data(source: tuple[Results, pd.DataFrame], options: Options) -> pd.DataFrame:
     """What is drawn, one row per place; columns: problem, part, x, y (in the workspace's unit), objective (of nodes, in units).
 
     Parts: node (of a grid, y changing fastest), minimum (the lowest node of a valley), lowest (the lowest node), fixed (what does not
@@ -82,9 +87,9 @@ def round_numbers(values: np.ndarray) -> list[float]:
     return [n * 10.0**power for power in powers for n in _NUMBERS if values.min() <= n * 10.0**power <= values.max()]
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`."""
-    workspace = scene.problems[panel["experiment"]][frame["problem"].iloc[0]].workspace
+    workspace = scene.problems[options.experiment][frame["problem"].iloc[0]].workspace
     x, y, values = nodes(frame)
     colours = scale_of(values)
     levels = np.geomspace(values.min(), values.max(), _STEPS)

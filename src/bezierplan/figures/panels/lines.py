@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -10,7 +9,7 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis import metrics, statistics
 from bezierplan.figures import style
-from bezierplan.figures.panels import Note, TablePanel, exactly_one
+from bezierplan.figures.panels import Note, Sources, TablePanel, exactly_one
 from bezierplan.schema.model import (
     Column,
     Experiment,
@@ -69,35 +68,27 @@ class Options(TablePanel):
         """Whether published numbers are drawn."""
         return self.printed is not None
 
+    def source(self, sources: Sources) -> Results | pd.DataFrame:
+        """Runs, or the rows of a table."""
+        return super().source(sources) if self.experiment is None else sources.runs(self.experiment, self.where)
 
-@Options.filled
-def data(
-    source: Results | pd.DataFrame,
-    *,
-    x: str,
-    metric: str,
-    statistic: Literal["mean", "median", "share"],
-    hue: str | None,
-    repeats: Sequence[int],
-    printed: str | None,
-    joined: bool,
-) -> pd.DataFrame:
+
+def data(source: Results | pd.DataFrame, options: Options) -> pd.DataFrame:
     """One row per point; columns: hue (if one is given) and x, both by their own names; part (statistic, repeat, published or value),
     value.
 
     For runs: the columns of `summary` for the statistic, and repeat, the number of a single run. For a table: the column `metric`, as is.
 
-    x: a numeric column. hue: a column, with a line for each of its values. repeats: the single runs to draw as well. printed: a published
-    table whose means are drawn as well. joined: whether lines join points. Raises ValueError if a single repeat has several runs at one
-    place, and KeyError for an unknown metric or column.
+    Raises ValueError if a single repeat has several runs at one place, and KeyError for an unknown metric or column.
     """
     import pandas as pd
 
-    keys = [x] if hue is None else [hue, x]
+    metric, printed = options.metric, options.printed
+    keys = [options.x] if options.hue is None else [options.hue, options.x]
     if isinstance(source, pd.DataFrame):
         return source[[*keys, metric]].rename(columns={metric: "value"}).assign(part="value")
-    frame = summary(source, keys, metric, statistic).assign(part="statistic")
-    single = source.runs[source.runs["repeat"].isin(repeats)]
+    frame = summary(source, keys, metric, options.statistic).assign(part="statistic")
+    single = source.runs[source.runs["repeat"].isin(options.repeats)]
     if single.duplicated([*keys, "repeat"]).any():
         raise ValueError(f"repeats: several runs of one repeat have equal {' and '.join(keys)}; see the panel's `where`")
     values = metrics.values(source.runs, metric, source.problems).loc[single.index]
@@ -199,12 +190,12 @@ def _range(low: float, high: float) -> str:
     return f"{low:g}" if low == high else f"{low:g} to {high:g}"
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`."""
-    x, hue = panel["x"], panel.get("hue")
-    of_runs = "experiment" in panel
-    statistic = panel["statistic"] if of_runs else ""
-    groups = [None] if hue is None else style.in_order(frame[hue], panel)
+    x, hue = options.x, options.hue
+    of_runs = options.experiment is not None
+    statistic = options.statistic if of_runs else ""
+    groups = [None] if hue is None else style.in_order(frame[hue], options.where)
     values = np.unique(frame[x])
     apart = min(np.diff(values), default=1)
     for number, (group, look) in enumerate(zip(groups, _looks(groups, frame, scene))):
@@ -218,19 +209,19 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
             edge = style.PUBLISHED_MARK | {"markeredgecolor": look["color"]}
             axes.plot(theirs[x], theirs["value"], zorder=5, **edge)
             axes.plot([], [], label="published mean", **style.PUBLISHED_MARK)
-        if panel["joined"]:
+        if options.joined:
             bands = len(groups) <= style.MOST_BANDS
             _draw_statistic(axes, own[own["part"] == "statistic"], x, look | named, bands=bands)
             _draw_repeats(axes, own[own["part"] == "repeat"], x, look["color"])
         else:
             aside = _SPREAD * apart * ((number + 0.5) / len(groups) - 0.5)
             _draw_apart(axes, own[own["part"] == "statistic"], x, aside, look | named)
-    if not panel["joined"] or (len(values) <= _FEW and len(set(np.diff(values))) <= 1):
+    if not options.joined or (len(values) <= _FEW and len(set(np.diff(values))) <= 1):
         axes.set_xticks(values)
     elif (frame[x] % 1 == 0).all():
         axes.xaxis.get_major_locator().set_params(integer=True)
     axes.set_xlabel(axis_label(x, scene))
-    axes.set_ylabel(axis_label(panel["metric"], scene, statistic))
+    axes.set_ylabel(axis_label(options.metric, scene, statistic))
     axes.grid(visible=True)
     style.fit(axes.yaxis, frame["value"], [] if hue is None else frame.groupby(hue)["value"].median())
     style.in_milliseconds(axes.yaxis, frame["value"])

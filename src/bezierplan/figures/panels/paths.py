@@ -13,7 +13,7 @@ from pydantic import Field, model_validator
 
 from bezierplan.analysis import metrics
 from bezierplan.figures import style
-from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, View, exactly_one
+from bezierplan.figures.panels import PICK, Note, Pick, RunsPanel, Sources, View, exactly_one
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.figures.panels.lines import axis_label, published
 from bezierplan.geometry import curves
@@ -72,7 +72,7 @@ _CHANGED = {
 }
 
 
-def picked(results: Results, pick: dict[str, Any]) -> tuple[pd.Series | None, dict[str, Any]]:
+def picked(results: Results, pick: Pick) -> tuple[pd.Series | None, dict[str, Any]]:
     """The run that a panel shows, or None if there is none to pick, and its description in the columns of the panel's csv file.
 
     Columns: problem, method, runs and feasible_runs (counts), run (its id; empty without a run), curve, length (in units), feasible.
@@ -85,9 +85,8 @@ def picked(results: Results, pick: dict[str, Any]) -> tuple[pd.Series | None, di
         found = list(runs[column].unique())
         if len(found) != 1:
             raise ValueError(f"a panel that shows one run needs runs of exactly one {column}, not of {len(found)} {found}; see its `where`")
-    way = {name: value for name, value in pick.items() if name != "having"}
-    having = metrics.values(runs, pick["having"], results.problems) > 0 if "having" in pick else slice(None)
-    run = pick_run(runs[having], way)
+    having = slice(None) if pick.having is None else metrics.values(runs, pick.having, results.problems) > 0
+    run = pick_run(runs[having], pick.plain("having"))
     names = {"problem": runs["problem"].iloc[0], "method": runs["method"].iloc[0]}
     names |= {"runs": len(runs), "feasible_runs": int(runs["feasible"].sum())}
     if run is None:
@@ -154,6 +153,10 @@ class Options(RunsPanel):
         """Whether published numbers are drawn."""
         return self.printed is not None
 
+    def source(self, sources: Sources) -> Results | None:
+        """Runs; nothing for an explicit path."""
+        return None if self.experiment is None else super().source(sources)
+
     @property
     def one(self) -> tuple[str, ...]:
         """Columns of which the runs have one value: one for each of hue."""
@@ -176,23 +179,7 @@ class Options(RunsPanel):
         return self
 
 
-@Options.filled
-def data(
-    results: Results | None,
-    *,
-    pick: dict[str, Any] | None,
-    explicit: dict[str, Any] | None,
-    hue: str | None,
-    control: Literal["all", "points", "none"],
-    measure: str,
-    bare: bool,
-    letters: Sequence[str] | None,
-    changed_from: str | None,
-    cell_optimum: bool,
-    band: float | None,
-    printed: str | None,
-    view: Sequence[float] | None,
-) -> pd.DataFrame:
+def data(results: Results | None, options: Options) -> pd.DataFrame:
     """What is drawn of a path: one row per point, in the order in which points are joined.
 
     Columns: those of `picked`, for a run; part (start, target, bound, hull, control or points, occupied: those of them in occupied cells,
@@ -200,51 +187,46 @@ def data(
     workspace's unit). Without a run to show, only what belongs to the problem. Only curves within their hull have one, and control
     points are left out if some are tangents.
 
-    pick: the run, as in `analysis.results.pick`. explicit: {curve, points}, a path without a run. hue: a column; a run is picked for each
-    of its values, which the rows name, and drawn without control points; the column `measure` has its value of this metric. bare: only
-    start and target, whatever the run. control: whether control points are drawn with polygon and hull, alone, or not at all. letters:
-    those next to start and target. changed_from: the problem with different occupied cells. cell_optimum: whether the shortest path along
-    cell centres is drawn. band: a distance from occupied cells; the column obstacle_clearance has that of the path. printed: a published
-    table; the column of this name has its shortest length for the runs. view: the visible part of the workspace, as bounds; the rows still
-    include everything.
-    Raises ValueError unless either pick or explicit is given and all runs, of one value of hue, are of one problem and one method, and if a
-    curve cannot have such points.
+    With `hue`, paths are drawn without control points, and the column `measure` has each run's value of that metric. With `band`, the
+    column obstacle_clearance has the path's distance to occupied cells. With `printed`, the column of this name has the shortest length of
+    that published table for the runs. Whatever the `view`, the rows include everything.
+
+    Raises ValueError unless all runs, of one value of hue, are of one problem and one method, and if a curve cannot have such points.
     """
     import pandas as pd
 
     from bezierplan.analysis.results import path_of
 
-    if (pick is None) == (explicit is None):
-        raise ValueError("a panel of kind paths needs either pick or explicit")
-    if explicit is not None:
-        path = Path(explicit["curve"], np.array(explicit["points"], dtype=float))
+    if options.explicit is not None:
+        path = Path(options.explicit.curve, np.array(options.explicit.points, dtype=float))
         start, target = path.points[list(curves.ends(path.curve))]
-        return table({"start": [start], "target": [target]} | _drawn(path, control))
-    if hue is not None:
-        own = results.runs.groupby(hue)
-        frames = [data(results._replace(runs=runs), pick=pick, control="none").assign(**{hue: value}) for value, runs in own]
-        numbers = metrics.values(results.runs, measure, results.problems).groupby(results.runs["id"]).first()
+        return table({"start": [start], "target": [target]} | _drawn(path, options.control))
+    if options.hue is not None:
+        groups = results.runs.groupby(options.hue)
+        alone = Options(kind=options.kind, experiment=options.experiment, pick=options.pick.plain(), control="none")
+        frames = [data(results._replace(runs=runs), alone).assign(**{options.hue: value}) for value, runs in groups]
+        numbers = metrics.values(results.runs, options.measure, results.problems).groupby(results.runs["id"]).first()
         return pd.concat(frames, ignore_index=True).assign(measure=lambda frame: frame["run"].map(numbers))
-    run, names = picked(results, pick)
+    run, names = picked(results, options.pick)
     problem = results.problems[names["problem"]]
     drawn = {"start": [problem.start], "target": [problem.target]}
-    if changed_from is not None:
-        drawn |= _changed_cells(problem.workspace, _other(results, changed_from).workspace)
-    if bare:
+    if options.changed_from is not None:
+        drawn |= _changed_cells(problem.workspace, _other(results, options.changed_from).workspace)
+    if options.bare:
         return table(drawn).assign(problem=problem.name)
-    if printed is not None and results.published is not None:
-        names["printed"] = _shortest_printed(results, printed)
-    if band is not None:
+    if options.printed is not None and results.published is not None:
+        names["printed"] = _shortest_printed(results, options.printed)
+    if options.band is not None:
         if not isinstance(problem.workspace, Grid):
             raise ValueError(f"band: {problem.name}: not a grid, and has no occupied cells")
         names["obstacle_clearance"] = _clearance(results, run)
-    if cell_optimum:
+    if options.cell_optimum:
         drawn["optimum"] = _cell_optimum(problem, results.runs.iloc[0])
     path = None if run is None else path_of(run)
     if path is not None:
         drawn["bound"] = np.reshape(results.bounds.loc[problem.name, "bound_path"], (-1, 2))
-        drawn |= _drawn(path, control)
-        if control != "none" and isinstance(problem.workspace, Grid):
+        drawn |= _drawn(path, options.control)
+        if options.control != "none" and isinstance(problem.workspace, Grid):
             drawn["occupied"] = _in_occupied_cells(path.points, problem.workspace)
         if not run["feasible"]:
             drawn["collision"] = [curves.point_at(path, run["collision_at"])]
@@ -329,28 +311,28 @@ def steps(path: Path) -> np.ndarray:
     return curves.sample_matrix(path.curve, len(path.points), steps + 1) @ path.points
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`, in their workspace if they have one."""
-    if "explicit" in panel:
+    if options.explicit is not None:
         workspaces.scale(axes, scene.unit)
         axes.set_aspect("equal")
         axes.margins(0.06)
     else:
-        workspace = scene.problems[panel["experiment"]][frame["problem"].iloc[0]].workspace
+        workspace = scene.problems[options.experiment][frame["problem"].iloc[0]].workspace
         workspaces.shade(axes, workspaces.parts(workspace))
         workspaces.scale(axes, workspace.unit)
         _draw_changes(axes, frame, workspace)
-        if panel.get("band"):
-            _draw_band(axes, workspace, panel["band"])
-    if "hue" in panel:
-        note = _draw_side_by_side(axes, frame, scene, panel)
+        if options.band is not None:
+            _draw_band(axes, workspace, options.band)
+    if options.hue is not None:
+        note = _draw_side_by_side(axes, frame, scene, options)
     else:
-        note = Note() if "explicit" in panel or panel["bare"] else _note(frame, workspace.unit)
-        draw_parts(axes, frame, narrow=scene.narrow, clip="view" in panel)
-    for part, letter in zip(("start", "target"), panel.get("letters", ())):
+        note = Note() if options.explicit is not None or options.bare else _note(frame, workspace.unit)
+        draw_parts(axes, frame, narrow=scene.narrow, clip=options.view is not None)
+    for part, letter in zip(("start", "target"), options.letters or ()):
         _write_letter(axes, frame.loc[frame["part"] == part, ["x", "y"]].iloc[0].to_numpy(dtype=float), letter)
-    if "view" in panel:
-        axes.axis(panel["view"])
+    if options.view is not None:
+        axes.axis(options.view)
     if scene.narrow:
         axes.locator_params(nbins=4, integer=True)
     return note
@@ -388,23 +370,23 @@ def _write_letter(axes: Axes, place: np.ndarray, letter: str) -> None:
     axes.annotate(letter, place, weight="bold", zorder=7, **beside)
 
 
-def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the paths of all values of hue, each in its own style, and what belongs to their problem once; returns their measures."""
-    hue = panel["hue"]
-    values = style.in_order(frame[hue], panel)
+    hue = options.hue
+    values = style.in_order(frame[hue], options.where)
     given = []
     # The first path is the widest, so that paths on top do not hide it.
     widths = np.linspace(_WIDEST, _NARROWEST, len(values))
     for value, look, width in zip(values, style.lines(values, scene.looks), widths):
         own = frame[frame[hue] == value]
-        draw_parts(axes, own[own["part"] == "collision"], narrow=scene.narrow, clip="view" in panel)
+        draw_parts(axes, own[own["part"] == "collision"], narrow=scene.narrow, clip=options.view is not None)
         path = own[own["part"] == "path"]
         name = style.printed(value, hue, scene.labels)
         axes.plot(path["x"], path["y"], zorder=3, **look | {"marker": "", "label": name, "linewidth": width})
         given.append(f"{name} {_decimal(own['measure'].iloc[0])}" if len(path) else f"{name} no path")
     once = frame[frame["part"].isin(["start", "target", "bound"])].drop_duplicates(["part", "x", "y"])
-    draw_parts(axes, once, narrow=scene.narrow, clip="view" in panel)
-    return Note("", f"{axis_label(panel['measure'], scene)}: {', '.join(given)}")
+    draw_parts(axes, once, narrow=scene.narrow, clip=options.view is not None)
+    return Note("", f"{axis_label(options.measure, scene)}: {', '.join(given)}")
 
 
 def draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> None:

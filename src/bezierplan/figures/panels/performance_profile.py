@@ -51,8 +51,7 @@ class Options(RunsPanel):
         return self
 
 
-@Options.filled
-def data(results: Results, *, cost: Literal["length", "evaluations", "cpu_s"], within: float | None) -> pd.DataFrame:
+def data(results: Results, options: Options) -> pd.DataFrame:
     """One row per step of a method's profile; columns: method, ratio, share, problems, reached, solved.
 
     share: of the problems on which the method's cost is at most ratio times the best one. A problem is a condition. The length is that of
@@ -67,8 +66,8 @@ def data(results: Results, *, cost: Literal["length", "evaluations", "cpu_s"], w
     runs = results.runs
     values = (
         running_time.certified_length(runs, results.problems)
-        if within is None
-        else running_time.work_to(cost, within, runs, results.problems)
+        if options.within is None
+        else running_time.work_to(options.cost, options.within, runs, results.problems)
     )
     table = running_time.by_problem(runs, values)
     found, rows = running_time.ratios(table), []
@@ -83,10 +82,10 @@ def data(results: Results, *, cost: Literal["length", "evaluations", "cpu_s"], w
     return pd.DataFrame(rows)
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`."""
     end = max(frame["ratio"].max(), 1.01) ** _ROOM
-    methods = style.in_order(frame["method"], panel)
+    methods = style.in_order(frame["method"], options.where)
     for number, (method, look) in enumerate(zip(methods, style.lines(methods, scene.looks))):
         own = frame[frame["method"] == method]
         places = np.concatenate([[1.0], own["ratio"], [end]])
@@ -100,14 +99,14 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
     axes.set_xlim(1, end)
     _name_ratios(axes, end)
     axes.set_ylim(-0.04, 1.04)  # a line along an edge stays visible
-    axes.set_xlabel(_AXES[panel["cost"]])
+    axes.set_xlabel(_AXES[options.cost])
     axes.set_ylabel("share of problems")
     axes.grid(visible=True)
     counts = frame.iloc[0]
     words = f"{counts['problems']:g} problem{'s' if counts['problems'] != 1 else ''}"
-    if panel["cost"] == "length":
+    if options.cost == "length":
         return Note("", f"{words}; solved by the median run of any method: {counts['solved']:g}")
-    target = f"to within {100 * panel['within']:g} % of the exact shortest path"
+    target = f"to within {100 * options.within:g} % of the exact shortest path"
     return Note("", f"{target}; {words}, solved by any method: {counts['solved']:g}")
 
 

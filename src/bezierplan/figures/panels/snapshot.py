@@ -43,13 +43,13 @@ class Options(RunsPanel):
     )
 
 
-def data(results: Results, *, pick: dict, at: float) -> pd.DataFrame:
+def data(results: Results, options: Options) -> pd.DataFrame:
     """What is drawn, one row per place; columns: problem, method, run (its id), time (of the moment, in steps), part, number, x, y, size,
     x_velocity, y_velocity (units per step).
 
     Parts: those of `workspace.data`; start, target; way (driven so far); robot; plan (in force); dropped (earlier plans, by number);
-    collision (places of first collisions up to the moment). pick: which run. at: the moment. Raises ValueError for runs of several problems
-    or methods, and if no run is found.
+    collision (places of first collisions up to the moment). Raises ValueError for runs of several problems or methods, and if no run is
+    found.
     """
     from bezierplan.analysis.results import pick as picked
     from bezierplan.running import rides
@@ -57,13 +57,13 @@ def data(results: Results, *, pick: dict, at: float) -> pd.DataFrame:
     for column in ("problem", "method"):
         if results.runs[column].nunique() != 1:
             raise ValueError(f"a snapshot needs runs of one {column}, not of {results.runs[column].nunique()}; see the panel's `where`")
-    run = picked(results.runs, pick)
+    run = picked(results.runs, options.pick.plain())
     if run is None:
         raise ValueError("no run to show; see the panel's `where` and `pick`")
     world, problem = results.worlds[run["problem"]], results.problems[run["problem"]]
     ride, verdict = rides.rerun(results.jobs[run["method"]], run["condition"], int(run["repeat"]), problem, world)
-    frame = moment(world, problem, ride, verdict, at)
-    return frame.assign(problem=run["problem"], method=run["method"], run=run["id"], time=at * ride.motion.times[-1])
+    frame = moment(world, problem, ride, verdict, options.at)
+    return frame.assign(problem=run["problem"], method=run["method"], run=run["id"], time=options.at * ride.motion.times[-1])
 
 
 def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: float) -> pd.DataFrame:
@@ -100,9 +100,9 @@ def moment(world: World, problem: Problem, ride: Ride, verdict: Verdict, at: flo
     return pd.concat(parts, ignore_index=True)
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`."""
-    problem = scene.problems[panel["experiment"]][frame["problem"].iloc[0]]
+    problem = scene.problems[options.experiment][frame["problem"].iloc[0]]
     workspaces.shade(axes, frame)
     workspaces.scale(axes, problem.workspace.unit)
     show(axes, frame)

@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import Note, Panel
+from bezierplan.figures.panels import Note, Panel, Sources
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.geometry import curves
 from bezierplan.geometry import spheres as exact
@@ -66,6 +66,10 @@ class Options(Panel):
     runs: Count = Field(description="how many runs are made, a whole number of at least 1; the shortest free path is drawn")
     plane: Literal["xy", "xz", "yz"] = Field(description="the plane on which it is projected: xy, xz or yz")
 
+    def source(self, sources: Sources) -> tuple[Spheres, str]:
+        """The workspace, and the name of the study."""
+        return sources.workspaces[self.workspace], sources.study
+
 
 def problem(workspace: Spheres, start: list[float], target: list[float]) -> Problem:
     """The problem of a panel. Raises ValueError, naming the key, unless start and target are free."""
@@ -76,27 +80,27 @@ def problem(workspace: Spheres, start: list[float], target: list[float]) -> Prob
     return Problem("", workspace, **ends)
 
 
-@Options.filled
-def data(
-    workspace: Spheres, *, start: list[float], target: list[float], method: str, settings: dict[str, Any], name: str, runs: int, plane: str
-) -> pd.DataFrame:
+def data(source: tuple[Spheres, str], options: Options) -> pd.DataFrame:
     """What is drawn, and a row for each run; columns: part, x, y, z (in the workspace's unit), size and obstacle (a sphere's radius and
     number), run (its name), length, claimed_feasible (by the planner's own test), feasible (by the exact check), method, straight_line and
     bound (lengths, in units; `spheres.least_length`).
 
     Parts: corner (of the bounds), sphere, start, target, line (the straight one), run, and of the shortest feasible run path and control.
-    settings: all of the planner. name: that from which the runs take their seeds. Raises ValueError for a feasible path below the bound.
+    source: the workspace, and the name of the study, from which with others the runs take their seeds. options: their settings are all of
+    the planner. Raises ValueError for a feasible path below the bound.
     """
     import pandas as pd
 
     from bezierplan.planners import chaotic_pso
 
+    workspace, study = source
+    start, target = options.start, options.target
     task = problem(workspace, start, target)
     bound = exact.least_length(task)
     found, paths = [], {}
-    for repeat in range(runs):
-        run = f"{name}/{repeat}"
-        plan = chaotic_pso.plan(task, generator(run), **settings)
+    for repeat in range(options.runs):
+        run = f"{study}/{options.workspace}/{options.method}/{repeat}"
+        plan = chaotic_pso.plan(task, generator(run), **options.settings)
         pieces = curves.bezier_pieces(plan.path)
         length, feasible = exact.length(pieces), exact.is_free(pieces, workspace)
         if feasible and length < bound * (1 - 1e-9) - 1e-7:
@@ -118,7 +122,7 @@ def data(
         parts += [_places("path", samples).assign(run=best), _places("control", path.points).assign(run=best)]
     columns = ["part", "x", "y", "z", "size", "obstacle", "run", "length", "claimed_feasible", "feasible"]
     drawn = pd.concat(parts, ignore_index=True).reindex(columns=columns)
-    return drawn.assign(method=method, straight_line=np.linalg.norm(np.subtract(target, start)), bound=bound)
+    return drawn.assign(method=options.method, straight_line=np.linalg.norm(np.subtract(target, start)), bound=bound)
 
 
 def _places(part: str, points: np.ndarray) -> pd.DataFrame:
@@ -127,10 +131,10 @@ def _places(part: str, points: np.ndarray) -> pd.DataFrame:
     return pd.DataFrame(points, columns=["x", "y", "z"]).assign(part=part)
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`."""
-    across, up = panel["plane"]
-    unit = scene.workspaces[panel["workspace"]].unit
+    across, up = options.plane
+    unit = scene.workspaces[options.workspace].unit
     flat = frame.assign(part=frame["part"].replace("sphere", "circle"), x=frame[across], y=frame[up])
     workspaces.shade(axes, flat)
     _look_closer(axes, flat)

@@ -22,9 +22,9 @@ PROJECTION = "3d"
 _VIEW = {"elev": 45, "azim": -60}
 
 
-def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+def draw(axes: Axes3D, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the nodes of `data` at a logarithmic height."""
-    unit = scene.problems[panel["experiment"]][frame["problem"].iloc[0]].workspace.unit
+    unit = scene.problems[options.experiment][frame["problem"].iloc[0]].workspace.unit
     x, y, values = landscape.nodes(frame)
     colours = landscape.scale_of(values).to_rgba(values)
     # Facets between every second node look the same when printed, and are drawn in a third of the time.

@@ -9,7 +9,7 @@ from pydantic import Field
 
 from bezierplan.analysis import metrics
 from bezierplan.figures import style
-from bezierplan.figures.panels import Note, RunsPanel, landscape
+from bezierplan.figures.panels import Note, RunsPanel, Sources, landscape
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.figures.panels.paths import steps
 from bezierplan.planners import planner_module
@@ -44,9 +44,13 @@ class Options(RunsPanel):
     )
     point: Whole = Field(None, description="the number of the control point whose way is drawn, at least 0; left out: first and last path")
 
+    def source(self, sources: Sources) -> Results | tuple[Results, pd.DataFrame]:
+        """Results, if a landscape is asked for with the function's table of them."""
+        results = super().source(sources)
+        return results if self.data is None else (results, sources.functions[self.data](results))
 
-@Options.filled
-def data(source: Results | tuple[Results, pd.DataFrame], *, by: str, runs: int, point: int | None) -> pd.DataFrame:
+
+def data(source: Results | tuple[Results, pd.DataFrame], options: Options) -> pd.DataFrame:
     """What is drawn, one row per place; columns: problem, method, candidates (feasible runs), groups (values of the metric among them),
     part, run (its id), length (of the run's path, in units), iteration, x, y (in the workspace's unit), objective (of nodes, in units).
 
@@ -54,10 +58,8 @@ def data(source: Results | tuple[Results, pd.DataFrame], *, by: str, runs: int, 
     after iteration 0 and after the last one; node, of the landscape below a track.
 
     The runs are reproduced, because no table keeps their intermediate states. source: runs with their jobs, of one problem and one method
-    whose planner has `track`; optionally with the table of a landscape, as in `landscape.data`. by: a metric; for each of its commonest
-    values, the best feasible run is drawn. runs: the number of these values, at most five. point: number of the control point, 0 for the
-    start. Raises ValueError for runs of several problems or methods, for a point that the curve does not have, and if a reproduced run
-    ends in a different path.
+    whose planner has `track`; optionally with the table of a landscape, as in `landscape.data`. Raises ValueError for runs of several
+    problems or methods, for a point that the curve does not have, and if a reproduced run ends in a different path.
     """
     import pandas as pd
 
@@ -70,11 +72,11 @@ def data(source: Results | tuple[Results, pd.DataFrame], *, by: str, runs: int, 
             raise ValueError(f"a panel of tracks needs runs of exactly one {column}, not of {len(found)} {found}; see its `where`")
     problem = results.problems[results.runs["problem"].iloc[0]]
     feasible = results.runs[results.runs["feasible"]]
-    groups = metrics.values(feasible, by, results.problems)
+    groups = metrics.values(feasible, options.by, results.problems)
     parts = [pd.DataFrame([("start", *problem.start), ("target", *problem.target)], columns=["part", "x", "y"])]
-    for group in _commonest(groups)[:runs]:
+    for group in _commonest(groups)[: options.runs]:
         run = pick(feasible[groups == group], {"lowest": "objective"})
-        parts.append(_part(run, _tracked(run, results.jobs[run["method"]], problem), point))
+        parts.append(_part(run, _tracked(run, results.jobs[run["method"]], problem), options.point))
     if table is not None:
         parts.append(table[table["part"] == "node"])
     names = {"problem": problem.name, "method": results.runs["method"].iloc[0], "candidates": len(feasible), "groups": groups.nunique()}
@@ -115,14 +117,14 @@ def _part(run: pd.Series, paths: list[Path], point: int | None) -> pd.DataFrame:
     return pd.concat(drawn, ignore_index=True).assign(run=run["id"], length=run["length"])
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`."""
-    workspace = scene.problems[panel["experiment"]][frame["problem"].iloc[0]].workspace
+    workspace = scene.problems[options.experiment][frame["problem"].iloc[0]].workspace
     if (frame["part"] == "node").any():
         x, y, values = landscape.nodes(frame)
         levels = np.geomspace(values.min(), values.max(), _LEVELS)
         axes.contour(x, y, values, levels=levels, colors="0.72", linewidths=0.5, zorder=0.4)
-    workspaces.shade(axes, workspaces.parts(workspace), outlines="point" in panel)
+    workspaces.shade(axes, workspaces.parts(workspace), outlines=options.point is not None)
     workspaces.scale(axes, workspace.unit)
     for end, look in (("start", workspaces.START), ("target", workspaces.TARGET)):
         places = frame[frame["part"] == end]

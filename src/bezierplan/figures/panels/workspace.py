@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from bezierplan.figures import style
-from bezierplan.figures.panels import Note, Panel
+from bezierplan.figures.panels import Note, Panel, Sources
 from bezierplan.schema.model import Flag
 from bezierplan.schema.model import Workspace as Described
 from bezierplan.workspaces.circles import Circles
@@ -52,9 +52,12 @@ class Options(Panel):
     numbers: Literal["all", "free", "none"] = Field("none", description="which cells show their number: all, free or none (left out: this)")
     embed: Flag = Field(False, description="whether a grid is put into one of a power of two of rows and columns, true or false")
 
+    def source(self, sources: Sources) -> Workspace:
+        """The workspace."""
+        return sources.workspaces[self.workspace]
 
-@Options.filled
-def data(workspace: Workspace, *, numbers: Literal["all", "free", "none"], embed: bool) -> pd.DataFrame:
+
+def data(workspace: Workspace, options: Options) -> pd.DataFrame:
     """What is drawn of a workspace, in its unit: one row per corner of its bounds, cell, circle, or point of a ring.
 
     Large grids list no free cells unless they show numbers.
@@ -63,13 +66,12 @@ def data(workspace: Workspace, *, numbers: Literal["all", "free", "none"], embed
     radius), obstacle and ring (polygons only), number (of the cells that show it; see `workspaces.grid`), height (of the cells of a grid
     with heights, in its unit).
 
-    numbers: which cells show their number. embed: embed a grid in one with powers of two of rows and columns, with surplus cells marked.
     Raises ValueError if numbers or embedding are requested for a workspace without cells.
     """
     if isinstance(workspace, Grid):
-        whole = replace(workspace, occupied=embed_cells(workspace.occupied)) if embed else workspace
-        return _table(whole.bounds, _cells(whole, workspace, numbers))
-    if numbers != "none" or embed:
+        whole = replace(workspace, occupied=embed_cells(workspace.occupied)) if options.embed else workspace
+        return _table(whole.bounds, _cells(whole, workspace, options.numbers))
+    if options.numbers != "none" or options.embed:
         raise ValueError("numbers and embed are options of workspaces of kind grid")
     return parts(workspace)
 
@@ -132,12 +134,12 @@ def _rings(workspace: Polygons) -> pd.DataFrame:
     return pd.concat([pd.DataFrame(), *rings], ignore_index=True)
 
 
-def draw(axes: Axes, frame: pd.DataFrame, scene: Any, panel: dict) -> Note:
+def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`.
 
     Cells that show their numbers need no scale: it would take up the room that keeps the numbers legible.
     """
-    unit = scene.workspaces[panel["workspace"]].unit
+    unit = scene.workspaces[options.workspace].unit
     shade(axes, frame)
     numbered = frame[frame["number"].notna()]
     for x, y, number in zip(numbered["x"], numbered["y"], numbered["number"]):
