@@ -40,13 +40,14 @@ test: lint ## lint, the smoke subset, and all tests (ARGS go to pytest)
 	$(SNAKEMAKE) smoke
 	$(RUN) -m pytest -n auto --dist loadfile $(ARGS)
 
-lint: .venv/ready ## style of Python, Snakemake and JavaScript files, and who may import whom
+lint: .venv/ready ## style of Python, Snakemake and JavaScript files, who may import whom, and types
 	$(RUN) -m ruff check
 	$(RUN) -m ruff format --check
 	$(RUN) -m snakefmt --check Snakefile workflow
 	.venv/bin/oxlint --quiet --deny-warnings src
 	$(SNAKEMAKE) --lint
 	$(RUN) .venv/bin/lint-imports --no-logo --cache-dir .cache/import-linter
+	$(RUN) -m mypy
 
 docs: .venv/ready ## the documentation as a site, into .cache/docs/html; every example is run
 	$(RUN) -m sphinx --quiet --fail-on-warning --builder html --doctree-dir .cache/docs/doctrees docs .cache/docs/html

@@ -138,8 +138,8 @@ def test_the_length_of_a_curve_is_that_in_its_plane(control, turn):
 def test_the_bound_is_the_longest_way_around_one_sphere():
     small, large = (-4, 0, 0, 0.5), (0, 0, 0, 2)
     ends = (-8.0, 0.0, 0.0), (8.0, 0.0, 0.0)
-    assert spheres.least_length(Problem("", among(small, large), *ends)) == spheres.shortest_around(*ends, (0, 0, 0), 2.0)
-    assert spheres.least_length(Problem("", among(), *ends)) == 16.0
+    assert spheres.least_length(among(small, large), *ends) == spheres.shortest_around(*ends, (0, 0, 0), 2.0)
+    assert spheres.least_length(among(), *ends) == 16.0
 
 
 # The swarm.
@@ -170,7 +170,7 @@ def test_the_violation_of_a_sphere_is_the_mean_depth_as_a_share_of_its_radius():
 
 def test_the_swarm_comes_close_to_the_exact_way_around_a_sphere():
     task = Problem("", among((0, 0, 0, 2)), (-4.0, 0.0, -4.0), (4.0, 0.0, 4.0))
-    bound, lengths = spheres.least_length(task), []
+    bound, lengths = spheres.least_length(task.workspace, task.start, task.target), []
     for seed in range(5):
         found = chaotic_pso.plan(task, np.random.default_rng(seed), **SETTINGS | {"d_min": 0.01})
         pieces = curves.bezier_pieces(found.path)

@@ -61,7 +61,7 @@ def along(path: Path, n: int | None = None, step: float | None = None) -> Sample
     speeds, knots = _lengths(pieces)
     cumulative = np.concatenate([[0.0], np.cumsum(speeds)])
     length = cumulative[-1]
-    if n is None:
+    if step is not None:
         if not 0 < step < math.inf:
             raise ValueError(f"step: {step}; expected a number above 0")
         n = max(2, math.ceil(length / step * (1 - 1e-12)) + 1)

@@ -8,12 +8,12 @@ possible.
 """
 
 import math
+from collections.abc import Sequence
 from fractions import Fraction
 
 import numpy as np
 
 from bezierplan.geometry.curves import bernstein
-from bezierplan.workspaces.problem import Problem
 from bezierplan.workspaces.spheres import Spheres
 
 TOLERANCE = 1e-9
@@ -72,9 +72,10 @@ def _squared_distance(points: list[_Point], centre: _Point) -> list[Fraction]:
     away = [[a - c for a, c in zip(point, centre)] for point in points]
 
     def product(i: int, j: int) -> Fraction:
-        return math.comb(n, i) * math.comb(n, j) * sum(a * b for a, b in zip(away[i], away[j]))
+        return math.comb(n, i) * math.comb(n, j) * sum((a * b for a, b in zip(away[i], away[j])), Fraction(0))
 
-    return [sum(product(i, k - i) for i in range(max(0, k - n), min(n, k) + 1)) / math.comb(2 * n, k) for k in range(2 * n + 1)]
+    sums = [sum((product(i, k - i) for i in range(max(0, k - n), min(n, k) + 1)), Fraction(0)) for k in range(2 * n + 1)]
+    return [whole / math.comb(2 * n, k) for k, whole in enumerate(sums)]
 
 
 def length(pieces: np.ndarray) -> float:
@@ -89,18 +90,17 @@ def length(pieces: np.ndarray) -> float:
     return math.fsum(integrate.quad(speed, 0.0, 1.0, args=(step,), epsabs=1e-12, epsrel=1e-10, limit=200)[0] for step in steps)
 
 
-def least_length(problem: Problem) -> float:
+def least_length(spheres: Spheres, start: Sequence[float], target: Sequence[float]) -> float:
     """The largest of the lengths of the exact shortest paths around each sphere alone, in units: no free path is shorter.
 
     It is the length of the shortest path itself if the path around one of them meets neither another sphere nor a wall. Start and target
     must be free.
     """
-    spheres = problem.workspace
-    around = (shortest_around(problem.start, problem.target, *each) for each in zip(spheres.centres, spheres.radii))
-    return max(around, default=math.dist(problem.start, problem.target))
+    around = (shortest_around(start, target, *each) for each in zip(spheres.centres, spheres.radii))
+    return max(around, default=math.dist(start, target))
 
 
-def shortest_around(start: np.ndarray, target: np.ndarray, centre: np.ndarray, radius: float) -> float:
+def shortest_around(start: Sequence[float], target: Sequence[float], centre: np.ndarray, radius: float) -> float:
     """Length of the shortest path between two points (3,) outside one sphere: the straight line, or two tangents and an arc of a great
     circle, in the plane of both points and the centre.
     """

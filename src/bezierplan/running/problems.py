@@ -101,13 +101,13 @@ def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, st
     problems = {}
     for name, description in job["problems"].items():
         home = description["workspace"]
-        given = job["workspaces"][home], description, f"{job['study']}/{home}"
+        arguments = job["workspaces"][home], description, f"{job['study']}/{home}"
         if home in fixed:
             workspace = fixed[home]
         elif hasattr(kinds[home], "draw"):
-            workspace = kinds[home].draw(*given)
+            workspace = kinds[home].draw(*arguments)
         else:
-            workspace = _suitable(kinds[home].candidates(*given), job["workspaces"][home], description)
+            workspace = _suitable(kinds[home].candidates(*arguments), job["workspaces"][home], description)
         if "scenario" in description:
             description = description | scenario(job["workspaces"][home], description["scenario"], workspace, folder)
         problems[name] = build(name, description, workspace)
@@ -118,17 +118,18 @@ def build_all(job: dict, folder: Path) -> tuple[dict[str, Problem], dict[str, st
 _SAME_OPTIMUM = 1e-3
 
 
-def scenario(description: dict, number: int, workspace: Grid, folder: Path) -> dict:
+def scenario(description: dict, number: int, workspace: Workspace, folder: Path) -> dict:
     """Start and target of a scenario. Raises ValueError if it does not fit the map, or its length differs from ours."""
     from bezierplan.geometry import shortest_paths
 
-    found = files.scenario(description, number, workspace, folder)
-    cells = (workspace.cell_of(*end) for end in (found.start, found.target))
-    length = shortest_paths.lattice_path(workspace.occupied, *cells, math.sqrt(2), "none").length
-    if not abs(length - found.optimal) <= _SAME_OPTIMUM:
+    assert isinstance(workspace, Grid)  # only a kind of grids has scenarios
+    printed = files.scenario(description, number, workspace, folder)
+    start, target = _cell(workspace, printed.start), _cell(workspace, printed.target)
+    length = shortest_paths.lattice_path(workspace.occupied, start, target, math.sqrt(2), "none").length
+    if not abs(length - printed.optimal) <= _SAME_OPTIMUM:
         place = f"{description['scenarios']}: line {number + 1}"
-        raise ValueError(f"{place}: optimal length {found.optimal:g}; on {description['file']} it is {length:.8g}")
-    return {"start": found.start, "target": found.target}
+        raise ValueError(f"{place}: optimal length {printed.optimal:g}; on {description['file']} it is {length:.8g}")
+    return {"start": printed.start, "target": printed.target}
 
 
 # Tolerance between the shortest lattice path's length and the wanted one, in cells.
@@ -145,8 +146,8 @@ def _suitable(maps: Iterator[Grid], description: dict, problem: dict) -> Grid:
     wanted = description.get("lattice_length")
     for grid in maps:
         ends = lattice.lattice(grid, tuple(problem["start"]), tuple(problem["target"]), description["corners"])
-        cells = (divmod(cell, problem["side"]) for cell in (ends.start, ends.target))
-        length = shortest_paths.lattice_path(grid.occupied, *cells, ends.diagonal, description["corners"]).length + ends.ends
+        start, target = divmod(ends.start, problem["side"]), divmod(ends.target, problem["side"])
+        length = shortest_paths.lattice_path(grid.occupied, start, target, ends.diagonal, description["corners"]).length + ends.ends
         if math.isfinite(length) and (wanted is None or abs(length - wanted) < _SAME_LENGTH):
             return grid
     asked = "a path from start to target" if wanted is None else f"a shortest lattice path of lattice_length {wanted:g}"
@@ -215,5 +216,12 @@ def _cell_bound(problem: Problem) -> float:
     grid = problem.workspace
     if not isinstance(grid, Grid):
         return math.nan
-    start, target = (grid.cell_of(*end) for end in (problem.start, problem.target))
+    start, target = _cell(grid, problem.start), _cell(grid, problem.target)
     return shortest_paths.lattice_path(grid.occupied, start, target, cell_length.DIAGONAL, "free").length * grid.cell
+
+
+def _cell(grid: Grid, point: tuple[float, float]) -> tuple[int, int]:
+    """Row and column of a point inside a grid."""
+    cell = grid.cell_of(*point)
+    assert cell is not None
+    return cell

@@ -16,6 +16,11 @@ import yaml
 
 from bezierplan.schema.words import plain
 
+try:
+    from yaml import CSafeLoader as SafeLoader
+except ImportError:  # PyYAML was built without libyaml
+    from yaml import SafeLoader
+
 LONGEST_FILE = 4_000_000
 """Bytes of the longest file that is read: a study's YAML, maps, published numbers."""
 DEEPEST = 20
@@ -38,7 +43,7 @@ class Fault(ValueError):
         super().__init__(plain(text))
 
 
-class _Loader(getattr(yaml, "CSafeLoader", yaml.SafeLoader)):
+class _Loader(SafeLoader):
     """YAML 1.2's plain scalars: `no` is a word, `0_15` is a word, `010` is ten, `1e-3` is a number; a key may occur only once."""
 
 
@@ -68,56 +73,56 @@ def _mapping(loader: _Loader, node: yaml.MappingNode) -> dict:
 _Loader.add_constructor("tag:yaml.org,2002:map", _mapping)
 
 
-def read(file: Path, place: str | None = None) -> Any:
+def read(file: Path, location: str | None = None) -> Any:
     """The content of a YAML file. Raises Fault, beginning with the place (by default the file's name)."""
-    return parse(text_of(file, place or str(file)), place or str(file))
+    return parse(text_of(file, location or str(file)), location or str(file))
 
 
-def text_of(file: Path, place: str) -> str:
-    """The text of a file. Raises Fault, beginning with a place, unless it is a regular text file of at most `LONGEST_FILE` bytes."""
+def text_of(file: Path, location: str) -> str:
+    """The text of a file. Raises Fault, beginning with a location, unless it is a regular text file of at most `LONGEST_FILE` bytes."""
     try:
         found = file.stat()
         if not stat.S_ISREG(found.st_mode):
-            raise Fault(f"{place}: cannot be read (not a regular file)")
+            raise Fault(f"{location}: cannot be read (not a regular file)")
         if found.st_size > LONGEST_FILE:
-            raise Fault(f"{place}: {found.st_size} bytes; expected at most {LONGEST_FILE}")
+            raise Fault(f"{location}: {found.st_size} bytes; expected at most {LONGEST_FILE}")
         return file.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
-        raise Fault(f"{place}: cannot be read ({type(error).__name__})") from None
+        raise Fault(f"{location}: cannot be read ({type(error).__name__})") from None
 
 
-def parse(text: str, place: str) -> Any:
-    """The content of YAML text, read strictly. Raises Fault, beginning with a place."""
+def parse(text: str, location: str) -> Any:
+    """The content of YAML text, read strictly. Raises Fault, beginning with a location."""
     try:
-        _check_size(text, place)
+        _check_size(text, location)
         return yaml.load(text, _Loader)
     except yaml.MarkedYAMLError as error:
         # Newer versions of libyaml have a limit of their own, and meet it where they read ahead.
         problem = TOO_DEEP if error.problem == "exceeded maximum nesting depth" else error.problem
-        raise Fault(f"{_line(place, error.problem_mark)}: {problem}") from None
+        raise Fault(f"{_line(location, error.problem_mark)}: {problem}") from None
     except yaml.YAMLError as error:  # characters not allowed in YAML
-        raise Fault(f"{place}: not YAML ({str(error).splitlines()[0]})") from None
+        raise Fault(f"{location}: not YAML ({str(error).splitlines()[0]})") from None
 
 
-def _line(place: str, mark: Any) -> str:
-    return f"{place}: line {mark.line + 1}" if mark else place
+def _line(location: str, mark: Any) -> str:
+    return f"{location}: line {mark.line + 1}" if mark else location
 
 
-def _check_size(text: str, place: str) -> None:
+def _check_size(text: str, location: str) -> None:
     """Raise Fault for nesting and aliases beyond the limits, and for tags, from the events alone, before anything is built."""
     sizes: dict[str, int] = {}  # of nodes with an anchor
     opened = [("", 0)]  # anchor and value count so far of each open node
     for event in yaml.parse(text, _Loader):
         anchor, size = getattr(event, "anchor", None) or "", 0
         if getattr(event, "tag", None):
-            raise Fault(f"{_line(place, event.start_mark)}: {event.tag}: tags are not read; write the plain value")
+            raise Fault(f"{_line(location, event.start_mark)}: {event.tag}: tags are not read; write the plain value")
         if isinstance(event, yaml.CollectionStartEvent):
             opened.append((anchor, 1))
             if len(opened) > DEEPEST:
-                raise Fault(f"{_line(place, event.start_mark)}: {TOO_DEEP}")
+                raise Fault(f"{_line(location, event.start_mark)}: {TOO_DEEP}")
         elif isinstance(event, yaml.AliasEvent):
             if anchor not in sizes:
-                raise Fault(f"{_line(place, event.start_mark)}: *{anchor}: stands for nothing before it, or for itself")
+                raise Fault(f"{_line(location, event.start_mark)}: *{anchor}: stands for nothing before it, or for itself")
             size = sizes[anchor]
         elif isinstance(event, yaml.ScalarEvent):
             sizes[anchor] = size = 1
@@ -126,7 +131,7 @@ def _check_size(text: str, place: str) -> None:
             sizes[anchor] = size
         opened[-1] = opened[-1][0], opened[-1][1] + size
         if opened[-1][1] > MOST_NODES:
-            raise Fault(f"{_line(place, event.start_mark)}: more than {MOST_NODES} values, aliases counted as what they stand for")
+            raise Fault(f"{_line(location, event.start_mark)}: more than {MOST_NODES} values, aliases counted as what they stand for")
 
 
 # More known words than this are not all listed, but only some that are most alike.

@@ -11,8 +11,9 @@ written.
 
 import math
 import re
+import types
 import typing
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from typing import Annotated, Any, NamedTuple, Self, TypeVar
 
 from pydantic import AfterValidator, BaseModel, ConfigDict, PlainValidator, TypeAdapter, ValidationError, field_validator, model_validator
@@ -32,22 +33,22 @@ class Model(BaseModel):
 
     @model_validator(mode="before")
     @classmethod
-    def _check_keys(cls, given: Any) -> Any:
+    def _check_keys(cls, content: Any) -> Any:
         """Report unknown keys first: a misspelt key is also a missing one."""
         fields = keys(cls)
-        if not isinstance(given, dict):
+        if not isinstance(content, dict):
             raise wrong(
-                f"{shown(given)}: expected a mapping with {', '.join(key for key in fields if fields[key].is_required()) or 'keys'}"
+                f"{shown(content)}: expected a mapping with {', '.join(key for key in fields if fields[key].is_required()) or 'keys'}"
             )
-        for key in given:
+        for key in content:
             if key not in fields:
                 raise wrong(f"{key}: unknown key{closest(key, fields)}")
         for key, field in fields.items():
-            if field.is_required() and key not in given:
+            if field.is_required() and key not in content:
                 raise wrong(f"{key}: missing key; {field.description}")
-            if key in given and given[key] is None:
+            if key in content and content[key] is None:
                 raise wrong(f"{key}: has no value; expected {field.description}")
-        return given
+        return content
 
     @field_validator("*", mode="wrap")
     @classmethod
@@ -64,8 +65,8 @@ class Model(BaseModel):
     def plain(self, *without: str) -> dict[str, Any]:
         """The mapping as written, in plain values, for jobs; some keys can be left out."""
         fields = type(self).model_fields.items()
-        given = {field.alias or name: getattr(self, name) for name, field in fields if name in self.model_fields_set}
-        return {key: plain(value) for key, value in given.items() if key not in without}
+        entry = {field.alias or name: getattr(self, name) for name, field in fields if name in self.model_fields_set}
+        return {key: plain(value) for key, value in entry.items() if key not in without}
 
     def but(self, **changed: Any) -> Self:
         """A copy with changed values, which are not checked."""
@@ -94,12 +95,12 @@ def plain(value: Any) -> Any:
     return [plain(each) for each in value] if isinstance(value, list) else value
 
 
-def parsed(model: type[M], content: Any, place: str) -> M:
-    """The content of a file as a model. Raises Fault, beginning with a place."""
+def parsed(model: type[M], content: Any, location: str) -> M:
+    """The content of a file as a model. Raises Fault, beginning with a location."""
     try:
         return model.model_validate(content)
     except ValidationError as error:
-        raise Fault(": ".join([place, *first_fault(error)])) from None
+        raise Fault(": ".join([location, *first_fault(error)])) from None
 
 
 def first_fault(error: ValidationError) -> list[str]:
@@ -132,15 +133,15 @@ _EXPECTED = {
 
 def _fault(fault: Any, field: FieldInfo | None) -> str:
     """The end of a message, from a pydantic record; for the value of a field, from the field's description."""
-    context, given = fault.get("ctx", {}), fault["input"]
+    context, value = fault.get("ctx", {}), fault["input"]
     if fault["type"] == "wrong":
         return context["text"]
     if fault["type"] == "expected" and field is None:
-        return f"{shown(given)}: expected {context['text']}"
-    if fault["type"] == "literal_error" and isinstance(given, str):
+        return f"{shown(value)}: expected {context['text']}"
+    if fault["type"] == "literal_error" and isinstance(value, str):
         known = re.findall(r"'([^']*)'", context["expected"])
-        return f"{given}: unknown{closest(given, known)}"
-    return f"{shown(given)}: expected {field.description if field else _EXPECTED.get(fault['type'], fault['msg'])}"
+        return f"{value}: unknown{closest(value, known)}"
+    return f"{shown(value)}: expected {field.description if field else _EXPECTED.get(fault['type'], fault['msg'])}"
 
 
 # Types of values.
@@ -149,36 +150,36 @@ def _fault(fault: Any, field: FieldInfo | None) -> str:
 def value(fits: Callable[[Any], bool], expected: str) -> PlainValidator:
     """A type of single value, kept as written."""
 
-    def check(given: Any) -> Any:
-        if not fits(given):
+    def check(entry: Any) -> Any:
+        if not fits(entry):
             raise PydanticCustomError("expected", "{text}", {"text": expected})
-        return given
+        return entry
 
     return PlainValidator(check)
 
 
-def is_number(given: Any) -> bool:
+def is_number(entry: Any) -> bool:
     """Whether it is a finite number, and not a boolean."""
-    if isinstance(given, int):
-        return not isinstance(given, bool) and abs(given) < 10**300  # the others are no floats
-    return isinstance(given, float) and math.isfinite(given)
+    if isinstance(entry, int):
+        return not isinstance(entry, bool) and abs(entry) < 10**300  # the others are no floats
+    return isinstance(entry, float) and math.isfinite(entry)
 
 
-def _is_whole(given: Any) -> bool:
-    return isinstance(given, int) and not isinstance(given, bool)
+def _is_whole(entry: Any) -> bool:
+    return isinstance(entry, int) and not isinstance(entry, bool)
 
 
-def _is_huge(given: Any) -> bool:
-    return isinstance(given, int) and abs(given) >= 10**9
+def _is_huge(entry: Any) -> bool:
+    return isinstance(entry, int) and abs(entry) >= 10**9
 
 
 LONGEST_LINE = 600
 """Characters of a text."""
 
 
-def is_line(given: Any, longest: int = LONGEST_LINE) -> bool:
+def is_line(entry: Any, longest: int = LONGEST_LINE) -> bool:
     """Whether it is one line of printable text that is not blank, with at most so many characters."""
-    return isinstance(given, str) and bool(given.strip()) and len(given) <= longest and given.isprintable()
+    return isinstance(entry, str) and bool(entry.strip()) and len(entry) <= longest and entry.isprintable()
 
 
 LONGEST_LABEL, LONGEST_WORD = 80, 30
@@ -192,28 +193,28 @@ SMALLEST, LARGEST = 1e-12, 1e12
 def sized(fits: Callable[[Any], bool], expected: str) -> PlainValidator:
     """A type of number, kept as written, of a size that can be meant."""
 
-    def check(given: Any) -> Any:
-        if not (is_number(given) and fits(given)):
+    def check(entry: Any) -> Any:
+        if not (is_number(entry) and fits(entry)):
             raise PydanticCustomError("expected", "{text}", {"text": expected})
-        if given and not SMALLEST <= abs(given) <= LARGEST:
-            raise wrong(f"{shown(given)}: expected a size from {SMALLEST:g} to {LARGEST:g}, or 0")
-        return given
+        if entry and not SMALLEST <= abs(entry) <= LARGEST:
+            raise wrong(f"{shown(entry)}: expected a size from {SMALLEST:g} to {LARGEST:g}, or 0")
+        return entry
 
     return PlainValidator(check)
 
 
-Number = Annotated[float, sized(lambda given: True, "a number")]
-Positive = Annotated[float, sized(lambda given: given > 0, "a number above 0")]
-NotNegative = Annotated[float, sized(lambda given: given >= 0, "a number of at least 0")]
-Whole = Annotated[int, value(lambda given: _is_whole(given) and 0 <= given <= MOST, f"a whole number from 0 to {MOST}")]
-Count = Annotated[int, value(lambda given: _is_whole(given) and 1 <= given <= MOST, f"a whole number of at least 1, at most {MOST}")]
-Decimals = Annotated[int, value(lambda given: _is_whole(given) and 0 <= given <= 15, "a whole number from 0 to 15")]
+Number = Annotated[float, sized(lambda entry: True, "a number")]
+Positive = Annotated[float, sized(lambda entry: entry > 0, "a number above 0")]
+NotNegative = Annotated[float, sized(lambda entry: entry >= 0, "a number of at least 0")]
+Whole = Annotated[int, value(lambda entry: _is_whole(entry) and 0 <= entry <= MOST, f"a whole number from 0 to {MOST}")]
+Count = Annotated[int, value(lambda entry: _is_whole(entry) and 1 <= entry <= MOST, f"a whole number of at least 1, at most {MOST}")]
+Decimals = Annotated[int, value(lambda entry: _is_whole(entry) and 0 <= entry <= 15, "a whole number from 0 to 15")]
 
 
 def line(longest: int) -> PlainValidator:
     """A type of text: one line, kept as written."""
     return value(
-        lambda given: is_line(given, longest), f"one line of text without control characters, not blank, at most {longest} characters"
+        lambda entry: is_line(entry, longest), f"one line of text without control characters, not blank, at most {longest} characters"
     )
 
 
@@ -221,23 +222,23 @@ Line = Annotated[str, line(LONGEST_LINE)]
 Label = Annotated[
     str,
     value(
-        lambda given: is_line(given, LONGEST_LABEL) and max(map(len, given.split())) <= LONGEST_WORD,
+        lambda entry: is_line(entry, LONGEST_LABEL) and max(map(len, entry.split())) <= LONGEST_WORD,
         f"one line of text without control characters, not blank, at most {LONGEST_LABEL} characters, {LONGEST_WORD} a word",
     ),
 ]
-Flag = Annotated[bool, value(lambda given: isinstance(given, bool), "true or false")]
+Flag = Annotated[bool, value(lambda entry: isinstance(entry, bool), "true or false")]
 Scalar = Annotated[
     str | float | bool,
-    value(lambda given: isinstance(given, bool) or is_number(given) or is_line(given, LONGEST_LINE), "a word or a number"),
+    value(lambda entry: isinstance(entry, bool) or is_number(entry) or is_line(entry, LONGEST_LINE), "a word or a number"),
 ]
 """A value of a column: a word, a number, true or false."""
 Setting = Annotated[
     str | float | bool | None,
     value(
-        lambda given: (
-            given is None
-            or is_line(given, LONGEST_LINE)
-            or (isinstance(given, int | float) and not math.isnan(given) and not _is_huge(given))
+        lambda entry: (
+            entry is None
+            or is_line(entry, LONGEST_LINE)
+            or (isinstance(entry, int | float) and not math.isnan(entry) and not _is_huge(entry))
         ),
         "a word, a number, true or false",
     ),
@@ -253,14 +254,14 @@ DEVICES = frozenset({"con", "prn", "aux", "nul", *(f"{port}{number}" for port in
 def matching(pattern: str, expected: str) -> PlainValidator:
     """A type of text that a regular expression matches as a whole, and that a file or folder can be called."""
 
-    def check(given: Any) -> Any:
-        if not (isinstance(given, str) and re.fullmatch(pattern, given)):
+    def check(entry: Any) -> Any:
+        if not (isinstance(entry, str) and re.fullmatch(pattern, entry)):
             raise PydanticCustomError("expected", "{text}", {"text": expected})
-        if len(given) > LONGEST_NAME:
-            raise wrong(f"{shown(given)}: {len(given)} characters; expected at most {LONGEST_NAME}")
-        if given in DEVICES:
-            raise wrong(f"{given}: the name of a device on Windows; expected another one")
-        return given
+        if len(entry) > LONGEST_NAME:
+            raise wrong(f"{shown(entry)}: {len(entry)} characters; expected at most {LONGEST_NAME}")
+        if entry in DEVICES:
+            raise wrong(f"{entry}: the name of a device on Windows; expected another one")
+        return entry
 
     return PlainValidator(check)
 
@@ -268,78 +269,82 @@ def matching(pattern: str, expected: str) -> PlainValidator:
 Name = Annotated[str, matching(r"[a-z][a-z0-9_]*", "a name of lower-case letters, digits and _ that begins with a letter")]
 
 
-def one_or_list(given: Any) -> list:
+def one_or_list(entry: Any) -> list:
     """A value, or a list of values, as a list."""
-    return given if isinstance(given, list) else [given]
+    return entry if isinstance(entry, list) else [entry]
 
 
 MOST_ENTRIES = 1000
 """Entries of a list of names or values, and of a mapping of what has a name: methods, problems, claims, ..."""
 
 
-def identity(given: Any) -> str:
+def identity(entry: Any) -> str:
     """A text that equal values share, and no others: 20 and 20.0 are one number, true and 1 are not; also inside lists."""
-    if isinstance(given, list):
-        return f"[{', '.join(map(identity, given))}]"
-    return repr(float(given) if is_number(given) else given)
+    if isinstance(entry, list):
+        return f"[{', '.join(map(identity, entry))}]"
+    return repr(float(entry) if is_number(entry) else entry)
 
 
 def at_most(number: int) -> AfterValidator:
     """A limit on the entries of a list or mapping."""
 
-    def check(given: Any) -> Any:
-        if len(given) > number:
-            raise wrong(f"{len(given)} entries; expected at most {number}")
-        return given
+    def check(entry: Any) -> Any:
+        if len(entry) > number:
+            raise wrong(f"{len(entry)} entries; expected at most {number}")
+        return entry
 
     return AfterValidator(check)
 
 
 def listed(item: Any, *, least: int = 1, most: int = MOST_ENTRIES, single: bool = False) -> Any:
     """A type of list without duplicates, kept as written; with `single`, also a lone item without a list."""
+    return Annotated[list[item], _distinct(item, least=least, most=most, single=single)]
+
+
+def _distinct(item: Any, *, least: int = 1, most: int = MOST_ENTRIES, single: bool = False) -> PlainValidator:
     adapter = TypeAdapter(list[item], config=ConfigDict(strict=True))
 
-    def check(given: Any) -> Any:
-        if not isinstance(given, list) and not single:
+    def check(entry: Any) -> Any:
+        if not isinstance(entry, list) and not single:
             raise PydanticCustomError("expected", "{text}", {"text": "a list"})
-        if isinstance(given, list) and len(given) > most:
-            raise wrong(f"{len(given)} entries; expected at most {most}")
-        items = adapter.validate_python(one_or_list(given)) if isinstance(given, list) else _one(adapter, given)
-        if isinstance(given, list) and len(items) < least:
+        if isinstance(entry, list) and len(entry) > most:
+            raise wrong(f"{len(entry)} entries; expected at most {most}")
+        items = adapter.validate_python(one_or_list(entry)) if isinstance(entry, list) else _one(adapter, entry)
+        if isinstance(entry, list) and len(items) < least:
             raise PydanticCustomError("expected", "{text}", {"text": f"a list of at least {least}"})
         texts: dict[str, None] = {}
         for each in items:
             if (text := identity(each)) in texts:
-                raise wrong(f"{shown(given)}: {each!r} is listed twice")
+                raise wrong(f"{shown(entry)}: {each!r} is listed twice")
             texts[text] = None
-        return items if isinstance(given, list) else items[0]
+        return items if isinstance(entry, list) else items[0]
 
-    return Annotated[list[item], PlainValidator(check)]
+    return PlainValidator(check)
 
 
-def _one(adapter: TypeAdapter, given: Any) -> list:
+def _one(adapter: TypeAdapter, entry: Any) -> list:
     try:
-        return adapter.validate_python([given])
+        return adapter.validate_python([entry])
     except ValidationError:
         raise PydanticCustomError("expected", "{text}", {"text": "a value or a list of values"}) from None
 
 
-Values = listed(Scalar, single=True)
+Values = Annotated[list[Scalar], _distinct(Scalar, single=True)]
 """A value of a column or a list of them."""
 
 
 def one_of(key: str, models: dict[str, type[Model]]) -> PlainValidator:
     """A type of mapping in which the value of one key selects the model."""
 
-    def check(given: Any) -> Model:
-        if not isinstance(given, dict):
+    def check(entry: Any) -> Model:
+        if not isinstance(entry, dict):
             raise PydanticCustomError("expected", "{text}", {"text": f"a mapping with {key}"})
-        if key not in given:
+        if key not in entry:
             raise wrong(f"{key}: missing key; one of {', '.join(sorted(models))}")
-        kind = given[key]
+        kind = entry[key]
         if not isinstance(kind, str) or kind not in models:
             raise wrong(f"{key}: {kind if isinstance(kind, str) else shown(kind)}: unknown{closest(kind, models)}")
-        return models[kind].model_validate(given)
+        return models[kind].model_validate(entry)
 
     return PlainValidator(check)
 
@@ -347,7 +352,7 @@ def one_of(key: str, models: dict[str, type[Model]]) -> PlainValidator:
 def mapping_or(mapping: Any, other: Any) -> PlainValidator:
     """A type of value that is either a mapping of one type, or of another type."""
     as_mapping, as_other = TypeAdapter(mapping), TypeAdapter(other)
-    return PlainValidator(lambda given: (as_mapping if isinstance(given, dict) else as_other).validate_python(given))
+    return PlainValidator(lambda entry: (as_mapping if isinstance(entry, dict) else as_other).validate_python(entry))
 
 
 def after(check: Callable[[Any], Any]) -> AfterValidator:
@@ -392,23 +397,35 @@ def named(model: Model, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str,
             yield from _named(getattr(model, key), field.metadata, field.annotation, (*path, key))
 
 
-def _named(given: Any, metadata: Any, annotation: Any, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], str, Any]]:
-    if isinstance(given, Model):
-        yield from named(given, path)
+def unwrapped(metadata: Iterable[Any], annotation: Any) -> tuple[list[Any], Any]:
+    """What stands beside a type, and the type itself, whether a key may be left out (`type | None`) or not."""
+    metadata = list(metadata)
+    while True:
+        parts = typing.get_args(annotation)
+        if typing.get_origin(annotation) is Annotated:
+            metadata, annotation = [*metadata, *annotation.__metadata__], annotation.__origin__
+        elif typing.get_origin(annotation) in (typing.Union, types.UnionType) and len(parts) == 2 and parts[1] is type(None):
+            annotation = parts[0]
+        else:
+            return metadata, annotation
+
+
+def _named(content: Any, metadata: Any, annotation: Any, path: tuple[str, ...]) -> Iterator[tuple[tuple[str, ...], str, Any]]:
+    if isinstance(content, Model):
+        yield from named(content, path)
         return
-    while typing.get_origin(annotation) is Annotated:
-        metadata, annotation = [*metadata, *annotation.__metadata__], annotation.__origin__
-    marks = [each.what for each in metadata if isinstance(each, Names)]
+    metadata, annotation = unwrapped(metadata, annotation)
+    marks = [item.what for item in metadata if isinstance(item, Names)]
     for what in marks[:1]:
-        yield path, what, given
+        yield path, what, content
     if marks:
         return
     parts = typing.get_args(annotation)
-    if isinstance(given, list):
-        for number, each in enumerate(given):
-            yield from _named(each, [], parts[0] if parts else None, (*path, str(number)))
-    elif isinstance(given, dict):
-        for key, each in given.items():
-            yield from _named(each, [], parts[1] if len(parts) > 1 else None, (*path, key))
+    if isinstance(content, list):
+        for number, item in enumerate(content):
+            yield from _named(item, [], parts[0] if parts else None, (*path, str(number)))
+    elif isinstance(content, dict):
+        for key, item in content.items():
+            yield from _named(item, [], parts[1] if len(parts) > 1 else None, (*path, key))
     elif typing.get_origin(annotation) is list:  # a lone item of `one_or_list`
-        yield from _named(given, [], parts[0], path)
+        yield from _named(content, [], parts[0], path)

@@ -15,6 +15,7 @@ from bezierplan.schema.model import (
     Model,
     Name,
     NotNegative,
+    Number,
     Positive,
     Setting,
     Whole,
@@ -41,7 +42,7 @@ PART = r"[A-Za-z0-9_.+-]+"
 """What a value must be like to be part of the name of a run or of a folder."""
 PART_EXPECTED = "a word of letters, digits, _, ., + and -"
 ProblemName = Annotated[str, matching(r"[a-z0-9][a-z0-9_]*", "a name of lower-case letters, digits and _")]
-Point = of_length(2, "[x, y]")
+Point = Annotated[list[Number], of_length(2, "[x, y]")]
 
 
 class Scales(Model):

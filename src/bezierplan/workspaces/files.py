@@ -52,7 +52,7 @@ def to_json(workspace: Workspace) -> str:
     """
     if isinstance(workspace, Grid) and isinstance(workspace.drawn, Circles):
         content = _circles_content(workspace.drawn) | {"kind": "random_field"}
-    elif isinstance(workspace, Grid) and workspace.drawn:
+    elif isinstance(workspace, Grid) and isinstance(workspace.drawn, Polygons):
         cells = {"cell": workspace.cell, "rows": grid.to_lines(workspace), "origin": workspace.origin}
         content = _polygons_content(workspace.drawn) | cells | {"kind": "raster"}
     elif isinstance(workspace, Grid):

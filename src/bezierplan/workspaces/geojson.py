@@ -262,7 +262,7 @@ def _within(limits: Bounds, obstacles: list[Shape]) -> list[Rings]:
     if over:
         first = over[0] if len(over) == 1 else f"{over[0]} and {len(over) - 1} more"
         logger.warning("%s: beyond the border, and cut there", first)
-    kept = []
+    kept: list[Rings] = []
     for each, shape, inside in zip(obstacles, shapes, covered):
         parts = [] if inside else [part for part in shapely.get_parts(shape.intersection(frame)) if isinstance(part, shapely.Polygon)]
         kept += [each.rings] if inside else map(_rings_of, parts)

@@ -54,8 +54,9 @@ def lattice(grid: Grid, start: tuple[float, float], target: tuple[float, float],
         if start != target:
             ends += math.dist(point, grid.centre(cells[-1])) / grid.cell
     row, column = np.divmod(np.arange(rows * columns), columns)
+    first, last = cells
     return Lattice(
-        neighbours(grid.occupied, corners), _around(grid.occupied), grid.occupied.ravel(), row, column, *cells, math.sqrt(2), ends
+        neighbours(grid.occupied, corners), _around(grid.occupied), grid.occupied.ravel(), row, column, first, last, math.sqrt(2), ends
     )
 
 

@@ -10,6 +10,7 @@ from bezierplan.workspaces import files, raster, robot, ros, shifted
 from bezierplan.workspaces.files import Workspace
 from bezierplan.workspaces.geojson import polygons_from_geojson
 from bezierplan.workspaces.limits import FARTHEST, check_thickness
+from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.text_file import number, read_text
 
 IMAGES = (".png", ".pgm", ".bmp")
@@ -112,6 +113,7 @@ def read(file: Path, description: dict[str, Any], robot_radius: float | None = N
     if description["kind"] != "raster":
         return robot.grow(_loaded(file, description), robot_radius or 0.0)
     polygons = robot.grow(_loaded(file, description | {"kind": "polygons"}), robot_radius or 0.0)  # before it becomes cells
+    assert isinstance(polygons, Polygons)  # by its kind
     cell = float(description["cell"])
     check_thickness(cell, "cell:")
     return raster.from_polygons(polygons, cell, description["rule"])

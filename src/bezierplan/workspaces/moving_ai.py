@@ -30,9 +30,10 @@ class Scenario(NamedTuple):
 def read(file: Path, unit: str) -> Grid:
     """The grid of a `.map` file, with cells of side 1. Raises ValueError, naming the line and what is expected."""
     lines = lines_of(read_text(file, largest=2 * MOST_CELLS))
-    _, rows, columns = header = [_header(lines, number, key) for number, key in enumerate(("type", "height", "width"), start=1)]
-    if header[0] != "octile":
-        raise ValueError(f"line 1: type {header[0]}; expected type octile")
+    kind, height, width = (_header(lines, number, key) for number, key in enumerate(("type", "height", "width"), start=1))
+    rows, columns = int(height), int(width)
+    if kind != "octile":
+        raise ValueError(f"line 1: type {kind}; expected type octile")
     if rows * columns > MOST_CELLS:
         raise ValueError(f"line 2: {rows} x {columns} cells; expected at most {MOST_CELLS:,}")
     if len(lines) < 4 or lines[3].strip() != "map":
@@ -50,12 +51,12 @@ def read(file: Path, unit: str) -> Grid:
     return Grid(~np.isin(free, np.frombuffer(FREE.encode(), dtype=np.uint8))[::-1], 1.0, unit)
 
 
-def _header(lines: list[str], number: int, key: str) -> int | str:
+def _header(lines: list[str], number: int, key: str) -> str:
     words = lines[number - 1].split() if len(lines) >= number else []
     if len(words) != 2 or words[0] != key or (key != "type" and not is_count(words[1])):
         found = lines[number - 1][:40] if len(lines) >= number else "the file ends"
         raise ValueError(f"line {number}: {found!r}; expected {key} and {'octile' if key == 'type' else 'a whole number of at least 1'}")
-    return words[1] if key == "type" else int(words[1])
+    return words[1]
 
 
 def _whole(word: str) -> int:
@@ -78,8 +79,8 @@ def scenario(file: Path, number: int, grid: Grid, name: str) -> Scenario:
     place = f"line {number + 1}"
     words = lines[number].split()
     try:
-        _, home, columns, rows, *ends = words
-        columns, rows, x, y, target_x, target_y = map(_whole, (columns, rows, *ends[:4]))
+        _, home, width, height, *ends = words
+        columns, rows, x, y, target_x, target_y = map(_whole, (width, height, *ends[:4]))
         optimal = number_of(ends[4])
     except (ValueError, IndexError):
         raise ValueError(f"{place}: expected bucket, map, width, height, start x, start y, target x, target y, optimal length") from None

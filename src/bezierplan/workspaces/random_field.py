@@ -30,10 +30,12 @@ def field(description: dict, problem: dict, name: str) -> Grid:
     rng = generator("/".join(map(str, parts)))
     empty = from_circles(Circles((0.0, side, 0.0, side), np.empty((0, 2)), np.empty(0), description["unit"]))
     ends = np.array([problem["start"], problem["target"]], dtype=float)
-    cells = [empty.cell_of(*end) for end in ends]
-    for key, cell in zip(("start", "target"), cells):
+    cells = []
+    for key, end in zip(("start", "target"), ends):
+        cell = empty.cell_of(*end)
         if cell is None:
             raise ValueError(f"{key}: {problem[key]}: outside the field; expected x and y from 0 to {side}")
+        cells.append(cell)
     radius = description["radius"] * side
     for _ in range(MOST_FIELDS):
         centres = _centres(rng, problem["obstacles"], side, ends, radius + description["clear_ends"])

@@ -169,7 +169,11 @@ def _corners(shape: "shapely.Geometry") -> tuple[np.ndarray, np.ndarray, np.ndar
         oriented = shapely.geometry.polygon.orient(part)
         rings += [shapely.get_coordinates(ring)[:-1] for ring in (oriented.exterior, *oriented.interiors)]
     around = [(ring, np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0)) for ring in rings]
-    return tuple(np.concatenate([np.empty((0, 2)), *each]) for each in zip(*around)) if around else (np.empty((0, 2)),) * 3
+    nothing = np.empty((0, 2))
+    if not around:
+        return nothing, nothing, nothing
+    corners, before, after = (np.concatenate([nothing, *each]) for each in zip(*around))
+    return corners, before, after
 
 
 def _union_of_polygons(polygons: Polygons) -> "shapely.Geometry":

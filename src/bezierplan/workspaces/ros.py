@@ -31,7 +31,7 @@ MOST_PIXELS = 16_000_000
 """Most pixels of an image unless the description says otherwise: 4,000 x 4,000."""
 
 _KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh")
-_DEFAULTS = {"occupied_thresh": 0.65, "free_thresh": 0.196, "negate": 0, "mode": "trinary"}
+_DEFAULTS: dict[str, Any] = {"occupied_thresh": 0.65, "free_thresh": 0.196, "negate": 0, "mode": "trinary"}
 _MODES = ("trinary", "scale", "raw")
 _TRUTHS = {"0": False, "1": True, "false": False, "true": True, "no": False, "yes": True, "off": False, "on": True}
 """What ROS reads as a truth value: YAML 1.1 has more of them than the YAML of this project."""
@@ -117,7 +117,7 @@ def _content(file: Path) -> dict[str, Any]:
     negate = _TRUTHS.get(str(content["negate"]).lower())
     _expect(negate is not None, "negate", content["negate"], "0 or 1")
     _expect(content["mode"] in _MODES, "mode", content["mode"], f"one of {', '.join(_MODES)}")
-    origin = content.get("origin")
+    origin: Any = content.get("origin")
     _expect(isinstance(origin, list) and len(origin) == 3 and all(map(_is_number, origin[:2])), "origin", origin, "[x, y, yaw]")
     if str(origin[2]).lower().lstrip("-+.") == "nan":
         logger.warning("%s: origin: yaw %s counts as 0; map_saver writes it for an orientation that is not valid", file.name, origin[2])
@@ -149,7 +149,7 @@ def _occupied(file: Path, content: dict[str, Any], most_pixels: int, unknown: Un
             raise ValueError(f"image: {columns:,} x {rows:,} pixels: more than there is memory for; expected a smaller image") from None
         except Exception as error:  # of a damaged file each format raises another one
             raise ValueError(f"image: {content['image']}: cannot be read as an image ({type(error).__name__})") from None
-    if light is None:
+    if light is None or known is None:
         raise _too_large(columns, rows, most_pixels)
     return ~_free(light, known, content, unknown)[::-1]
 

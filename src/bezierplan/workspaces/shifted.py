@@ -14,6 +14,7 @@ from bezierplan.workspaces.files import Workspace
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.grown import Grown, original
 from bezierplan.workspaces.limits import LARGEST
+from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem
 
 Shift = tuple[float, float]
@@ -56,9 +57,13 @@ def moved(workspace: Workspace, by: Shift) -> Workspace:
     if by == (0.0, 0.0):
         return workspace
     if isinstance(workspace, Grid):
-        drawn = moved(workspace.drawn, by) if workspace.drawn else None
+        drawn = _moved_shapes(workspace.drawn, by) if workspace.drawn else None
         origin = workspace.origin[0] + by[0], workspace.origin[1] + by[1]
         return replace(workspace, origin=origin, drawn=drawn, grown=_grown(workspace.grown, by))
+    return _moved_shapes(workspace, by)
+
+
+def _moved_shapes(workspace: Circles | Polygons, by: Shift) -> Circles | Polygons:
     x_low, x_high, y_low, y_high = workspace.bounds
     bounds = x_low + by[0], x_high + by[0], y_low + by[1], y_high + by[1]
     grown = _grown(workspace.grown, by)

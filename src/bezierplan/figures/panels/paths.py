@@ -18,7 +18,21 @@ from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.figures.panels.lines import axis_label, published
 from bezierplan.geometry import curves
 from bezierplan.schema.checked import closest
-from bezierplan.schema.model import Column, Experiment, Flag, Label, Line, Metric, Model, Names, Positive, PrintedTable, at_most, wrong
+from bezierplan.schema.model import (
+    Column,
+    Experiment,
+    Flag,
+    Label,
+    Line,
+    Metric,
+    Model,
+    Names,
+    Number,
+    Positive,
+    PrintedTable,
+    at_most,
+    wrong,
+)
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.kinds import of_length
 from bezierplan.workspaces.limits import LARGEST
@@ -118,7 +132,7 @@ class Explicit(Model):
     """A path without a run."""
 
     curve: Line = Field(description="the kind of a curve")
-    points: Annotated[list[of_length(2, "[x, y]")], at_most(MOST_POINTS)] = Field(
+    points: Annotated[list[Annotated[list[Number], of_length(2, "[x, y]")]], at_most(MOST_POINTS)] = Field(
         description="a list of two to 100 [x, y], at most 1e5 in absolute value", min_length=2
     )
 
@@ -362,31 +376,31 @@ def _draw_changes(axes: Axes, frame: pd.DataFrame, workspace: Workspace) -> None
             axes.add_collection(PatchCollection(cells, zorder=1, linewidth=0.9, **look), autolim=False)
 
 
-def _write_letter(axes: Axes, place: np.ndarray, letter: str) -> None:
+def _write_letter(axes: Axes, point: np.ndarray, letter: str) -> None:
     """Write a letter next to a place, on the side towards the panel's centre."""
-    inwards = np.where(place <= [np.mean(axes.get_xlim()), np.mean(axes.get_ylim())], 1, -1)
+    inwards = np.where(point <= [np.mean(axes.get_xlim()), np.mean(axes.get_ylim())], 1, -1)
     beside = {"xytext": (13, 5) * inwards, "textcoords": "offset points", "ha": "center", "va": "center"}
     # Without a halo, which would look like a gap in a path.
-    axes.annotate(letter, place, weight="bold", zorder=7, **beside)
+    axes.annotate(letter, point, weight="bold", zorder=7, **beside)
 
 
 def _draw_side_by_side(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the paths of all values of hue, each in its own style, and what belongs to their problem once; returns their measures."""
     hue = options.hue
     values = style.in_order(frame[hue], options.where)
-    given = []
+    clauses = []
     # The first path is the widest, so that paths on top do not hide it.
     widths = np.linspace(_WIDEST, _NARROWEST, len(values))
     for value, look, width in zip(values, style.lines(values, scene.looks), widths):
-        own = frame[frame[hue] == value]
-        draw_parts(axes, own[own["part"] == "collision"], narrow=scene.narrow, clip=options.view is not None)
-        path = own[own["part"] == "path"]
+        rows = frame[frame[hue] == value]
+        draw_parts(axes, rows[rows["part"] == "collision"], narrow=scene.narrow, clip=options.view is not None)
+        path = rows[rows["part"] == "path"]
         name = style.printed(value, hue, scene.labels)
         axes.plot(path["x"], path["y"], zorder=3, **look | {"marker": "", "label": name, "linewidth": width})
-        given.append(f"{name} {_decimal(own['measure'].iloc[0])}" if len(path) else f"{name} no path")
+        clauses.append(f"{name} {_decimal(rows['measure'].iloc[0])}" if len(path) else f"{name} no path")
     once = frame[frame["part"].isin(["start", "target", "bound"])].drop_duplicates(["part", "x", "y"])
     draw_parts(axes, once, narrow=scene.narrow, clip=options.view is not None)
-    return Note("", f"{axis_label(options.measure, scene)}: {', '.join(given)}")
+    return Note("", f"{axis_label(options.measure, scene)}: {', '.join(clauses)}")
 
 
 def draw_parts(axes: Axes, frame: pd.DataFrame, *, narrow: bool, clip: bool) -> None:

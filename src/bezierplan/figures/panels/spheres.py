@@ -5,7 +5,7 @@ The panel plans by itself: problems, runs and bounds of experiments have two dim
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field
@@ -15,7 +15,7 @@ from bezierplan.figures.panels import Note, Panel, Sources
 from bezierplan.figures.panels import workspace as workspaces
 from bezierplan.geometry import curves
 from bezierplan.geometry import spheres as exact
-from bezierplan.schema.model import Count, Name, Setting
+from bezierplan.schema.model import Count, Name, Number, Setting
 from bezierplan.schema.model import Workspace as Described
 from bezierplan.workspaces.kinds import of_length
 from bezierplan.workspaces.problem import Problem
@@ -50,7 +50,7 @@ _LOOK = {
     "target": workspaces.TARGET,
 }
 
-Place = of_length(3, "[x, y, z]")
+Place = Annotated[list[Number], of_length(3, "[x, y, z]")]
 
 
 class Options(Panel):
@@ -96,8 +96,8 @@ def data(source: tuple[Spheres, str], options: Options) -> pd.DataFrame:
     workspace, study = source
     start, target = options.start, options.target
     task = problem(workspace, start, target)
-    bound = exact.least_length(task)
-    found, paths = [], {}
+    bound = exact.least_length(workspace, task.start, task.target)
+    rows, paths = [], {}
     for repeat in range(options.runs):
         run = f"{study}/{options.workspace}/{options.method}/{repeat}"
         plan = chaotic_pso.plan(task, generator(run), **options.settings)
@@ -105,9 +105,9 @@ def data(source: tuple[Spheres, str], options: Options) -> pd.DataFrame:
         length, feasible = exact.length(pieces), exact.is_free(pieces, workspace)
         if feasible and length < bound * (1 - 1e-9) - 1e-7:
             raise ValueError(f"run {run}: a free path of length {length:.12g}, below the bound {bound:.12g}")
-        found.append({"part": "run", "run": run, "length": length, "claimed_feasible": plan.claimed_feasible, "feasible": feasible})
+        rows.append({"part": "run", "run": run, "length": length, "claimed_feasible": plan.claimed_feasible, "feasible": feasible})
         paths[run] = plan.path
-    table = pd.DataFrame(found)
+    table = pd.DataFrame(rows)
     parts = [
         _places("corner", np.reshape(workspace.bounds, (3, 2)).T),
         _places("sphere", workspace.centres).assign(size=workspace.radii, obstacle=range(len(workspace.radii))),

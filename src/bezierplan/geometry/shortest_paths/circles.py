@@ -179,7 +179,7 @@ def _circumscribed(
     points: np.ndarray, circles: np.ndarray, sweeps: list[float], centres: np.ndarray, radii: np.ndarray, blocked: CircleRegion
 ) -> np.ndarray:
     """The polyline (n, 2) along a path of straight pieces (sweep 0) and arcs: around the arcs, fine enough to be free."""
-    runs = []
+    runs: list[tuple[int, float, int]] = []
     for node, sweep in enumerate(sweeps):
         if runs and sweep * runs[-1][1] > 0:
             runs[-1] = (runs[-1][0], runs[-1][1] + sweep, node + 1)

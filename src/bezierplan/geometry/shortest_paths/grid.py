@@ -60,6 +60,7 @@ def centre_path(problem: Problem) -> Bound:
     cells.
     """
     grid = problem.workspace
+    assert isinstance(grid, Grid)
     nodes = [_centre_cell(grid, name, point) for name, point in (("start", problem.start), ("target", problem.target))]
     if any(grid.occupied[row, column] for row, column in nodes):
         return no_path()

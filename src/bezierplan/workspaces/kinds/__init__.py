@@ -7,9 +7,10 @@
 | `sources(description, folder)` | the files from which it is read, if they are more than those that its keys name |
 | `draw(description, problem, name)` | the workspace of a problem, if it is random; seeded by the name of study and workspace |
 | `candidates(description, problem, name)` | in place of `draw`, workspaces of which the first with a suitable lattice path is taken |
+| `world(description, problem, name, folder, length)` | the world of a problem, if the kind moves |
 
-A description is a mapping, as written in experiments.yaml; coordinates are in its unit, at most 1e5 in absolute value. Worlds are made from
-their descriptions in `running.worlds`, since some need shortest paths. All faults are ValueErrors of one line.
+A description is a mapping, as written in experiments.yaml; coordinates are in its unit, at most 1e5 in absolute value. `length` of a
+map is that of the shortest path from cell to cell between the ends of the problem. All faults are ValueErrors of one line.
 """
 
 import importlib
@@ -21,7 +22,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Annotated, Any, ClassVar
 
-from pydantic import Field, PlainValidator
+from pydantic import AfterValidator, Field, PlainValidator
 from pydantic_core import PydanticCustomError
 
 from bezierplan.schema.checked import Fault
@@ -36,6 +37,7 @@ from bezierplan.schema.model import (
     after,
     is_number,
     keys,
+    unwrapped,
     value,
     wrong,
 )
@@ -67,21 +69,21 @@ Unit = Annotated[
 ]
 
 
-def of_length(length: int, expected: str) -> Any:
-    """A type of list of so many numbers."""
+def of_length(length: int, expected: str) -> AfterValidator:
+    """A check of a list of numbers: that there are so many."""
 
     def check(given: list) -> list:
         if len(given) != length:
             raise wrong(f"{given!r}: expected {expected}")
         return given
 
-    return Annotated[list[Number], after(check)]
+    return after(check)
 
 
 Size = Annotated[float, value(lambda given: is_number(given) and given >= SMALLEST_FEATURE, f"a number of at least {SMALLEST_FEATURE:g}")]
 """A side or a radius of something solid, in units."""
 
-Bounds = of_length(4, "[x low, x high, y low, y high]")
+Bounds = Annotated[list[Number], of_length(4, "[x low, x high, y low, y high]")]
 CircleCount = Annotated[int, value(lambda given: type(given) is int and 1 <= given <= 10_000, "")]
 
 # Descriptions of keys shared by several kinds.
@@ -140,7 +142,7 @@ def kinds() -> dict[str, type[Workspace]]:
 
 def file_keys(options: type[Workspace]) -> list[str]:
     """The keys of a kind that name files."""
-    return [key for key, field in keys(options).items() if _IS_FILE in field.metadata]
+    return [key for key, field in keys(options).items() if _IS_FILE in unwrapped(field.metadata, field.annotation)[0]]
 
 
 def text(description: dict, key: str, folder: Path) -> str:

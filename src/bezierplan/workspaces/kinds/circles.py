@@ -2,10 +2,12 @@
 
 import math
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field
 
+from bezierplan.schema.model import Number
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.kinds import Bounds, Workspace, of_length
 from bezierplan.workspaces.limits import check_bounds, check_gaps, check_numbers, check_thickness
@@ -18,7 +20,7 @@ class Options(Workspace):
     """Keys of a workspace."""
 
     bounds: Bounds = Field(description="[x low, x high, y low, y high]")
-    circles: list[of_length(3, "[x, y, radius]")] = Field(description="a list of [x, y, radius]")
+    circles: list[Annotated[list[Number], of_length(3, "[x, y, radius]")]] = Field(description="a list of [x, y, radius]")
 
 
 def load(description: dict, folder: Path) -> Circles:
@@ -26,7 +28,8 @@ def load(description: dict, folder: Path) -> Circles:
     circles = description["circles"]
     if len(circles) > MOST_CIRCLES:
         raise ValueError(f"circles: {len(circles):,}; expected at most {MOST_CIRCLES:,}")
-    limits = tuple(map(float, description["bounds"]))
+    x_low, x_high, y_low, y_high = map(float, description["bounds"])
+    limits = x_low, x_high, y_low, y_high
     check_numbers(np.array(limits), "bounds")
     check_bounds(limits)
     table = np.array(circles, dtype=float).reshape(-1, 3)

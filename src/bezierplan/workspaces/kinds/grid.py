@@ -18,7 +18,7 @@ class Options(Workspace):
 
     file: File = Field(description="a map file in the study's folder")
     cell: Size = Field(description="the side of a cell, a number of at least 1e-6")
-    heights: File = Field(description="a file of heights in the study's folder", default=None)
+    heights: File | None = Field(description="a file of heights in the study's folder", default=None)
 
 
 def load(description: dict, folder: Path) -> Grid:

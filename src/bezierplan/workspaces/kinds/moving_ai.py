@@ -16,7 +16,7 @@ class Options(Workspace):
     made: ClassVar[str] = "grid"
 
     file: File = Field(description="a .map file in the study's folder")
-    scenarios: File = Field(None, description="a .scen file of the same map")
+    scenarios: File | None = Field(None, description="a .scen file of the same map")
 
 
 def load(description: dict, folder: Path) -> Grid:

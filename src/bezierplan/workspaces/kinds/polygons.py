@@ -14,7 +14,7 @@ class Options(Workspace):
     """Keys of a workspace."""
 
     file: File = Field(description="a GeoJSON file in the study's folder")
-    margin: NotNegative = Field(None, description=MARGIN)
+    margin: NotNegative | None = Field(None, description=MARGIN)
 
 
 def load(description: dict, folder: Path) -> Polygons:

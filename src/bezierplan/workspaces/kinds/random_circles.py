@@ -22,6 +22,7 @@ class Options(Workspace):
 
 def draw(description: dict, problem: dict, name: str) -> Circles:
     """The first so many circles of a layout. Raises ValueError for bounds without room, and if no free place is found."""
-    check_bounds(tuple(map(float, description["bounds"])))
-    ends = [tuple(map(float, problem[end])) for end in ("start", "target")]
+    x_low, x_high, y_low, y_high = map(float, description["bounds"])
+    check_bounds((x_low, x_high, y_low, y_high))
+    ends = [(float(x), float(y)) for x, y in (problem["start"], problem["target"])]
     return random_circles.first(random_circles.layout(description, name, problem["layout"], ends), problem["obstacles"])

@@ -19,7 +19,7 @@ class Options(Workspace):
     made: ClassVar[str] = "grid"
 
     file: File = Field(description="a GeoJSON file in the study's folder")
-    margin: NotNegative = Field(None, description=MARGIN)
+    margin: NotNegative | None = Field(None, description=MARGIN)
     cell: Size = Field(description="the side of a cell, a number of at least 1e-6")
     rule: Literal["overlap", "centre"] = Field(
         description="which cells are occupied: those that overlap an obstacle, or whose centre lies in one"

@@ -20,10 +20,10 @@ class Options(Workspace):
     robot_radius: NotNegative = Field(
         0, description="a robot's radius: cells that come closer to an obstacle or the border are occupied, a number of at least 0"
     )
-    most_pixels: Annotated[int, value(lambda given: type(given) is int and given >= 1, "")] = Field(
+    most_pixels: Annotated[int, value(lambda given: type(given) is int and given >= 1, "")] | None = Field(
         None, description="the most pixels of an image, a whole number of at least 1"
     )
-    unknown: Literal["occupied", "free"] = Field(None, description="what pixels count as that are unknown; occupied without it")
+    unknown: Literal["occupied", "free"] | None = Field(None, description="what pixels count as that are unknown; occupied without it")
 
 
 def load(description: dict, folder: Path) -> Grid:

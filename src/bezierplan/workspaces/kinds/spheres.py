@@ -2,10 +2,12 @@
 
 import math
 from pathlib import Path
+from typing import Annotated
 
 import numpy as np
 from pydantic import Field
 
+from bezierplan.schema.model import Number
 from bezierplan.workspaces.kinds import Workspace, of_length
 from bezierplan.workspaces.limits import check_numbers, check_thickness
 from bezierplan.workspaces.spheres import Spheres
@@ -16,13 +18,14 @@ BOUNDS = "[x low, x high, y low, y high, z low, z high]"
 class Options(Workspace):
     """Keys of a workspace."""
 
-    bounds: of_length(6, BOUNDS) = Field(description=BOUNDS)
-    spheres: list[of_length(4, "[x, y, z, radius]")] = Field(description="a list of [x, y, z, radius]")
+    bounds: Annotated[list[Number], of_length(6, BOUNDS)] = Field(description=BOUNDS)
+    spheres: list[Annotated[list[Number], of_length(4, "[x, y, z, radius]")]] = Field(description="a list of [x, y, z, radius]")
 
 
 def load(description: dict, folder: Path) -> Spheres:
     """The spheres that a description lists."""
-    bounds = tuple(map(float, description["bounds"]))
+    x_low, x_high, y_low, y_high, z_low, z_high = map(float, description["bounds"])
+    bounds = x_low, x_high, y_low, y_high, z_low, z_high
     check_numbers(np.array(bounds), "bounds")
     if not all(low < high for low, high in zip(bounds[::2], bounds[1::2])):
         raise ValueError(f"bounds: {list(bounds)}; expected {BOUNDS} with low below high")
