@@ -1,25 +1,34 @@
 """A map whose cells change."""
 
-from pathlib import Path
-from typing import ClassVar
+from __future__ import annotations
 
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, ClassVar
+
+import numpy as np
 from pydantic import Field, model_validator
 
 from bezierplan.schema.model import Model, Positive, wrong
-from bezierplan.workspaces.kinds import File, Size, World
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.kinds import File, Size, World, grid
+
+if TYPE_CHECKING:
+    from bezierplan.workspaces.worlds import ChangingCells
 
 
 class Change(Model):
     """A moment at which the cells of a map change."""
 
     file: File = Field(description="the map file that is in force from then on")
-    after: Positive = Field(
+    after: Positive | None = Field(
         None, description="when: the share of its way that a robot on the shortest path from cell to cell has then covered, above 0"
     )
-    at: Positive = Field(None, description="or when: a step, a number above 0")
+    at: Positive | None = Field(None, description="or when: a step, a number above 0")
 
     @model_validator(mode="after")
-    def _check_moment(self) -> "Change":
+    def _check_moment(self) -> Change:
         if len(self.model_fields_set & {"after", "at"}) != 1:
             raise wrong("expected either after or at")
         return self
@@ -38,3 +47,31 @@ class Options(World):
 def sources(description: dict, folder: Path) -> list[Path]:
     """The map at the beginning, and those of the changes."""
     return [folder / file for file in (description["file"], *(change["file"] for change in description["changes"]))]
+
+
+def world(description: dict, problem: dict, name: str, folder: Path, length: Callable[[Grid], float]) -> ChangingCells:
+    """The maps of a description, each from its moment on."""
+    from bezierplan.workspaces.worlds import ChangingCells
+
+    shared = {key: description[key] for key in ("cell", "unit")}
+    names = [description["file"], *(change["file"] for change in description["changes"])]
+    maps = tuple(grid.load(shared | {"file": file}, folder) for file in names)
+    for file, each in zip(names, maps):
+        if each.occupied.shape != maps[0].occupied.shape:
+            raise ValueError(f"changes: {file}: {each.occupied.shape} cells, but {names[0]} has {maps[0].occupied.shape}")
+    pace = float(description["pace"])
+    moments = np.array([_moment(change, maps[0], length, pace) for change in description["changes"]])
+    if (np.diff(moments) <= 0).any() or (moments <= 0).any():
+        raise ValueError(f"changes: they are at steps {', '.join(f'{each:g}' for each in moments)}; expected ascending ones above 0")
+    return ChangingCells(maps, moments, pace, description["steps"])
+
+
+def _moment(change: dict, first: Grid, length: Callable[[Grid], float], pace: float) -> float:
+    """When a change happens, in steps."""
+    if "at" in change:
+        return float(change["at"])
+    # A share of the way of a robot that follows the shortest path from cell to cell.
+    way = length(first)
+    if math.isinf(way):
+        raise ValueError(f"changes: after: {change['after']:g}: no path leads from start to target on the first map; expected at: a step")
+    return change["after"] * way / pace

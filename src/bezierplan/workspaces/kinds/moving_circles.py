@@ -1,12 +1,21 @@
 """Circles that move."""
 
-from typing import ClassVar
+from __future__ import annotations
 
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar
+
+import numpy as np
 from pydantic import Field
 
+from bezierplan.schema.model import Number
+from bezierplan.workspaces import moving
 from bezierplan.workspaces.kinds import REFLECTED, Bounds, World, of_length
 
-MovingCircle = of_length(5, "[x, y, radius, x velocity, y velocity]")
+if TYPE_CHECKING:
+    from bezierplan.workspaces.worlds import MovingCircles
+
+MovingCircle = Annotated[list[Number], of_length(5, "[x, y, radius, x velocity, y velocity]")]
 
 
 class Options(World):
@@ -16,3 +25,14 @@ class Options(World):
 
     bounds: Bounds = Field(description=REFLECTED)
     circles: list[MovingCircle] = Field(description="a list of [x, y, radius, x velocity, y velocity], velocities in units per step")
+
+
+def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> MovingCircles:
+    """The circles that a description lists."""
+    walls = moving.walls_of(description["bounds"])
+    table = np.array(description["circles"], dtype=float).reshape(-1, 5)
+    centres, radii, velocities = table[:, :2].copy(), table[:, 2].copy(), table[:, 3:].copy()
+    low, high = np.reshape(walls, (2, 2)).T
+    if ((centres < low) | (centres > high)).any():
+        raise ValueError(f"circles: a centre lies outside bounds {list(walls)}; centres are reflected there")
+    return moving.circles(description, walls, centres, velocities, radii)

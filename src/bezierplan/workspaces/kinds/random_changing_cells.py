@@ -1,11 +1,24 @@
 """A map whose cells change at random; `obstacles` of a problem says how many at a time."""
 
-from typing import ClassVar
+from __future__ import annotations
 
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
 from pydantic import Field
 
 from bezierplan.schema.model import Count
-from bezierplan.workspaces.kinds import File, Size, World
+from bezierplan.workspaces import random_field
+from bezierplan.workspaces.grid import Grid
+from bezierplan.workspaces.kinds import File, Size, World, grid
+from bezierplan.workspaces.seeds import generator
+
+if TYPE_CHECKING:
+    from bezierplan.workspaces.worlds import ChangingCells
+
+# Draws of one change before a world is abandoned.
+_MOST_CHANGES = 1000
 
 
 class Options(World):
@@ -16,3 +29,31 @@ class Options(World):
     file: File = Field(description="a map file in the study's folder")
     cell: Size = Field(description="the side of a cell, a number of at least 1e-6")
     every: Count = Field(description="after how many steps as many cells change as a problem has obstacles, a whole number of at least 1")
+
+
+def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> ChangingCells:
+    """At every `every`-th step as many random cells change as the problem has `obstacles`; start and target stay free, and connected."""
+    from bezierplan.workspaces.worlds import ChangingCells
+
+    first = grid.load({key: description[key] for key in ("unit", "cell", "file")}, folder)
+    start, target = (first.cell_of(*map(float, problem[end])) for end in ("start", "target"))
+    if start is None or target is None:
+        raise ValueError("start or target lies outside the map")
+    moments = np.arange(description["every"], description["steps"], description["every"], dtype=float)
+    rng = generator("/".join(map(str, [name, *problem["start"], *problem["target"], problem["obstacles"], problem["layout"]])))
+    changeable = np.ones(first.occupied.shape, dtype=bool)
+    changeable[start] = changeable[target] = False
+    numbers = np.flatnonzero(changeable)
+    if problem["obstacles"] > len(numbers):
+        raise ValueError(f"obstacles: {problem['obstacles']}; expected at most {len(numbers)}, the cells that can change")
+    maps = [first]
+    for _ in moments:
+        for _ in range(_MOST_CHANGES):
+            occupied = maps[-1].occupied.copy()
+            occupied.flat[rng.choice(numbers, problem["obstacles"], replace=False)] ^= True
+            if random_field.connected(occupied, start, target):
+                break
+        else:
+            raise ValueError(f"obstacles: {problem['obstacles']}: start and target are cut off from each other in {_MOST_CHANGES} changes")
+        maps.append(Grid(occupied, first.cell, first.unit))
+    return ChangingCells(tuple(maps), moments, float(description["pace"]), description["steps"])

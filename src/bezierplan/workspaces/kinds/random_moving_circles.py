@@ -1,10 +1,19 @@
 """Layouts of circles that move from random places in random directions."""
 
-from typing import ClassVar
+from __future__ import annotations
 
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
 from pydantic import Field
 
+from bezierplan.workspaces import moving
 from bezierplan.workspaces.kinds import CIRCLES, REFLECTED, Bounds, CircleCount, RandomMoving, Size
+from bezierplan.workspaces.seeds import generator
+
+if TYPE_CHECKING:
+    from bezierplan.workspaces.worlds import MovingCircles
 
 
 class Options(RandomMoving):
@@ -15,3 +24,14 @@ class Options(RandomMoving):
     bounds: Bounds = Field(description=REFLECTED)
     radius: Size = Field(description="the radius of every circle, a number of at least 1e-6")
     circles: CircleCount = Field(description=CIRCLES)
+
+
+def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> MovingCircles:
+    """The first so many circles of a layout, as where nothing moves. Raises ValueError if no free place is found."""
+    walls = moving.walls_of(description["bounds"])
+    ends = [*problem["start"], *problem["target"]]
+    rng = generator("/".join(map(str, [name, *ends, problem["layout"]])))
+    radius, count = description["radius"], problem["obstacles"]
+    centres, velocities = moving.drawn(rng, description, description["circles"], walls, np.reshape(ends, (2, 2)), radius)
+    radii = np.full(len(centres[:count]), float(radius))
+    return moving.circles(description, walls, centres[:count], velocities[:count], radii)

@@ -1,11 +1,21 @@
 """Fields of cells with circles that move from random places in random directions."""
 
-from typing import ClassVar
+from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+import numpy as np
 from pydantic import Field
 
 from bezierplan.schema.model import Positive
+from bezierplan.workspaces import moving
 from bezierplan.workspaces.kinds import RandomMoving
+from bezierplan.workspaces.seeds import generator
+
+if TYPE_CHECKING:
+    from bezierplan.workspaces.worlds import MovingCircles
 
 
 class Options(RandomMoving):
@@ -15,3 +25,15 @@ class Options(RandomMoving):
     with_side: ClassVar[bool] = True
 
     radius: Positive = Field(description="the radius of every circle as a share of the field's side, a number above 0")
+
+
+def world(description: dict, problem: dict, name: str, folder: Path, length: Any) -> MovingCircles:
+    """Circles on a field, which planners see as cells. Raises ValueError if no free place is found."""
+    side, count = problem["side"], problem["obstacles"]
+    walls = moving.walls_of([0.0, side, 0.0, side])
+    ends = [*problem["start"], *problem["target"]]
+    rng = generator("/".join(map(str, [name, side, *ends, count, problem["layout"]])))
+    radius = description["radius"] * side
+    centres, velocities = moving.drawn(rng, description, count, walls, np.reshape(ends, (2, 2)), radius)
+    circles = moving.circles(description, walls, centres, velocities, np.full(count, float(radius)))
+    return replace(circles, bounds=(-0.5, side + 0.5, -0.5, side + 0.5), seen="cells")
