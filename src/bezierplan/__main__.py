@@ -39,19 +39,19 @@ class _Parser(argparse.ArgumentParser):
         self.exit(2, f"{self.prog}: {message}; `{self.prog} --help` tells what is expected\n")
 
 
-def main(given: list[str]) -> None:
+def main(words: list[str]) -> None:
     """Do what the words of a command line say; a fault ends the process with one line: of input with status 2, of a planner with 1."""
     listed = "\n".join(f"  {name:16}{text}" for name, text in COMMANDS.items())
     parser = _Parser(prog=PROGRAM, epilog=f"commands:\n{listed}", formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("command", choices=COMMANDS, metavar="COMMAND", help="what to do; `COMMAND --help` tells its arguments")
     parser.add_argument("--version", action="version", version=f"bezierplan {bezierplan.__version__}")
-    if not given:
+    if not words:
         parser.print_help()
         return
-    name = parser.parse_args(given[:1]).command
+    name = parser.parse_args(words[:1]).command
     own = _Parser(prog=f"{PROGRAM} {name}", description=COMMANDS[name])
     try:
-        importlib.import_module(f"bezierplan.commands.{name.replace('-', '_')}").main(own, given[1:])
+        importlib.import_module(f"bezierplan.commands.{name.replace('-', '_')}").main(own, words[1:])
         if sys.stdout:  # which a process without one does not have
             sys.stdout.flush()
     except BrokenPipeError:  # the reader, such as `head`, has enough; Python flushes once more when it exits

@@ -453,27 +453,27 @@ def plan(
     parts, blocked = legs.legs(problem, via, regions), regions(problem.workspace)
     bounds = legs.shortest(parts, blocked)
     if planner in legs.TURNING:
-        found = legs.solved(planner, parts, bounds, blocked, chosen)
+        answer = legs.solved(planner, parts, bounds, blocked, chosen)
     else:
-        found = legs.joined([_answered(part, name, module, seed, chosen) for part in parts])
+        answer = legs.joined([_answered(part, name, module, seed, chosen) for part in parts])
     try:
         whole = parts[0]._replace(target=parts[-1].target)
-        found = door.accepted(found, whole, {*TAKEN, *chosen})
+        answer = door.accepted(answer, whole, {*TAKEN, *chosen})
     except door.Unfit as fault:
         raise ValueError(f"the answer of planner {name}: {fault}") from None
-    kept = legs.kept(planner, found, chosen)
+    kept = legs.kept(planner, answer, chosen)
     if strict:
         legs.check_kept(chosen["turning_radius"], kept, problem.workspace.unit)
     return Answer(
-        **verdict(problem, found.path, legs.whole(bounds).length, regions, via),
+        **verdict(problem, answer.path, legs.whole(bounds).length, regions, via),
         turning_radius=kept,
         method=name,
         settings=chosen,
-        claimed_feasible=found.claimed_feasible,
-        objective=found.objective,
-        evaluations=found.evaluations,
-        history=found.history,
-        stop=found.stop,
+        claimed_feasible=answer.claimed_feasible,
+        objective=answer.objective,
+        evaluations=answer.evaluations,
+        history=answer.history,
+        stop=answer.stop,
     )
 
 
@@ -629,15 +629,15 @@ def results(folder: str | File, experiment: str) -> pd.DataFrame:
     """
     from bezierplan.schema.checked import closest
 
-    place = File(folder) / "runs"
-    if not place.is_dir():
+    runs_folder = File(folder) / "runs"
+    if not runs_folder.is_dir():
         raise ValueError(f"folder: {folder}: no runs here; expected results of a study, such as results/full/song2016")
     runs: dict[str, list[str]] = {}
-    for chunk in sorted(file for file in place.glob(f"{experiment}/*/*.parquet") if file.stem.isdecimal()):
+    for chunk in sorted(file for file in runs_folder.glob(f"{experiment}/*/*.parquet") if file.stem.isdecimal()):
         runs.setdefault(chunk.parent.name, []).append(str(chunk))
     if not runs:
-        known = [each.name for each in place.iterdir()]
-        raise ValueError(f"experiment: {experiment}: no runs of it in {place}{closest(experiment, known)}")
+        known = [each.name for each in runs_folder.iterdir()]
+        raise ValueError(f"experiment: {experiment}: no runs of it in {runs_folder}{closest(experiment, known)}")
     from bezierplan.analysis import results as stored
     from bezierplan.running.inputs import Files
 

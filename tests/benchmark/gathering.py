@@ -127,7 +127,7 @@ def gathering(given: Studies) -> Iterator[Job]:
 
 def _gathering_one(given: Studies, key: str) -> Iterator[Job]:
     """Tables, figures, claims and audit of a study."""
-    folder, of = f"results/{SCALE}/{key}", {"given": given, "scale": SCALE, "study": key}
+    folder, of = f"results/{SCALE}/{key}", {"studies": given, "scale": SCALE, "study": key}
     for name in given[key].tables:
         output = {"table": f"{folder}/tables/{name}.csv", "comparison": f"{folder}/tables/{name}.comparison.csv"}
         yield Job("table", targets.table_inputs(**of, table=name), output, targets.table_params(**of, table=name))

@@ -134,14 +134,14 @@ def of_any_paper(tables: dict[str, pd.DataFrame], layouts: dict[str, dict[str, A
 
 def cells(item: str, table: pd.DataFrame, selected: list[str]) -> list[Cell]:
     """The places of a table, each with all statistics of one metric."""
-    keys, found = _keys(table), []
-    for _, own in table.groupby([*keys, "metric"], dropna=False, sort=False):
-        first, metric = own.iloc[0], own["metric"].iloc[0]
-        numbers = own["n"].dropna() if "n" in own else own["value"].iloc[:0]
+    keys, cells_read = _keys(table), []
+    for _, rows in table.groupby([*keys, "metric"], dropna=False, sort=False):
+        first, metric = rows.iloc[0], rows["metric"].iloc[0]
+        numbers = rows["n"].dropna() if "n" in rows else rows["value"].iloc[:0]
         n = int(numbers.min()) if len(numbers) else None
         exact = not METRICS[metric].feasible_only and metric not in selected and numbers.nunique() == 1
-        found.append(Cell(item, _place(first, keys, "metric"), metric, dict(zip(own["statistic"], own["printed"])), n, exact))
-    return found
+        cells_read.append(Cell(item, _place(first, keys, "metric"), metric, dict(zip(rows["statistic"], rows["printed"])), n, exact))
+    return cells_read
 
 
 def of_cells(cell: Cell) -> list[dict]:
@@ -212,12 +212,12 @@ def _grimmer(cell: Cell, mean: Printed, std: Printed, step: Fraction, values: st
     rule = f"GRIMMER: {cell.n} {values} with the printed mean can have the printed standard deviation"
     if not cell.exact:
         return cell.row("std", rule, math.nan, None, f"only some of the {cell.n} runs count, and how many is not printed")
-    found = possible.grimmer(mean, std, cell.n, step)
-    if found is None:
+    fits = possible.grimmer(mean, std, cell.n, step)
+    if fits is None:
         squares = [(cell.n - 1) * (each / step) ** 2 + (mean.value / step) ** 2 * cell.n for each in (max(std.low, Fraction(0)), std.high)]
         told = f"sum {_text(mean.value / step * cell.n)}; no sum of squares from {float(squares[0]):.6g} to {float(squares[1]):.6g} fits it"
         return cell.row("std", rule, math.nan, False, told)
-    total, squares = found
+    total, squares = fits
     exact = math.sqrt((squares - total**2 / cell.n) / (cell.n - 1)) * float(step)
     told = f"sum {total}, sum of squares {squares}: sqrt(({squares} - {total}^2 / {cell.n}) / {cell.n - 1}) = {exact:.6g}"
     if step != 1:
@@ -275,26 +275,26 @@ def of_ranks(item: str, table: pd.DataFrame, columns: list[str]) -> list[dict]:
     keys, rows = _keys(table), []
     ranks = table[(table["metric"] == "rank") & (table["statistic"] == "mean")]
     within = [column for column in columns if column in keys]
-    for _, own in ranks.groupby(within, sort=False) if within else [((), ranks)]:
-        count, texts = len(own), own["printed"].to_list()
+    for _, group in ranks.groupby(within, sort=False) if within else [((), ranks)]:
+        count, texts = len(group), group["printed"].to_list()
         if count < 2:
             continue
         numbers = [possible.printed(text) for text in texts]
         total = possible.rank_sum(count)
         added = f"{' + '.join(texts)} = {_text(sum(each.value for each in numbers))}; {count} x {count + 1} / 2 = {total}"
-        place = _place(own.iloc[0], within, "metric") + ", all rows"
+        cell = _place(group.iloc[0], within, "metric") + ", all rows"
         rule = f"mean ranks of {count} rows add to {total}, up to rounding"
-        rows.append(_row(item, place, rule, float(sum(each.value for each in numbers)), total, possible.are_ranks(numbers), added))
-        for (_, row), number in zip(own.iterrows(), numbers):
+        rows.append(_row(item, cell, rule, float(sum(each.value for each in numbers)), total, possible.are_ranks(numbers), added))
+        for (_, row), number in zip(group.iterrows(), numbers):
             fits = number.high >= 1 and number.low <= count
             told = f"1 <= {row['printed']} <= {count}"
             rule = f"a mean rank of {count} rows lies between 1 and {count}"
             rows.append(_row(item, _place(row, keys, "metric"), rule, row["value"], 1 if number.high < 1 else count, fits, told))
-        rows += _against_means(item, place, own, table[(table["metric"] == "objective") & (table["statistic"] == "mean")], keys)
+        rows += _against_means(item, cell, group, table[(table["metric"] == "objective") & (table["statistic"] == "mean")], keys)
     return rows
 
 
-def _against_means(item: str, place: str, ranks: pd.DataFrame, means: pd.DataFrame, keys: list[str]) -> list[dict]:
+def _against_means(item: str, cell: str, ranks: pd.DataFrame, means: pd.DataFrame, keys: list[str]) -> list[dict]:
     """Pairs of rows whose mean ranks are in another order than their means."""
     both = ranks.merge(means, on=keys, suffixes=("", "_mean"))
     pairs, apart = 0, []
@@ -312,7 +312,7 @@ def _against_means(item: str, place: str, ranks: pd.DataFrame, means: pd.DataFra
     return [
         _row(
             item,
-            place,
+            cell,
             rule,
             len(apart),
             0,
@@ -347,20 +347,20 @@ def of_digits(tables: dict[str, pd.DataFrame]) -> list[dict]:
     together = pd.concat([table.assign(item=name) for name, table in tables.items()], ignore_index=True) if tables else pd.DataFrame()
     rows = []
     for metric, every in together.groupby("metric", sort=False) if len(together) else []:
-        own = every[~every["statistic"].isin(["count", "share"])]
-        own = own.drop_duplicates([column for column in own if column not in ("item", "n")])
-        texts = own["printed"].to_list()
+        printed_rows = every[~every["statistic"].isin(["count", "share"])]
+        printed_rows = printed_rows.drop_duplicates([column for column in printed_rows if column not in ("item", "n")])
+        texts = printed_rows["printed"].to_list()
         if len(texts) < LEAST_NUMBERS:
             continue
         digit = 2 * min(possible.printed(text).half for text in texts)
         digits = possible.last_digits(texts)
-        if own["value"].std() < _LEAST_SPREAD * digit:
+        if printed_rows["value"].std() < _LEAST_SPREAD * digit:
             continue
         counts = [digits.count(each) for each in range(10)]
         p = possible.digits_p(counts)
         rule = "last digits are equally likely: exact test of the sum of squared counts"
         told = f"0 to 9: {' '.join(map(str, counts))}; p = {p:.3g}, inconsistent below {DIGITS_LEVEL:g}"
-        items = ", ".join(own["item"].unique())
+        items = ", ".join(printed_rows["item"].unique())
         rows.append(_row(items, f"metric={metric}, {len(texts)} numbers", rule, max(counts), len(texts) / 10, p >= DIGITS_LEVEL, told))
     return rows
 

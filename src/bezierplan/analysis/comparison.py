@@ -91,16 +91,16 @@ def compare(
     compared with. baselines: methods without a published number. Variants of the table's methods and baselines get rows, whether or not
     the table shows them. name: `study/table`, which seeds each row's random draws.
     """
-    given = published.columns[: published.columns.get_loc("metric")].to_list()
-    keys = given + [key for key in tables.keys(spec) if key not in given]
+    key_columns = published.columns[: published.columns.get_loc("metric")].to_list()
+    keys = key_columns + [key for key in tables.keys(spec) if key not in key_columns]
     spec = _with_variants(spec, variant_of, baselines) if "method" in keys else spec
-    both = _side_by_side(tables.cells(results, spec, keys), published, given, variant_of)
+    both = _side_by_side(tables.cells(results, spec, keys), published, key_columns, variant_of)
     order = tables.in_order(both, spec, list(results.problems)).sort_values([*keys, "value", "metric", "statistic"]).index
     both = both.loc[order].reset_index(drop=True)
     workspace_unit = next(iter(results.problems.values())).workspace.unit
     both["unit"] = [metrics.unit(metric, workspace_unit) for metric in both["metric"]]
-    printed = {column: published[column].to_numpy() for column in [*given, "metric", "statistic", "value"]}
-    rows = [_described(row, keys, name, _rivals(row, given, printed)) for row in both.to_dict("records")]
+    printed = {column: published[column].to_numpy() for column in [*key_columns, "metric", "statistic", "value"]}
+    rows = [_described(row, keys, name, _rivals(row, key_columns, printed)) for row in both.to_dict("records")]
     described = pd.DataFrame(rows, index=both.index)
     table = both.join(described).reindex(columns=keys + _COLUMNS)
     table.loc[_impossible_ranks(both, published, spec), "possible"] = False
@@ -140,32 +140,32 @@ def _undefined(both: pd.DataFrame, spec: dict) -> pd.Series:
 
 def _impossible_ranks(both: pd.DataFrame, published: pd.DataFrame, spec: dict) -> np.ndarray:
     """Which rows (n,) hold published mean ranks that no runs have, for those of all rows of the table do not add up."""
-    found = np.zeros(len(both), dtype=bool)
+    impossible = np.zeros(len(both), dtype=bool)
     ranks = published[(published["metric"] == "rank") & (published["statistic"] == "mean")]
     ours = (both["metric"] == "rank") & (both["statistic"] == "mean") & both["value_published"].notna() & both["decimals"].notna()
     if ranks.empty or not ours.any():
-        return found
+        return impossible
     half = Fraction(10) ** -int(both.loc[ours, "decimals"].iloc[0]) / 2
     within = [column for column in spec.get("columns", []) if column in published and column not in ("value", "statistic")]
     for place, own in ranks.groupby(within, sort=False) if within else [((), ranks)]:
         if len(own) > 1 and not possible.are_ranks([possible.Printed(Fraction(str(value)), half) for value in own["value"]]):
-            found |= (ours & (both[within] == list(place)).all(axis=1)).to_numpy()
-    return found
+            impossible |= (ours & (both[within] == list(place)).all(axis=1)).to_numpy()
+    return impossible
 
 
-def _side_by_side(ours: pd.DataFrame, published: pd.DataFrame, given: list[str], variant_of: dict[str, str]) -> pd.DataFrame:
+def _side_by_side(ours: pd.DataFrame, published: pd.DataFrame, key_columns: list[str], variant_of: dict[str, str]) -> pd.DataFrame:
     """Our cells with n_published and value_published, plus published numbers without runs; statistics are named as published.
 
-    given: the key columns of the published numbers.
+    key_columns: the key columns of the published numbers.
     """
     theirs = published.rename(columns={"n": "n_published", "value": "value_published", "statistic": "printed"}).drop(columns="unit")
     # An unstated statistic is compared with the median.
-    theirs = theirs.astype({key: ours[key].dtype for key in given}).assign(statistic=theirs["printed"].replace("unstated", "median"))
+    theirs = theirs.astype({key: ours[key].dtype for key in key_columns}).assign(statistic=theirs["printed"].replace("unstated", "median"))
     ours = ours.assign(statistic=ours["statistic"].replace("unstated", "median"))
-    if "method" in given:
+    if "method" in key_columns:
         ours = ours.assign(own_method=ours["method"], method=ours["method"].replace(variant_of))
-    both = ours.merge(theirs.drop(columns="printed"), how="outer", on=[*given, "metric", "statistic"])
-    if "method" in given:
+    both = ours.merge(theirs.drop(columns="printed"), how="outer", on=[*key_columns, "metric", "statistic"])
+    if "method" in key_columns:
         both = both.assign(printed_method=both["method"], method=both["own_method"].fillna(both["method"]))
     printed = dict(zip(zip(theirs["metric"], theirs["statistic"]), theirs["printed"]))
     return both.assign(statistic=[printed.get(quantity, quantity[1]) for quantity in zip(both["metric"], both["statistic"])])
@@ -182,14 +182,14 @@ def _with_variants(spec: dict, variant_of: dict[str, str], baselines: list[str])
     return spec | {"where": where | {"method": methods + beside}, "beside": beside}
 
 
-def _rivals(row: dict[str, Any], given: list[str], printed: dict[str, np.ndarray]) -> np.ndarray:
+def _rivals(row: dict[str, Any], key_columns: list[str], printed: dict[str, np.ndarray]) -> np.ndarray:
     """The paper's numbers (n,) for other methods that match a row in metric, statistic and keys.
 
-    printed: the columns of all its numbers (m,), by name; given: those that are keys.
+    printed: the columns of all its numbers (m,), by name; key_columns: those that are keys.
     """
-    if "method" not in given or pd.isna(row["value_published"]):
+    if "method" not in key_columns or pd.isna(row["value_published"]):
         return np.empty(0)
-    same_place = np.logical_and.reduce([printed[key] == row[key] for key in ("metric", "statistic", *given) if key != "method"])
+    same_place = np.logical_and.reduce([printed[key] == row[key] for key in ("metric", "statistic", *key_columns) if key != "method"])
     # A variant's own name is in no published row; its number is that of its published method.
     own = printed["method"] == row.get("printed_method", row["method"])
     return printed["value"][same_place & ~own].astype(float)

@@ -167,10 +167,10 @@ def _percent(share: float) -> str:
     return "" if np.isnan(share) else f"{worth.number(100 * share, 2)} %"
 
 
-def _measured(own: pd.DataFrame) -> dict[str, str]:
+def _measured(rows: pd.DataFrame) -> dict[str, str]:
     """What the methods of a study are beside the baseline: the least and the largest of each column."""
-    if own.empty:
+    if rows.empty:
         return dict.fromkeys(("feasible", "length", "cpu"), "")
-    feasible, baseline = worth.span(100 * own["feasible"], 2), worth.span(100 * own["feasible_baseline"], 3)
-    length = worth.span(own["length"], 3) if own["length"].notna().any() else ""
-    return {"feasible": f"{feasible} % ({baseline} %)", "length": length, "cpu": worth.span(own["cpu"], 2)}
+    feasible, baseline = worth.span(100 * rows["feasible"], 2), worth.span(100 * rows["feasible_baseline"], 3)
+    length = worth.span(rows["length"], 3) if rows["length"].notna().any() else ""
+    return {"feasible": f"{feasible} % ({baseline} %)", "length": length, "cpu": worth.span(rows["cpu"], 2)}

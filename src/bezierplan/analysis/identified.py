@@ -74,17 +74,17 @@ def ways(grid: Grid) -> Ways:
     return Ways(cells, lengths)
 
 
-def identify(given: Ways, start: int, target: int, printed: float, half: float, most_edges: int) -> Identified:
+def identify(ways: Ways, start: int, target: int, printed: float, half: float, most_edges: int) -> Identified:
     """The free polylines of at most `most_edges` edges between two cells whose length is printed so.
 
     printed, half: the number and half a unit of its last digit, in cells.
     """
-    first, last = (int(np.searchsorted(given.cells, cell)) for cell in (start, target))
-    reached = _reached(given, first, printed + NEARBY + half, last, most_edges)
+    first, last = (int(np.searchsorted(ways.cells, cell)) for cell in (start, target))
+    reached = _reached(ways, first, printed + NEARBY + half, last, most_edges)
     every = np.unique(np.concatenate([level[last] for level in reached]))
-    paths = _paths(given, reached, last, printed, half)
-    length = sum(given.lengths[one, other] for one, other in itertools.pairwise(paths[0])) if paths else math.nan
-    return Identified([tuple(int(given.cells[place]) for place in path) for path in paths], _chance(every, printed, half), length)
+    paths = _paths(ways, reached, last, printed, half)
+    length = sum(ways.lengths[one, other] for one, other in itertools.pairwise(paths[0])) if paths else math.nan
+    return Identified([tuple(int(ways.cells[place]) for place in path) for path in paths], _chance(every, printed, half), length)
 
 
 def applies(entry: dict, row: dict) -> bool:
@@ -113,12 +113,12 @@ def _ways_of(cells: bytes, shape: tuple[int, int]) -> Ways:
     return ways(Grid(np.frombuffer(cells, dtype=bool).reshape(shape), 1.0, ""))
 
 
-def in_words(found: Identified) -> str:
+def in_words(identification: Identified) -> str:
     """The paths and the chance of a match."""
-    shown = [" ".join(map(str, path)) for path in found.paths[:MOST_SHOWN]]
-    more = len(found.paths) - len(shown)
+    shown = [" ".join(map(str, path)) for path in identification.paths[:MOST_SHOWN]]
+    more = len(identification.paths) - len(shown)
     cells = f"cells {' or '.join(shown)}{f' or {more} others' if more else ''}" if shown else "no such path"
-    return f"{cells}; of the numbers nearby, {100 * found.chance:.2g} % match by chance"
+    return f"{cells}; of the numbers nearby, {100 * identification.chance:.2g} % match by chance"
 
 
 def of_table(item: str, published: pd.DataFrame, entries: list[dict], problems: dict[str, Problem]) -> list[dict]:
@@ -134,10 +134,10 @@ def of_table(item: str, published: pd.DataFrame, entries: list[dict], problems: 
             problem = problems.get(row.get("problem", row.get("workspace")))
             if not applies(entry, row) or problem is None:
                 continue
-            found = in_problem(problem, row["value"], possible.decimals(row["printed"]), entry["edges"])
-            if found is None:
+            path = in_problem(problem, row["value"], possible.decimals(row["printed"]), entry["edges"])
+            if path is None:
                 continue
-            tried.append(found)
+            tried.append(path)
             keys = [key for key in row if key not in ("metric", "statistic", "n", "unit", "value", "printed")]
             rows.append(
                 {
@@ -145,14 +145,14 @@ def of_table(item: str, published: pd.DataFrame, entries: list[dict], problems: 
                     "place": ", ".join(f"{key}={row[key]}" for key in [*keys, "metric"]),
                     "rule": f"{entry['because']}: the length of a free polyline of at most {entry['edges']} edges through cell centres",
                     "printed": row["value"],
-                    "limit": found.length * problem.workspace.cell,
-                    "consistent": True if found.paths else None,
-                    "arithmetic": in_words(found),
+                    "limit": path.length * problem.workspace.cell,
+                    "consistent": True if path.paths else None,
+                    "arithmetic": in_words(path),
                 }
             )
         if tried:
-            matched = sum(bool(found.paths) for found in tried)
-            chance = at_least(matched, [found.chance for found in tried])
+            matched = sum(bool(path.paths) for path in tried)
+            chance = at_least(matched, [path.chance for path in tried])
             words = f"{matched} of {len(tried)} are such lengths; the chance of as many: {chance:.2g}"
             place = ", ".join(f"{key}={' or '.join(map(str, one_or_list(wanted)))}" for key, wanted in entry.get("where", {}).items())
             together = {"item": item, "place": place, "rule": f"{entry['because']}: all numbers together", "printed": matched}
@@ -168,46 +168,46 @@ def at_least(count: int, chances: list[float]) -> float:
     return float(exactly[count:].sum())
 
 
-def _reached(given: Ways, first: int, most: float, last: int, edges: int) -> list[list[np.ndarray]]:
-    """By number of edges and place: the lengths, each once, of the polylines from the first place, as far as they can still end in time."""
+def _reached(ways: Ways, first: int, most: float, last: int, edges: int) -> list[list[np.ndarray]]:
+    """By number of edges and cell: the lengths, each once, of the polylines from the first place, as far as they can still end in time."""
     from scipy.sparse import csgraph
 
-    left = most - csgraph.dijkstra(np.where(np.isfinite(given.lengths), given.lengths, 0), indices=last) + _ROUNDING
-    count = len(given.cells)
-    levels = [[np.zeros(1) if place == first else np.empty(0) for place in range(count)]]
-    neighbours = [np.flatnonzero(np.isfinite(row)) for row in given.lengths]
+    left = most - csgraph.dijkstra(np.where(np.isfinite(ways.lengths), ways.lengths, 0), indices=last) + _ROUNDING
+    count = len(ways.cells)
+    levels = [[np.zeros(1) if cell == first else np.empty(0) for cell in range(count)]]
+    neighbours = [np.flatnonzero(np.isfinite(row)) for row in ways.lengths]
     for _ in range(edges):
         before, level = levels[-1], []
-        for place in range(count):
-            parts = [before[other] + given.lengths[other, place] for other in neighbours[place] if len(before[other])]
+        for cell in range(count):
+            parts = [before[other] + ways.lengths[other, cell] for other in neighbours[cell] if len(before[other])]
             found = np.concatenate(parts) if parts else np.empty(0)
-            level.append(np.unique(np.round(found[found <= left[place]], 8)))
+            level.append(np.unique(np.round(found[found <= left[cell]], 8)))
         levels.append(level)
     return levels
 
 
-def _paths(given: Ways, reached: list[list[np.ndarray]], last: int, printed: float, half: float) -> list[tuple[int, ...]]:
+def _paths(ways: Ways, reached: list[list[np.ndarray]], last: int, printed: float, half: float) -> list[tuple[int, ...]]:
     """Places of the matching polylines with fewest edges, found backwards from their ends."""
     for edges in range(1, len(reached)):
         if not _near(reached[edges][last], printed, half).any():
             continue
         found: list[tuple[int, ...]] = []
-        _walk(given, reached, edges, (last,), printed, half, found)
+        _walk(ways, reached, edges, (last,), printed, half, found)
         return found
     return []
 
 
 def _walk(
-    given: Ways, reached: list[list[np.ndarray]], left: int, path: tuple[int, ...], length: float, half: float, found: list[tuple[int, ...]]
+    ways: Ways, reached: list[list[np.ndarray]], left: int, path: tuple[int, ...], length: float, half: float, paths: list[tuple[int, ...]]
 ) -> None:
     """Extend a path, given from its end, by all places from which the rest of its length is left."""
     if not left:
-        found.append(path[::-1])
+        paths.append(path[::-1])
         return
-    for other in np.flatnonzero(np.isfinite(given.lengths[path[-1]])):
-        rest = length - given.lengths[path[-1], other]
-        if len(found) < MOST_PATHS and _near(reached[left - 1][other], rest, half).any():
-            _walk(given, reached, left - 1, (*path, int(other)), rest, half, found)
+    for other in np.flatnonzero(np.isfinite(ways.lengths[path[-1]])):
+        rest = length - ways.lengths[path[-1], other]
+        if len(paths) < MOST_PATHS and _near(reached[left - 1][other], rest, half).any():
+            _walk(ways, reached, left - 1, (*path, int(other)), rest, half, paths)
 
 
 def _near(lengths: np.ndarray, printed: float, half: float) -> np.ndarray:

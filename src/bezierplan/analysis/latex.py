@@ -38,7 +38,7 @@ def document(tables: list[Captioned]) -> str:
     return "\n".join(["% Needs \\usepackage{booktabs,graphicx}.", *map(environment, tables)])
 
 
-def environment(each: Captioned) -> str:
+def environment(captioned: Captioned) -> str:
     """A table with rules as of a book: numbers on the right, and columns whose names begin alike below a common head.
 
     >>> print(environment(Captioned(pd.DataFrame({"method": ["a_b"], "length: mean": ["1.5"]}), "Lengths in %", "tab:x")))
@@ -56,13 +56,13 @@ def environment(each: Captioned) -> str:
     \\end{table}
     <BLANKLINE>
     """
-    table = each.table
+    table = captioned.table
     sides = "".join("r" if _is_number(table[column]) else "l" for column in table)
     rows = [*_heads(list(table.columns)), "\\midrule", *(_row(row) for row in table.itertuples(index=False))]
     body = [f"\\begin{{tabular}}{{{sides}}}", *(f"  {row}" for row in ["\\toprule", *rows, "\\bottomrule"]), "\\end{tabular}"]
     if len(table.columns) > _MOST_COLUMNS:
         body = ["\\resizebox{\\textwidth}{!}{%", *body, "}"]
-    head = ["\\centering", f"\\caption{{{escaped(each.caption)}}}", f"\\label{{{each.label}}}"]
+    head = ["\\centering", f"\\caption{{{escaped(captioned.caption)}}}", f"\\label{{{captioned.label}}}"]
     return "\n".join(["\\begin{table}[htbp]", *(f"  {line}" for line in [*head, *body]), "\\end{table}", ""])
 
 
@@ -78,17 +78,17 @@ def _row(cells: tuple) -> str:
 def _heads(names: list[str]) -> list[str]:
     """The rows of heads: one, or two if neighbouring columns share the first part of their names."""
     parts = [name.split(_LEVEL, 1) for name in names]
-    groups = [(first, len(list(own))) for first, own in itertools.groupby(part[0] for part in parts)]
+    groups = [(first, len(list(group))) for first, group in itertools.groupby(part[0] for part in parts)]
     if all(count == 1 for _, count in groups):
         return [_row(tuple(names))]
-    above, rules, below, place = [], [], [], 1
+    above, rules, below, column = [], [], [], 1
     for first, count in groups:
-        own = [part[-1] if count > 1 or len(part) > 1 else part[0] for part in parts[place - 1 : place - 1 + count]]
-        below += own
-        shared = count > 1 or own != [first]
+        group = [part[-1] if count > 1 or len(part) > 1 else part[0] for part in parts[column - 1 : column - 1 + count]]
+        below += group
+        shared = count > 1 or group != [first]
         above.append(f"\\multicolumn{{{count}}}{{c}}{{{escaped(first)}}}" if shared else "")
-        rules += [f"\\cmidrule(lr){{{place}-{place + count - 1}}}"] if shared else []
-        place += count
+        rules += [f"\\cmidrule(lr){{{column}-{column + count - 1}}}"] if shared else []
+        column += count
     return [" & ".join(above) + " \\\\", "".join(rules), _row(tuple(below))]
 
 

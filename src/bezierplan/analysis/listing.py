@@ -57,10 +57,10 @@ def beside(spec: dict, comparisons: dict[str, pd.DataFrame], labels: Mapping[str
         where = {key: value for key, value in spec.get("where", {}).items() if key in keys}
         rows = select(rows[rows["value_published"].notna()], where | {"metric": spec["metrics"]})
         shown.append(rows[[*keys, *_SHOWN]].assign(table=name))
-    found = pd.concat(shown, ignore_index=True)
-    keys = [column for column in found.columns if column not in (*_SHOWN, "table")]
+    table = pd.concat(shown, ignore_index=True)
+    keys = [column for column in table.columns if column not in (*_SHOWN, "table")]
     for key in (*keys, "metric"):
-        found[key] = [labels.get(value, value) if isinstance(value, str) else value for value in found[key]]
-    counted = found.select_dtypes("float").columns.difference(["quantile_published"])
-    found = found.round(dict.fromkeys([*counted, "quantile_published"], _DECIMALS))
-    return found[["table", *keys, *_SHOWN]].rename(columns=_SHOWN)
+        table[key] = [labels.get(value, value) if isinstance(value, str) else value for value in table[key]]
+    counted = table.select_dtypes("float").columns.difference(["quantile_published"])
+    table = table.round(dict.fromkeys([*counted, "quantile_published"], _DECIMALS))
+    return table[["table", *keys, *_SHOWN]].rename(columns=_SHOWN)

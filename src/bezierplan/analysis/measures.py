@@ -248,14 +248,14 @@ def homotopy(runs: pd.DataFrame, problems: dict[str, Problem]) -> list[float]:
     """The homotopy class of each run's path."""
     from bezierplan.geometry import curves
 
-    found = []
+    classes = []
     for path, problem in zip(_paths(runs), runs["problem"]):
         if path is None:
-            found.append(np.nan)
+            classes.append(np.nan)
             continue
         points = curves.sample_matrix(path.curve, len(path.points), CLASS_SAMPLES) @ path.points
-        found.append(homotopy_class(points, problems[problem].workspace))
-    return found
+        classes.append(homotopy_class(points, problems[problem].workspace))
+    return classes
 
 
 def best_corridor(runs: pd.DataFrame, problems: dict[str, Problem]) -> np.ndarray:

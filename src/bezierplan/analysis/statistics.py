@@ -334,15 +334,15 @@ def scaled(name: str, values: np.ndarray, asked: int, size: int | None) -> float
     A count is taken in proportion; asked: runs among which it is one. The least and the largest value are the medians of those of such
     experiments, where our values determine them; our own where they do not. The other statistics do not depend on the number of runs.
     """
-    own = statistic(name, values)
+    value = statistic(name, values)
     if size is None or size == asked or not len(values):
-        return own
+        return value
     if name == "count":
-        return own * size / asked
+        return value * size / asked
     if name not in ("min", "max"):
-        return own
+        return value
     least, most = (np.sort(ends)[DRAWS // 2] for ends in _extremes(name, values, size))
-    return float(0.5 * (least + most)) if math.isfinite(least) and math.isfinite(most) else own
+    return float(0.5 * (least + most)) if math.isfinite(least) and math.isfinite(most) else value
 
 
 def _std_draws(values: np.ndarray, size: int) -> np.ndarray:

@@ -131,12 +131,12 @@ def report(
         *(explained.section(*readings, titles) if readings else []),
     ]
     for study, title in titles.items():
-        own = claims[(claims["study"] == study) & claims["primary"]].set_index("id")
-        found = own["finding"].astype(bool)
-        if not own.empty:
-            parts += [f"## {title}", _listed(own[~found])]
+        primary = claims[(claims["study"] == study) & claims["primary"]].set_index("id")
+        found = primary["finding"].astype(bool)
+        if not primary.empty:
+            parts += [f"## {title}", _listed(primary[~found])]
         if found.any():
-            parts += ["Our own findings, no sentences of the paper:", _listed(own[found])]
+            parts += ["Our own findings, no sentences of the paper:", _listed(primary[found])]
     return "\n\n".join(parts) + "\n"
 
 

@@ -72,22 +72,22 @@ def cells(results: Results, spec: dict, keys: list[str]) -> pd.DataFrame:
     units = runs[spec["within"]].to_numpy() if "within" in spec else None
     rows = []
     for key, group in runs[keys].groupby(keys, dropna=False):
-        place = group.index.to_numpy()
-        shares = {"share_claimed": claimed[place].mean(), "share_feasible": feasible[place].mean()}
-        same = {**dict(zip(keys, key)), "runs": len(place), **shares}
+        positions = group.index.to_numpy()
+        shares = {"share_claimed": claimed[positions].mean(), "share_feasible": feasible[positions].mean()}
+        same = {**dict(zip(keys, key)), "runs": len(positions), **shares}
         for value, (entry, metric) in enumerate(zip(entries, described)):
             of_group = {
-                "bound": _median(bounds[metric.bound][place]),
-                "gap": _median(measured[metric.gap][place]),
-                "least": np.fmin.reduce(bounds[leasts[value]][place]) if isinstance(leasts[value], str) else leasts[value],
+                "bound": _median(bounds[metric.bound][positions]),
+                "gap": _median(measured[metric.gap][positions]),
+                "least": np.fmin.reduce(bounds[leasts[value]][positions]) if isinstance(leasts[value], str) else leasts[value],
                 "most": metric.most,
             }
-            own = place[asked[value][place]]
-            cell = {"value": value, "metric": entry["metric"], "decimals": entry.get("decimals"), "asked": len(own)}
-            own = own[~np.isnan(taken[value][own])]  # a run without a value counts nowhere
-            numbers = taken[value][own]
+            chosen = positions[asked[value][positions]]
+            cell = {"value": value, "metric": entry["metric"], "decimals": entry.get("decimals"), "asked": len(chosen)}
+            chosen = chosen[~np.isnan(taken[value][chosen])]  # a run without a value counts nowhere
+            numbers = taken[value][chosen]
             # Tuples, because pandas would expand lists of arrays.
-            groups = None if units is None else tuple(np.sort(numbers[units[own] == unit]) for unit in np.unique(units[own]))
+            groups = None if units is None else tuple(np.sort(numbers[units[chosen] == unit]) for unit in np.unique(units[chosen]))
             for statistic in _statistics(entry):
                 rows.append(same | of_group | cell | {"statistic": statistic, "numbers": np.sort(numbers), "groups": groups})
     of_runs = ["runs", "share_claimed", "share_feasible", "bound", "gap", "least", "most"]
@@ -146,17 +146,17 @@ def _with_counts(wide: pd.DataFrame, counted: pd.DataFrame, asked: pd.DataFrame,
     statistic. Neighbouring columns with equal counts share one column.
     """
     columns, first = [], 0
-    for place in range(len(stems)):
-        columns.append(wide.iloc[:, place])
-        last = place + 1 == len(stems)
-        if not last and all(table.iloc[:, place].equals(table.iloc[:, place + 1]) for table in (counted, asked)):
+    for row in range(len(stems)):
+        columns.append(wide.iloc[:, row])
+        last = row + 1 == len(stems)
+        if not last and all(table.iloc[:, row].equals(table.iloc[:, row + 1]) for table in (counted, asked)):
             continue
-        have, of = counted.iloc[:, place], asked.iloc[:, place]
+        have, of = counted.iloc[:, row], asked.iloc[:, row]
         if (have < of).any():
             texts = [f"{number:.0f} of {total:.0f}" if total > 0 else "" for number, total in zip(have, of)]
-            name = " to ".join(filter(None, dict.fromkeys([stems[first], stems[place]])))
+            name = " to ".join(filter(None, dict.fromkeys([stems[first], stems[row]])))
             columns.append(pd.Series(texts, wide.index, object, f"runs counted: {name}" if name else "runs counted"))
-        first = place + 1
+        first = row + 1
     return pd.concat(columns, axis=1) if columns else wide
 
 

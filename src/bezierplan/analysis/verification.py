@@ -20,14 +20,14 @@ TIMES = ("s", "ms")
 _WIDTH = 2 * stats.norm.ppf(0.975)
 
 
-def compared(kept: pd.DataFrame, own: pd.DataFrame) -> pd.DataFrame:
+def compared(kept: pd.DataFrame, again: pd.DataFrame) -> pd.DataFrame:
     """The numbers of an installation's comparison beside those kept of the same table: the columns that name one, value_kept, value_own, p.
 
     p: probability of a difference as large by chance; nan where nothing can be said: times, numbers of fewer than two runs, extremes.
     """
-    names = [*own.columns[: own.columns.get_loc("unit") + 1], "n_published", "value_published"]
-    kept, own = (frame.assign(**{name: _plain(frame[name]) for name in names}).drop_duplicates(names) for frame in (kept, own))
-    both = kept.merge(own, on=names, suffixes=("_kept", "_own"))
+    names = [*again.columns[: again.columns.get_loc("unit") + 1], "n_published", "value_published"]
+    kept, again = (frame.assign(**{name: _plain(frame[name]) for name in names}).drop_duplicates(names) for frame in (kept, again))
+    both = kept.merge(again, on=names, suffixes=("_kept", "_own"))
     values, widths, sizes = (
         [both[f"{name}_{side}"].to_numpy(dtype=float) for side in ("kept", "own")] for name in ("value_ours", "width", "n_ours")
     )

@@ -109,20 +109,20 @@ def section(rows: pd.DataFrame, titles: dict[str, str]) -> list[str]:
     ]
 
 
-def sentence(own: pd.DataFrame) -> str:
+def sentence(rows: pd.DataFrame) -> str:
     """What follows from the rows of one study."""
-    count = len(own)
+    count = len(rows)
     parts = [
-        f"{_counted(count, 'method')}: feasible in {span(100 * own['feasible'])} % of the runs (baseline: "
-        f"{number(100 * own['feasible_baseline'].min())} %), at {span(own['cpu'])} times the baseline's CPU time."
+        f"{_counted(count, 'method')}: feasible in {span(100 * rows['feasible'])} % of the runs (baseline: "
+        f"{number(100 * rows['feasible_baseline'].min())} %), at {span(rows['cpu'])} times the baseline's CPU time."
     ]
-    if own["length"].notna().any():
-        cornered, less = np.isinf(own["curvature"]).sum(), (own["curvature"] < 1 - EQUAL).sum()
+    if rows["length"].notna().any():
+        cornered, less = np.isinf(rows["curvature"]).sum(), (rows["curvature"] < 1 - EQUAL).sum()
         parts.append(
-            f"Feasible paths are {span(own['length'])} times as long; those of {less} of {_counted(count, 'method')} curve less, those of "
+            f"Feasible paths are {span(rows['length'])} times as long; those of {less} of {_counted(count, 'method')} curve less, those of "
             f"{cornered} have corners."
         )
-    return " ".join([*parts, _verdict(own)])
+    return " ".join([*parts, _verdict(rows)])
 
 
 def _verdict(own: pd.DataFrame) -> str:

@@ -50,7 +50,7 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
 
 def spent(session: Session, folder: Path) -> tuple[Counter[str], int, float]:
     """CPU seconds by what they were for, the number of jobs, and the seconds of the clock in which jobs waited for kernels."""
-    found: Counter[str] = Counter({"Snakemake itself": session.snakemake, "importing once for all jobs, forking": session.forked})
+    seconds: Counter[str] = Counter({"Snakemake itself": session.snakemake, "importing once for all jobs, forking": session.forked})
     jobs: dict[str, tuple[str, list[Path]]] = {}
     for file in (folder / records.METADATA).glob("*"):
         content = json.loads(file.read_text(encoding="utf-8"))
@@ -64,20 +64,20 @@ def spent(session: Session, folder: Path) -> tuple[Counter[str], int, float]:
         rest = noted.pop("cpu") - sum(noted.values())
         if rule in ("runs", "drives"):
             planning, _ = records.planner_times(outputs) or (0.0, 0.0)
-            found["planning"] += planning
+            seconds["planning"] += planning
             rest -= planning
-        found.update(noted)
-        found[WORK[rule]] += rest
-    found["starting and ending processes of jobs"] = max(session.forks - by_themselves, 0.0)
-    return found, len(jobs), waited
+        seconds.update(noted)
+        seconds[WORK[rule]] += rest
+    seconds["starting and ending processes of jobs"] = max(session.forks - by_themselves, 0.0)
+    return seconds, len(jobs), waited
 
 
-def lines(session: Session, found: Counter[str], jobs: int, waited: float) -> list[str]:
+def lines(session: Session, of_each: Counter[str], jobs: int, waited: float) -> list[str]:
     """A table in Markdown. What the cores did not do for this workflow is what remains of their time."""
     clock = session.ended - session.started
     whole = clock * session.cores
-    rest = {"cores idle, or busy with other programs": whole - found.total()}
-    rows = [(name, found[name]) for name in ROWS if found[name]] + list(rest.items())
+    rest = {"cores idle, or busy with other programs": whole - of_each.total()}
+    rows = [(name, of_each[name]) for name in ROWS if of_each[name]] + list(rest.items())
     return [
         f"{jobs} jobs in {clock:.0f} s on {session.cores} cores; jobs waited {waited:.0f} s for kernels that another job compiled",
         "",

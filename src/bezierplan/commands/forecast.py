@@ -42,12 +42,12 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     parser.add_argument("--scale", choices=SCALES, default="full", help="of a study, a table or a figure (default: full)")
     parser.add_argument("--cores", type=int, default=os.cpu_count(), metavar="N", help="how many jobs run at once (default: those here)")
     parser.add_argument("--anew", action="store_true", help="count what is there already as well")
-    given = parser.parse_args(words)
-    if given.cores < 1:
-        raise Fault(f"--cores: {given.cores}; expected a whole number of at least 1")
+    arguments = parser.parse_args(words)
+    if arguments.cores < 1:
+        raise Fault(f"--cores: {arguments.cores}; expected a whole number of at least 1")
     studies = reading.load(reading.read_config({}))
-    steps = planned(files(studies, given.target, given.scale), given.anew)
-    print("\n".join(lines(given.target, steps, estimates(studies, steps, Path()), given.cores)))
+    steps = planned(files(studies, arguments.target, arguments.scale), arguments.anew)
+    print("\n".join(lines(arguments.target, steps, estimates(studies, steps, Path()), arguments.cores)))
 
 
 def files(studies: dict[str, Study], target: str, scale: str) -> list[str]:
@@ -77,12 +77,12 @@ def planned(wanted: list[str], anew: bool) -> list[Step]:
     )
     if done.returncode:
         raise Fault((done.stderr or done.stdout).strip().splitlines()[-1])
-    found = {}
+    steps = {}
     for body in re.split(r"^(?:local)?rule ", done.stdout + done.stderr, flags=re.M)[1:]:
         parts = {name: text.split(", ") for name, text in re.findall(r"^    (input|output|log): (.*)$", body, flags=re.M)}
         if "log" in parts:
-            found[parts["log"][0]] = Step(parts["log"][0], frozenset(parts.get("input", ())), tuple(parts["output"]))
-    return list(found.values())
+            steps[parts["log"][0]] = Step(parts["log"][0], frozenset(parts.get("input", ())), tuple(parts["output"]))
+    return list(steps.values())
 
 
 def units_of(studies: dict[str, Study], job: Job) -> int:
@@ -107,12 +107,12 @@ def estimates(studies: dict[str, Study], steps: Iterable[Step], folder: Path) ->
         return units_of(studies, job)
 
     own, kept = records.measured(folder, units), records.kept(TREE / records.KEPT)
-    found: dict[str, Record | None] = {}
+    known: dict[str, Record | None] = {}
     for step in steps:
         job = records.job_of(step.log)
         same = own.get((job.scale, job.name)) or kept.get(job.name) or next((own[s, n] for s, n in own if n == job.name), None)
-        found[step.log] = same and same.scaled(units(job))
-    return found
+        known[step.log] = same and same.scaled(units(job))
+    return known
 
 
 def keep(studies: dict[str, Study], folder: Path) -> None:
@@ -145,13 +145,13 @@ def duration(steps: list[Step], seconds: dict[str, float], cores: int) -> float:
     return now
 
 
-def lines(target: str, steps: list[Step], found: dict[str, Record | None], cores: int) -> list[str]:
+def lines(target: str, steps: list[Step], recorded: dict[str, Record | None], cores: int) -> list[str]:
     """The forecast, one line each."""
     if not steps:
         return [f"{target}: nothing is left to do"]
-    known = [record for record in found.values() if record]
+    known = [record for record in recorded.values() if record]
     usual = sum(record.seconds for record in known) / len(known) if known else records.START
-    seconds = {log: record.seconds if record else usual for log, record in found.items()}
+    seconds = {log: record.seconds if record else usual for log, record in recorded.items()}
     told = [
         f"{target}: {len(steps)} jobs, {shown(sum(seconds.values()))} of CPU time",
         f"on {cores} core{'s' * (cores > 1)}: about {shown(duration(steps, seconds, cores))}",

@@ -31,15 +31,15 @@ def settings(study: Study) -> list[str]:
 
 def lines(study: Study) -> list[str]:
     """A study's title, artefacts, methods, workspaces and experiments, one per line."""
-    found = [f"{study.key}: {study.title}"]
+    text = [f"{study.key}: {study.title}"]
     for kind, artefacts in (("table", study.tables), ("figure", study.figures)):
-        found += [f"  {kind:12}{study.key}_{name:12} {artefacts[name].title}" for name in in_printed_order(artefacts)]
+        text += [f"  {kind:12}{study.key}_{name:12} {artefacts[name].title}" for name in in_printed_order(artefacts)]
     for name, method in study.methods.items():
         variant = f", a variant of {method.variant_of}" if method.variant_of else ""
-        found.append(f"  {'method':12}{name:20} {study.planner(name)}{variant}")
-    found += [f"  {'workspace':12}{name:20} {workspace.kind}" for name, workspace in study.workspaces.items()]
+        text.append(f"  {'method':12}{name:20} {study.planner(name)}{variant}")
+    text += [f"  {'workspace':12}{name:20} {workspace.kind}" for name, workspace in study.workspaces.items()]
     for name, experiment in study.experiments.items():
         size = f"{len(experiment.problems)} problems, {len(experiment.methods)} methods"
         repeats = ", ".join(f"{experiment.repeats[scale]} ({scale})" for scale in SCALES)
-        found.append(f"  {'experiment':12}{name:20} {size}, repeats {repeats}")
-    return found
+        text.append(f"  {'experiment':12}{name:20} {size}, repeats {repeats}")
+    return text

@@ -21,21 +21,21 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     parser.add_argument("--from", type=Path, dest="map", metavar="MAP", help="a map file of your own; needs --start and --target")
     parser.add_argument("--start", metavar="X,Y", help="where paths begin on that map, in its unit")
     parser.add_argument("--target", metavar="X,Y", help="where they end")
-    given = parser.parse_args(words)
-    reading.check_name(given.folder.name, str(given.folder))
-    if given.folder.exists():
-        raise Fault(f"{given.folder}: is there already; expected a new folder")
-    if not given.folder.parent.is_dir():
-        raise Fault(f"{given.folder}: no folder {given.folder.parent}; expected one that exists")
-    if given.map is None and (given.start or given.target):
+    arguments = parser.parse_args(words)
+    reading.check_name(arguments.folder.name, str(arguments.folder))
+    if arguments.folder.exists():
+        raise Fault(f"{arguments.folder}: is there already; expected a new folder")
+    if not arguments.folder.parent.is_dir():
+        raise Fault(f"{arguments.folder}: no folder {arguments.folder.parent}; expected one that exists")
+    if arguments.map is None and (arguments.start or arguments.target):
         raise Fault("--start and --target: expected only with --from, a map of your own")
-    own = _own_map(given.map, given.start, given.target) if given.map else None
-    shutil.copytree(TEMPLATE, given.folder, ignore=shutil.ignore_patterns("__pycache__"))
-    readme = given.folder / "README.md"
-    readme.write_text(readme.read_text(encoding="utf-8").replace("mystudy", given.folder.name), encoding="utf-8")
-    if own:
-        _put(given.folder, *own)
-    print(f"{given.folder}: a study; next: bezierplan run {given.folder}")
+    map_file = _own_map(arguments.map, arguments.start, arguments.target) if arguments.map else None
+    shutil.copytree(TEMPLATE, arguments.folder, ignore=shutil.ignore_patterns("__pycache__"))
+    readme = arguments.folder / "README.md"
+    readme.write_text(readme.read_text(encoding="utf-8").replace("mystudy", arguments.folder.name), encoding="utf-8")
+    if map_file:
+        _put(arguments.folder, *map_file)
+    print(f"{arguments.folder}: a study; next: bezierplan run {arguments.folder}")
 
 
 Ends = dict[str, list[float]]

@@ -46,7 +46,7 @@ def write() -> None:
     studies = reading.load(reading.read_config({}))
     titles = {key: study.title for key, study in studies.items()}
     varied, searched = ([key for key in titles if (FULL / key / name).is_file()] for name in (SENSITIVITY, READINGS[0]))
-    found = tuple(pd.concat(pd.read_csv(FULL / key / name) for key in searched) for name in READINGS) if searched else None
+    tables = tuple(pd.concat(pd.read_csv(FULL / key / name) for key in searched) for name in READINGS) if searched else None
     claims = pd.read_csv(RESULTS / "claims.csv")
     if varied:
         claims = summary.with_readings(claims, pd.concat(pd.read_csv(FULL / key / SENSITIVITY) for key in varied))
@@ -57,7 +57,7 @@ def write() -> None:
     numbers.to_csv(KEPT / "numbers.csv", index=False)
     claims.to_csv(KEPT / "claims.csv", index=False)
     shutil.copyfile(FULL / "numbers.csv", KEPT / NUMBERS_FULL)
-    (KEPT / "summary.md").write_text(summary.report(numbers, claims, measured, titles, RESULTS.name, found), encoding="utf-8")
+    (KEPT / "summary.md").write_text(summary.report(numbers, claims, measured, titles, RESULTS.name, tables), encoding="utf-8")
     for key in titles:
         for name in (SENSITIVITY, *READINGS):
             kept = KEPT / f"{key}_{name}"

@@ -25,19 +25,19 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     """Rerun it, print the outcome and whether it equals the stored run, and save its picture below results/replay. Raises Fault."""
     parser.add_argument("run", help="its name: study/experiment/condition/method/repeat")
     add_studies(parser)
-    given = parser.parse_args(words)
-    studies = reading.load(reading.read_config({"studies": given.studies} if given.studies else {}))
-    found = replay(given.run, studies)
-    run = found.runs.iloc[0]
-    for name, text in described(run, found.problems[run["problem"]], studies[run["study"]].experiments[run["experiment"]]):
+    arguments = parser.parse_args(words)
+    studies = reading.load(reading.read_config({"studies": arguments.studies} if arguments.studies else {}))
+    reproduced = replay(arguments.run, studies)
+    run = reproduced.runs.iloc[0]
+    for name, text in described(run, reproduced.problems[run["problem"]], studies[run["study"]].experiments[run["experiment"]]):
         print(f"{name:18}{text}")
-    for file, stored in stored_runs(given.run, Path("results")).items():
+    for file, stored in stored_runs(arguments.run, Path("results")).items():
         print(f"{'stored in':18}{file}: {'equal' if equal(run, stored) else 'NOT EQUAL'}")
-    picture = Path("results/replay") / f"{given.run}.svg"
-    draw(found, studies[run["study"]], picture)
+    picture = Path("results/replay") / f"{arguments.run}.svg"
+    draw(reproduced, studies[run["study"]], picture)
     print(f"{'picture':18}{picture}")
-    if found.worlds:
-        animate(found, picture.with_suffix(".gif"))
+    if reproduced.worlds:
+        animate(reproduced, picture.with_suffix(".gif"))
         print(f"{'animation':18}{picture.with_suffix('.gif')}")
 
 
@@ -73,12 +73,12 @@ def _verdict(run: pd.Series, unit: str) -> str:
 def stored_runs(name: str, folder: Path) -> dict[Path, dict[str, Any]]:
     """The rows with this name in the run tables below a folder, by file."""
     study, experiment, _, method, _ = name.split("/")
-    found = {}
+    runs = {}
     for file in sorted(folder.glob(f"*/{study}/runs/{experiment}/{method}/*.parquet")):
         if file.stem.isdecimal():  # not the times and traces next to it
             for row in read_rows(file, name):
-                found[file] = row
-    return found
+                runs[file] = row
+    return runs
 
 
 def equal(run: pd.Series, stored: dict[str, Any]) -> bool:

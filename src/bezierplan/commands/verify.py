@@ -19,13 +19,14 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     given = parser.parse_args(words)
     if given.cores < 1:
         raise ValueError(f"--cores: {given.cores}; expected a number of at least 1")
-    found = recheck.verify(recheck.tasks(given.folder), given.cores, lambda line: print(line, file=sys.stderr, flush=True))
-    for fault in found.faults:
+    verdict = recheck.verify(recheck.tasks(given.folder), given.cores, lambda line: print(line, file=sys.stderr, flush=True))
+    for fault in verdict.faults:
         print(fault)
-    print(f"{found.runs} runs in {found.files} files: {found.paths} different paths judged again, {found.bounds} bounds computed again")
-    if found.undigested:
-        print(f"{found.undigested} files hold no digest of their rows, so what no path determines is not checked in them")
-    print(f"digest {found.digest}; " + ", ".join(f"{name} {version}" for name, version in recheck.versions().items()))
-    print("sound" if not found.faults else f"{len(found.faults)} values differ")
-    if found.faults:
+    judged = f"{verdict.paths} different paths judged again, {verdict.bounds} bounds computed again"
+    print(f"{verdict.runs} runs in {verdict.files} files: {judged}")
+    if verdict.undigested:
+        print(f"{verdict.undigested} files hold no digest of their rows, so what no path determines is not checked in them")
+    print(f"digest {verdict.digest}; " + ", ".join(f"{name} {version}" for name, version in recheck.versions().items()))
+    print("sound" if not verdict.faults else f"{len(verdict.faults)} values differ")
+    if verdict.faults:
         sys.exit(1)

@@ -43,19 +43,19 @@ def tables(studies: dict[str, Study]) -> list[tuple[str, str]]:
 def verified(studies: dict[str, Study]) -> pd.DataFrame:
     """The numbers of all tables, made here and kept (`verification.compared`). Raises FileNotFoundError, and Fault if none are alike."""
     kept = verification.with_width(pd.read_csv(KEPT))
-    found = []
+    compared = []
     for key, table in tables(studies):
         file = RESULTS / key / "tables" / f"{table}.comparison.csv"
         if not file.is_file():
             raise FileNotFoundError(f"{file}: not there; make verify-outcome makes it")
         own = verification.with_width(pd.read_csv(file))
-        one = verification.compared(kept[(kept["study"] == key) & (kept["table"] == table)], own)
-        if one.empty:
+        pair = verification.compared(kept[(kept["study"] == key) & (kept["table"] == table)], own)
+        if pair.empty:
             raise Fault(f"{file}: none of its numbers is kept in {KEPT.relative_to(TREE)}")
-        names = one[list(own.columns[: own.columns.get_loc("statistic") + 1])].itertuples(index=False)
-        one["number"] = [f"{key}/{table}/{'/'.join(name)}" for name in names]
-        found.append(one[["number", "value_kept", "value_own", "p"]])
-    numbers = pd.concat(found, ignore_index=True) if found else pd.DataFrame(columns=["number", "p"])
+        names = pair[list(own.columns[: own.columns.get_loc("statistic") + 1])].itertuples(index=False)
+        pair["number"] = [f"{key}/{table}/{'/'.join(name)}" for name in names]
+        compared.append(pair[["number", "value_kept", "value_own", "p"]])
+    numbers = pd.concat(compared, ignore_index=True) if compared else pd.DataFrame(columns=["number", "p"])
     if numbers["p"].notna().sum() == 0:
         raise Fault(f"{RESULTS}: no number of {KEPT.relative_to(TREE)} is here; expected tables of the configured studies")
     return numbers

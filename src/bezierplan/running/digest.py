@@ -105,14 +105,14 @@ def _imports(module: _Module) -> set[_Module]:
     """The modules that a module imports, with their packages: from this package and, for a file outside it, from the file's folder."""
     file = module.file()
     packages = module.name.split(".") if file.name == "__init__.py" else module.name.split(".")[:-1]
-    found = set()
+    modules = set()
     for level, base, name in _syntax(file).imports:
         above = packages[: len(packages) - level + 1] if level else []
         base = ".".join([*above, *filter(None, [base])])
         for full in filter(None, {base, ".".join(filter(None, [base, name]))}):
-            found.add(_Module(PACKAGE.parent if full.split(".")[0] == ROOT else module.home, full))
+            modules.add(_Module(PACKAGE.parent if full.split(".")[0] == ROOT else module.home, full))
     # Modules next to this package are not part of it.
-    ours = {each for each in found if (each.home != PACKAGE.parent or each.name.split(".")[0] == ROOT) and each.file()}
+    ours = {each for each in modules if (each.home != PACKAGE.parent or each.name.split(".")[0] == ROOT) and each.file()}
     return ours.union(*(each.parents() for each in ours))
 
 

@@ -95,7 +95,7 @@ def keep(cores: int, forked: int | None) -> None:
     """
     import psutil
 
-    own, parent, forks, ended = psutil.Process(), 0.0, 0.0, time.time()
+    snakemake, parent, forks, ended = psutil.Process(), 0.0, 0.0, time.time()
     with suppress(psutil.Error):  # that process may have been killed
         if forked:
             process = psutil.Process(forked)
@@ -103,9 +103,9 @@ def keep(cores: int, forked: int | None) -> None:
                 time.sleep(0.01)
             times = process.cpu_times()
             parent, forks = times.user + times.system, times.children_user + times.children_system
-    times = own.cpu_times()
+    times = snakemake.cpu_times()
     with suppress(OSError):
-        SESSION.write_text(json.dumps(Session(own.create_time(), ended, cores, times.user + times.system, parent, forks)._asdict()))
+        SESSION.write_text(json.dumps(Session(snakemake.create_time(), ended, cores, times.user + times.system, parent, forks)._asdict()))
 
 
 def last(folder: Path) -> Session:

@@ -172,38 +172,38 @@ def run_chunk(problems: dict[str, Problem], job: dict, timed_alike: bool = True)
     met = {name: problem for name, problem in problems.items() if name in job["problems"]}
     blocked = {name: region(problem.workspace) for name, problem in met.items()}
     loans = lend(met)
-    given = list(conditions(list(job["problems"]), job["vary"]))
+    planned = list(conditions(list(job["problems"]), job["vary"]))
     deterministic = getattr(planner_module(job["planner"]), "deterministic", False)
     first, last = job["repeats"]
-    found, times = {}, {}
+    outcomes, times = {}, {}
     with watchdog.watching(job.get("time_limit")) as watch:
-        for n, (k, repeat) in enumerate(_order(job, len(given), range(first, first + 1 if deterministic else last))):
-            condition = given[k]
+        for n, (k, repeat) in enumerate(_order(job, len(planned), range(first, first + 1 if deterministic else last))):
+            condition = planned[k]
             problem, loan = met[condition.problem], loans[condition.problem]
             once = partial(run, job, condition, repeat, loan.problem)
             made = partial(row, job, condition, repeat, problem=problem, blocked=blocked[condition.problem])
-            if not found:
+            if not outcomes:
                 # What needs no random numbers must not be changed by others.
                 again = partial(run, job, condition, repeat + 1, loan.problem) if deterministic else once
                 warm = _warm_up(partial(timed, again, job, condition, repeat, watch)) if timed_alike else []
             plan, cpu, wall = timed(once, job, condition, repeat, watch)
             refuse_changed(loan, job, condition, repeat)
-            found[k, repeat] = made(plan)
+            outcomes[k, repeat] = made(plan)
             if n == 0:
-                refuse_unrepeatable(map(made, warm), found[k, repeat], job, deterministic)
-            times[k, repeat] = Times(found[k, repeat]["id"], cpu, wall)._asdict()
+                refuse_unrepeatable(map(made, warm), outcomes[k, repeat], job, deterministic)
+            times[k, repeat] = Times(outcomes[k, repeat]["id"], cpu, wall)._asdict()
             if (n + 1) % _LOGGED == 0:
                 logger.info("%d runs done", n + 1)
     if fault := next(filter(None, (loan.thorough_fault() for loan in loans.values())), ""):
         runs_of = f"{job['study']}/{job['experiment']}/*/{job['method']}"
         raise UnfitAnswer(f"run {runs_of}: planner {job['planner']}: {fault}")
     if deterministic:
-        for k, repeat in itertools.product(range(len(given)), range(first + 1, last)):
-            found[k, repeat] = found[k, first] | {"id": run_id(job, given[k], repeat), "repeat": repeat}
-            times[k, repeat] = times[k, first] | {"id": found[k, repeat]["id"]}
-    logger.info("all %d runs done", len(found))
-    ordered = sorted(found)
-    return rows.table([found[key] for key in ordered], Planned, Outcome), rows.table([times[key] for key in ordered], Times)
+        for k, repeat in itertools.product(range(len(planned)), range(first + 1, last)):
+            outcomes[k, repeat] = outcomes[k, first] | {"id": run_id(job, planned[k], repeat), "repeat": repeat}
+            times[k, repeat] = times[k, first] | {"id": outcomes[k, repeat]["id"]}
+    logger.info("all %d runs done", len(outcomes))
+    ordered = sorted(outcomes)
+    return rows.table([outcomes[key] for key in ordered], Planned, Outcome), rows.table([times[key] for key in ordered], Times)
 
 
 def _order(job: dict, conditions: int, repeats: range) -> list[tuple[int, int]]:
@@ -222,21 +222,21 @@ def _warm_up(once: Callable[[], tuple[T, float, float]]) -> list[T]:
     """What the first and the last of some runs return, which are made until their CPU time is stable or they are long: the first ones of a
     process load code and wake the processor.
     """
-    taken, found = [], []
+    taken, answers = [], []
     while len(taken) < _ALIKE or max(taken[-_ALIKE:]) > (1 + _STABLE) * min(taken[-_ALIKE:]):
         plan, cpu, _ = once()
         taken.append(cpu)
-        found[1:] = [plan]
+        answers[1:] = [plan]
         if taken[-1] > _LONG_RUN or sum(taken[1:]) > _WARM_UP:
             break
-    return found
+    return answers
 
 
-def refuse_unrepeatable(repetitions: Iterable[dict[str, Any]], found: dict[str, Any], job: dict, deterministic: bool) -> None:
+def refuse_unrepeatable(repetitions: Iterable[dict[str, Any]], row: dict[str, Any], job: dict, deterministic: bool) -> None:
     """Raise PlannerFailure, naming the run, if repetitions of a run do not have the bits of its row."""
     for again in repetitions:
         # The text of a number tells all its bits, and unlike the number a NaN is equal to itself.
-        column = next((name for name in found | again if repr(found.get(name)) != repr(again.get(name))), None)
+        column = next((name for name in row | again if repr(row.get(name)) != repr(again.get(name))), None)
         if column:
             reason = (
                 "has deterministic = True, but with another generator"
@@ -244,7 +244,7 @@ def refuse_unrepeatable(repetitions: Iterable[dict[str, Any]], found: dict[str, 
                 else "a plan must follow from problem, rng and settings alone: no other random numbers, no clock, no id() or hash(), "
                 "nothing kept from an earlier run; but with the same generator"
             )
-            raise watchdog.PlannerFailure(f"run {found['id']}: planner {job['planner']}: {reason} its run has another {column}")
+            raise watchdog.PlannerFailure(f"run {row['id']}: planner {job['planner']}: {reason} its run has another {column}")
 
 
 def timed(once: Callable[[], T], job: dict, condition: Condition, repeat: int, watch: Callable[[str], None]) -> tuple[T, float, float]:

@@ -67,7 +67,7 @@ class Forks:
             if self._control is None:
                 self._begin()
 
-    def script(self, *given: Any) -> None:
+    def script(self, *arguments: Any) -> None:
         """Run a script as Snakemake's function of the same name does, which is called with the same arguments.
 
         Raises subprocess.CalledProcessError if the script fails, after the script has said why on stderr.
@@ -75,12 +75,12 @@ class Forks:
         from snakemake.iocontainers import Snakemake
         from snakemake.script import SourceCache, get_source
 
-        job = self._names.bind(*given).arguments
+        job = self._names.bind(*arguments).arguments
         cache = SourceCache(job["sourcecache_path"], job["runtime_sourcecache_path"])
         file, source, language, *_ = get_source(job["path"], cache, job["basedir"], job["wildcards"], job["params"])
         # Elsewhere libraries may not survive a fork; and a container or another environment has a Python of its own.
         if language != "python" or sys.platform != "linux" or job["container_img"] or job["conda_env"] or job["env_modules"]:
-            self._script(*given)
+            self._script(*arguments)
             return
         names = ("input", "output", "params", "wildcards", "threads", "resources", "log", "config", "rulename", "bench_iteration")
         name = file.get_path_or_uri(secret_free=True)

@@ -26,9 +26,9 @@ LIMIT = 60.0
 _EXPECTED = "expected bool, int, float, Literal, or Annotated with a Range"
 
 
-def loaded(planner: str, place: str) -> ModuleType:
-    """The module of a planner, given as a name or the path of a file. Raises Fault, beginning with a place, unless it can be executed and
-    has the interface of a planner (`planners`).
+def loaded(planner: str, location: str) -> ModuleType:
+    """The module of a planner, given as a name or the path of a file. Raises Fault, beginning with a location, unless it can be executed
+    and has the interface of a planner (`planners`).
     """
     module, fault = None, ""
     if planner.endswith(".py"):
@@ -36,7 +36,7 @@ def loaded(planner: str, place: str) -> ModuleType:
     if not fault:
         module, fault = _loaded(planner)
     if fault:
-        raise Fault(f"{place}: {fault}")
+        raise Fault(f"{location}: {fault}")
     return module
 
 
@@ -51,14 +51,14 @@ def _loaded(planner: str) -> tuple[ModuleType | None, str]:
     return module, interface_fault(module) or ""
 
 
-def asked(function: Callable[..., Any], place: str, *given: Any) -> None:
-    """Call a planner's `check` or `serves`, which raises ValueError to report a problem. Raises Fault, beginning with a place."""
+def asked(function: Callable[..., Any], location: str, *given: Any) -> None:
+    """Call a planner's `check` or `serves`, which raises ValueError to report a problem. Raises Fault, beginning with a location."""
     if function.__module__.startswith(f"{planners.__name__}."):
         said = _complaint(function, *given)
     else:
         said = watchdog.verdict(f"{function.__name__} of its planner", partial(_complaint, function, *given), LIMIT)
     if said:
-        raise Fault(f"{place}: {said}")
+        raise Fault(f"{location}: {said}")
 
 
 def _complaint(function: Callable[..., Any], *given: Any) -> str:
@@ -79,48 +79,48 @@ def interface_fault(module: ModuleType) -> str | None:
     if not inspect.isfunction(plan):
         return "no function plan; expected plan(problem, rng, *, <settings>)"
     parameters = inspect.signature(plan).parameters.values()
-    fixed = [each for each in parameters if each.kind in (each.POSITIONAL_ONLY, each.POSITIONAL_OR_KEYWORD)]
-    positional = [each.name for each in fixed if each.default is each.empty]
-    if len(positional) != 2 or any(each.kind in (each.VAR_POSITIONAL, each.VAR_KEYWORD) for each in parameters):
+    fixed = [parameter for parameter in parameters if parameter.kind in (parameter.POSITIONAL_ONLY, parameter.POSITIONAL_OR_KEYWORD)]
+    positional = [parameter.name for parameter in fixed if parameter.default is parameter.empty]
+    if len(positional) != 2 or any(parameter.kind in (parameter.VAR_POSITIONAL, parameter.VAR_KEYWORD) for parameter in parameters):
         return "function plan: expected plan(problem, rng, *, <settings>)"
-    for each in parameters:
-        if each.kind is each.KEYWORD_ONLY and each.default is not each.empty:
-            return f"setting {each.name}: has a default value; a study gives a value to every setting"
-        if each.kind is each.KEYWORD_ONLY and each.annotation is each.empty:
-            return f"setting {each.name}: has no annotation; {_EXPECTED}"
+    for parameter in parameters:
+        if parameter.kind is parameter.KEYWORD_ONLY and parameter.default is not parameter.empty:
+            return f"setting {parameter.name}: has a default value; a study gives a value to every setting"
+        if parameter.kind is parameter.KEYWORD_ONLY and parameter.annotation is parameter.empty:
+            return f"setting {parameter.name}: has no annotation; {_EXPECTED}"
     try:
         parameters = inspect.signature(plan, eval_str=True).parameters.values()
     except Exception as error:
         return f"function plan: its annotations cannot be read ({told(error)})"
-    for each in parameters:
+    for parameter in parameters:
         try:
-            _ = each.kind is each.KEYWORD_ONLY and setting(each.annotation)
+            _ = parameter.kind is parameter.KEYWORD_ONLY and setting(parameter.annotation)
         except TypeError:
-            return f"setting {each.name}: is annotated with {inspect.formatannotation(each.annotation)}; {_EXPECTED}"
+            return f"setting {parameter.name}: is annotated with {inspect.formatannotation(parameter.annotation)}; {_EXPECTED}"
     return _workspaces_fault(getattr(module, "workspaces", ()))
 
 
-def refuse_unknown(module: ModuleType, names: Iterable[str], place: str) -> None:
-    """Raise Fault, beginning with a place, for a name that is no setting of a planner."""
+def refuse_unknown(module: ModuleType, names: Iterable[str], location: str) -> None:
+    """Raise Fault, beginning with a location, for a name that is no setting of a planner."""
     known = planner_settings(module)
     for name in names:
         if name not in known:
-            raise Fault(f"{place}: {name}: unknown{closest(name, known)}")
+            raise Fault(f"{location}: {name}: unknown{closest(name, known)}")
 
 
-def check_settings(module: ModuleType, settings: dict[str, Any], place: str) -> None:
+def check_settings(module: ModuleType, settings: dict[str, Any], location: str) -> None:
     """Check a planner's settings: all are there, each has the right type and range, and the planner's own `check` accepts them. Names of no
-    setting are ignored. Raises Fault, beginning with a place.
+    setting are ignored. Raises Fault, beginning with a location.
     """
     declared = planner_settings(module)
     missing = [", ".join(filter(None, [f"{name}: {each}", each.meaning])) for name, each in declared.items() if name not in settings]
     if missing:
-        raise Fault(f"{place} are missing: {'; '.join(missing)}")
+        raise Fault(f"{location} are missing: {'; '.join(missing)}")
     for name, each in declared.items():
         if wanted := setting_fault(each, settings[name]):
-            raise Fault(f"{place}: {name}: {settings[name]!r}; expected {wanted}")
+            raise Fault(f"{location}: {name}: {settings[name]!r}; expected {wanted}")
     if hasattr(module, "check"):
-        asked(module.check, place, settings)
+        asked(module.check, location, settings)
 
 
 def _workspaces_fault(served: Any) -> str | None:

@@ -41,7 +41,7 @@ def _told(problem: Problem, place: str) -> str:
 def lend(problems: dict[str, Problem]) -> dict[str, Loan]:
     """Copies of problems for planners, by name. Problems in the same workspace share one copy."""
     copies: dict[Hashable, tuple[Workspace, str, dict[str, Any]]] = {}
-    found = {}
+    loans = {}
     for name, problem in problems.items():
         key = id(problem.workspace)
         if key not in copies:
@@ -50,8 +50,8 @@ def lend(problems: dict[str, Problem]) -> dict[str, Loan]:
             copies[key] = workspace, text, dict(_parts(workspace))
         workspace, text, parts = copies[key]
         start, target = (tuple(map(float, end)) for end in (problem.start, problem.target))
-        found[name] = Loan(Problem(problem.name, workspace, start, target), text, parts)
-    return found
+        loans[name] = Loan(Problem(problem.name, workspace, start, target), text, parts)
+    return loans
 
 
 def lend_once(problem: Problem) -> Loan:
@@ -60,11 +60,11 @@ def lend_once(problem: Problem) -> Loan:
     return Loan(problem._replace(workspace=workspace), "", dict(_parts(workspace)))
 
 
-def _parts(value: Any, place: str = "") -> Iterator[tuple[str, Any]]:
+def _parts(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
     """The objects that a workspace consists of, each with its place in it."""
     if not is_dataclass(value):
-        yield place, value
+        yield path, value
         return
     for field in fields(value):
-        name = f"{place}.{field.name}" if place else field.name
+        name = f"{path}.{field.name}" if path else field.name
         yield from _parts(vars(value).get(field.name), name)

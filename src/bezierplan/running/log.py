@@ -29,20 +29,20 @@ RUNS_COLUMN = "id"
 
 
 @contextmanager
-def job(given: Any) -> Iterator[Any]:
+def job(snakemake: Any) -> Iterator[Any]:
     """Run a job: `given` is its script's `snakemake` object; the block receives temporary names for the output files.
 
     The block runs in a process that another one watches (`watchdog.supervise`). The files get their final names when the block ends, and
     the log says what CPU time the job took (`effort`). An exception is written to the job's log in full and ends the process with a
     one-line message, which is also the last line of the log; so does an end that nothing in the process could report.
     """
-    log = given.log[0]
+    log = snakemake.log[0]
     end_with_parent()
-    watchdog.supervise(str(given.output[0]), partial(report, log))
+    watchdog.supervise(str(snakemake.output[0]), partial(report, log))
     effort.begin()
     logging.basicConfig(filename=log, filemode="w", level=logging.INFO, format="%(asctime)s %(levelname)s %(message)s")
     try:
-        with whole_files(given.output) as output:
+        with whole_files(snakemake.output) as output:
             yield output
         logging.info(effort.line())
     except Exception as error:
@@ -50,7 +50,7 @@ def job(given: Any) -> Iterator[Any]:
             logging.raiseExceptions = False  # the log may lie on the same disk
         logging.error("failed\n%s", account(error))
         said = str(error) if isinstance(error, watchdog.PlannerFailure) else told(error)
-        line = full_disk(error, given.output) or damaged(given.input) or f"{said} (full account: {log})"
+        line = full_disk(error, snakemake.output) or damaged(snakemake.input) or f"{said} (full account: {log})"
         logging.critical(line)
         watchdog.settle()
         sys.exit(line)

@@ -88,12 +88,12 @@ def tasks(folder: File) -> list[Task]:
             experiments.setdefault(file.parents[1], []).append(str(file))
     if not experiments:
         raise FileNotFoundError(f"{folder}: no runs here; expected a folder of results, such as results/full")
-    found = [Task(str(_problems_of(experiment, folder)), "", tuple(files)) for experiment, files in experiments.items()]
+    listed = [Task(str(_problems_of(experiment, folder)), "", tuple(files)) for experiment, files in experiments.items()]
     for bounds in sorted(folder.glob("*/problems/*.bounds.parquet")):
         experiment = bounds.name.removesuffix(".bounds.parquet")
         drives = experiments.get(bounds.parents[1] / "runs" / experiment, [])
-        found.append(Task(str(bounds.with_name(f"{experiment}.parquet")), str(bounds), tuple(drives)))
-    return found
+        listed.append(Task(str(bounds.with_name(f"{experiment}.parquet")), str(bounds), tuple(drives)))
+    return listed
 
 
 def _problems_of(experiment: File, folder: File) -> File:
@@ -106,15 +106,15 @@ def _problems_of(experiment: File, folder: File) -> File:
     return there
 
 
-def verify(given: list[Task], processes: int, told: Callable[[str], None] = lambda line: None) -> Verdict:
+def verify(tasks: list[Task], processes: int, told: Callable[[str], None] = lambda line: None) -> Verdict:
     """The verdict on some tasks, in several processes. told: gets a line of progress now and then."""
     # The largest first, so that no process ends long after the others: bounds take longest.
-    largest = sorted(given, key=lambda task: (not task.bounds, -sum(_size(file) for file in (task.problems, *task.runs))))
+    largest = sorted(tasks, key=lambda task: (not task.bounds, -sum(_size(file) for file in (task.problems, *task.runs))))
     done = []
     for n, each in enumerate(_mapped(judged, largest, processes), start=1):
         done.append(each)
-        if n % 10 == 0 or n == len(given):
-            told(f"{n} of {len(given)} tables checked, {sum(len(verdict.faults) for verdict in done)} faults")
+        if n % 10 == 0 or n == len(tasks):
+            told(f"{n} of {len(tasks)} tables checked, {sum(len(verdict.faults) for verdict in done)} faults")
     return merged(done)
 
 
@@ -122,13 +122,13 @@ def _size(file: str) -> int:
     return os.path.getsize(file) if os.path.isfile(file) else 0
 
 
-def _mapped(function: Callable[[Task], Verdict], given: list[Task], processes: int) -> Iterator[Verdict]:
+def _mapped(function: Callable[[Task], Verdict], tasks: list[Task], processes: int) -> Iterator[Verdict]:
     """`map`, in processes beside this one if there are to be several, on Linux: elsewhere they would begin with a job's script anew."""
     if processes == 1 or sys.platform != "linux":
-        yield from map(function, given)
+        yield from map(function, tasks)
         return
     with ProcessPoolExecutor(processes, multiprocessing.get_context("fork"), end_with_parent) as pool:
-        yield from pool.map(function, given)
+        yield from pool.map(function, tasks)
 
 
 def merged(verdicts: Iterable[Verdict]) -> Verdict:
@@ -260,9 +260,9 @@ def _arrays(column: pa.Array) -> list[np.ndarray]:
 
 def _chunk_faults(chunk: _Chunk, made: dict[str, Problem], problems_file: str) -> list[Fault]:
     """Whether rows stand in their file, their ids say what their columns say, and the file's digest is that of its rows."""
-    found = []
+    faults = []
     if chunk.kept not in (None, chunk.digest):
-        found.append(Fault(chunk.file, "all rows", "digest", chunk.kept, chunk.digest))
+        faults.append(Fault(chunk.file, "all rows", "digest", chunk.kept, chunk.digest))
     *_, experiment, method, _ = File(chunk.file).parts
     parts = [chunk.words[part] for part in ("study", "experiment", "condition", "method", "repeat")]
     wanted = {
@@ -274,22 +274,22 @@ def _chunk_faults(chunk: _Chunk, made: dict[str, Problem], problems_file: str) -
     }
     for column, values in wanted.items():
         for row in np.flatnonzero(compute.not_equal(chunk.words[column], values).to_numpy(zero_copy_only=False)):
-            found.append(Fault(chunk.file, chunk.ids[row], column, chunk.words[column][row].as_py(), values[row].as_py()))
+            faults.append(Fault(chunk.file, chunk.ids[row], column, chunk.words[column][row].as_py(), values[row].as_py()))
     for name in chunk.rows.keys() - made.keys():
-        found += [Fault(chunk.file, chunk.ids[row], "problem", name, f"one of {problems_file}") for row in chunk.rows[name]]
-    return found
+        faults += [Fault(chunk.file, chunk.ids[row], "problem", name, f"one of {problems_file}") for row in chunk.rows[name]]
+    return faults
 
 
 def _twice(chunks: list[_Chunk]) -> list[Fault]:
     """The rows whose id another one has."""
     seen: set[str] = set()
-    found = []
+    faults = []
     for chunk in chunks:
         for name in chunk.ids:
             if name in seen:
-                found.append(Fault(chunk.file, name, "id", "twice", "once"))
+                faults.append(Fault(chunk.file, name, "id", "twice", "once"))
             seen.add(name)
-    return found
+    return faults
 
 
 def _differing(chunk: _Chunk, again: dict[str, tuple[np.ndarray, Any]]) -> Iterator[Fault]:
@@ -327,7 +327,7 @@ class _Judged(NamedTuple):
 
 def _path_faults(chunks: list[_Chunk], made: dict[str, Problem]) -> tuple[list[Fault], int]:
     """What of runs differs from what their points say, and the number of different paths. Each problem's region is built once."""
-    found, count = [], 0
+    all_faults, count = [], 0
     verdicts = [np.full((len(chunk.ids), 6), math.nan) for chunk in chunks]
     for name, problem in made.items():
         concerned = [(chunk, verdict) for chunk, verdict in zip(chunks, verdicts) if name in chunk.rows]
@@ -341,7 +341,7 @@ def _path_faults(chunks: list[_Chunk], made: dict[str, Problem]) -> tuple[list[F
                 if key not in known:
                     known[key] = _path_judged(curve, points, problem, blocked)
                 verdict[row], faults = known[key]
-                found += [Fault(chunk.file, chunk.ids[row], *fault) for fault in faults]
+                all_faults += [Fault(chunk.file, chunk.ids[row], *fault) for fault in faults]
         count += len(known)
     for chunk, verdict in zip(chunks, verdicts):
         length, feasible, collision_at, depth, clearance, tolerance = verdict.T
@@ -355,8 +355,8 @@ def _path_faults(chunks: list[_Chunk], made: dict[str, Problem]) -> tuple[list[F
             "clearance_error": (tolerance, slack),
             "generations": (chunk.numbers["history"] - 1, 0.0),
         }
-        found += _differing(chunk, again)
-    return found, count
+        all_faults += _differing(chunk, again)
+    return all_faults, count
 
 
 def _path_judged(curve: str, points: np.ndarray, problem: Problem, blocked: Region) -> _Judged:
@@ -396,7 +396,7 @@ def _traces(file: str) -> dict[str, _Trace]:
 
 def _drive_faults(chunks: list[_Chunk], made: dict[str, Problem], moving: dict[str, World]) -> list[Fault]:
     """What of drives differs from what their ways and their traces say. Obstacles at whole steps are placed once for each problem."""
-    found = []
+    faults = []
     traces = {chunk.file: _traces(chunk.file) for chunk in chunks}
     measured = [np.full((len(chunk.ids), 4), math.nan) for chunk in chunks]
     for name, problem in made.items():
@@ -407,7 +407,7 @@ def _drive_faults(chunks: list[_Chunk], made: dict[str, Problem], moving: dict[s
             for row in chunk.rows[name]:
                 trace = traces[chunk.file].get(chunk.ids[row])
                 if trace is None:
-                    found.append(Fault(chunk.file, chunk.ids[row], "id", "a drive", "no trace of that id"))
+                    faults.append(Fault(chunk.file, chunk.ids[row], "id", "a drive", "no trace of that id"))
                 else:
                     values[row] = _measured(chunk.points[row], trace, problem, least_distance)
     for chunk, values in zip(chunks, measured):
@@ -426,8 +426,8 @@ def _drive_faults(chunks: list[_Chunk], made: dict[str, Problem], moving: dict[s
             "clearance": (np.maximum(clearance_least, 0.0), _SAME),
             "clearance_least": (least, _TRACE),
         }
-        found += _differing(chunk, again)
-    return found
+        faults += _differing(chunk, again)
+    return faults
 
 
 def _measured(

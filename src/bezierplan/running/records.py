@@ -45,12 +45,12 @@ class Record(NamedTuple):
 
 def job_of(log: str) -> Job | None:
     """The job that writes a log file; None for a file that no rule of this workflow writes."""
-    found = _LOG.fullmatch(log)
-    if not found:
+    match = _LOG.fullmatch(log)
+    if not match:
         return None
-    name = found["name"].replace("/logs/", "/", 1)
+    name = match["name"].replace("/logs/", "/", 1)
     runs = _RUNS.fullmatch(name)
-    return Job(found["scale"], runs["name"], int(runs["chunk"])) if runs else Job(found["scale"], name, None)
+    return Job(match["scale"], runs["name"], int(runs["chunk"])) if runs else Job(match["scale"], name, None)
 
 
 def measured(folder: Path, units: Callable[[Job], int]) -> dict[tuple[str, str], Record]:

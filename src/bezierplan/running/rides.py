@@ -100,9 +100,9 @@ def row(job: dict, condition: Condition, repeat: int, ride: Ride, problem: Probl
         avoidable=hindsight.avoidable(ride.motion, known, world, problem),
         clearance_least=least,
     )
-    found = execution.identity(job, condition, repeat) | outcome._asdict() | driving._asdict()
+    columns = execution.identity(job, condition, repeat) | outcome._asdict() | driving._asdict()
     trace = {
-        "id": found["id"],
+        "id": columns["id"],
         "x": np.interp(moments, times, points[:, 0]).astype(np.float32),
         "y": np.interp(moments, times, points[:, 1]).astype(np.float32),
         "clearance": verdict.clearance.astype(np.float32),
@@ -110,7 +110,7 @@ def row(job: dict, condition: Condition, repeat: int, ride: Ride, problem: Probl
         "plan_curve": [plan.path.curve if plan.path else "" for plan in ride.plans],
         "plan_points": [plan.path.points.ravel().tolist() if plan.path else [] for plan in ride.plans],
     }
-    return found, trace
+    return columns, trace
 
 
 def _last_optimum(ride: Ride, world: World, problem: Problem) -> float:
@@ -138,14 +138,14 @@ def run_chunk(problems: dict[str, Problem], worlds: dict[str, World], job: dict)
                 if not drives:
                     first, *_ = execution.timed(once, job, condition, repeat, watch)  # compiles and loads
                 ride, cpu, wall = execution.timed(once, job, condition, repeat, watch)
-                found, trace = row(job, condition, repeat, ride, problem, world)
+                drive, trace = row(job, condition, repeat, ride, problem, world)
                 if not drives:
                     again, _ = row(job, condition, repeat, first, problem, world)
-                    execution.refuse_unrepeatable([again], found, job, deterministic=False)
-                drives.append(found)
+                    execution.refuse_unrepeatable([again], drive, job, deterministic=False)
+                drives.append(drive)
                 traces.append(trace)
                 replans = _replan_times(ride, job["policy"]["step_seconds"])
-                times.append(Times(found["id"], cpu, wall)._asdict() | replans._asdict())
+                times.append(Times(drive["id"], cpu, wall)._asdict() | replans._asdict())
     for name, text in texts.items():
         if to_json(driven[name]) != text:
             runs_of = f"{job['study']}/{job['experiment']}/*/{job['method']}"

@@ -71,13 +71,13 @@ def edited(table: pa.Table) -> bool:
 
 def rows_digest(table: pa.Table) -> str:
     """A hash over the content of a table, column by column in order of name: to the last bit, whatever the layout of the file."""
-    found = hashlib.sha256()
+    digest = hashlib.sha256()
     for name in sorted(table.column_names):
         column = table[name].combine_chunks()
-        found.update(f"{name} {len(column)} ".encode())
+        digest.update(f"{name} {len(column)} ".encode())
         for part in _parts(column):
-            found.update(part)
-    return found.hexdigest()[:16]
+            digest.update(part)
+    return digest.hexdigest()[:16]
 
 
 def _parts(column: pa.Array) -> list[bytes]:

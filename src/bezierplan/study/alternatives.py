@@ -90,13 +90,13 @@ def methods_of_claims(study: Study, claims: list[Claim], experiment: str) -> lis
 
 def _compared(study: Study, claim: Claim, check: Check) -> set[str]:
     """Methods that a check names; for `rest`, those of the claim's table."""
-    found = set(one_or_list(check.where.get("method", [])))
+    methods = set(one_or_list(check.where.get("method", [])))
     if check.cells == "method":
-        found.update(check.groups_named)
-    if "rest" in found:
+        methods.update(check.groups_named)
+    if "rest" in methods:
         tables = [study.compared()[name] for name in claim.artefacts if name in study.compared()]
-        found.update(*(one_or_list(table.where.get("method", list(study.methods))) for table in tables))
-    return found
+        methods.update(*(one_or_list(table.where.get("method", list(study.methods))) for table in tables))
+    return methods
 
 
 def experiments_of_claims(claims: list[Claim]) -> list[str]:

@@ -198,30 +198,30 @@ class Each(Model):
 _PANEL = TypeAdapter(Annotated[Panel, one_of("kind", kinds())])
 
 
-def _expanded(given: Any) -> dict[str, Panel]:
+def _expanded(entry: Any) -> dict[str, Panel]:
     """The panels that an entry in a list of panels stands for, by the keys in it that lead to them."""
-    if not isinstance(given, dict) or "each" not in given:
-        return {"": _PANEL.validate_python(given)}
+    if not isinstance(entry, dict) or "each" not in entry:
+        return {"": _PANEL.validate_python(entry)}
     panels = {}
-    for number, own in enumerate(Each(each=given["each"]).each):
-        place = f"each: {number}"
+    for number, part in enumerate(Each(each=entry["each"]).each):
+        location = f"each: {number}"
         try:
-            joined = _joined(own, given, place)
-            panels[place] = _PANEL.validate_python({key: value for key, value in joined.items() if key != "each"})
+            joined = _joined(part, entry, location)
+            panels[location] = _PANEL.validate_python({key: value for key, value in joined.items() if key != "each"})
         except ValidationError as error:
             path = first_fault(error)
             key = path[0].split(":")[0]
-            raise wrong(": ".join(path if key in given and key not in own else [place, *path])) from None
+            raise wrong(": ".join(path if key in entry and key not in part else [location, *path])) from None
     return panels
 
 
-def _joined(own: dict[str, Any], shared: dict[str, Any], place: str) -> dict[str, Any]:
+def _joined(part: dict[str, Any], shared: dict[str, Any], location: str) -> dict[str, Any]:
     """The keys of both; mappings that stand in both are joined likewise."""
-    joined = own | shared
-    for key in own.keys() & shared.keys():
-        if not (isinstance(own[key], dict) and isinstance(shared[key], dict)):
-            raise wrong(f"{place}: {key}: is given beside each as well; expected it in one of the two places")
-        joined[key] = _joined(own[key], shared[key], f"{place}: {key}")
+    joined = part | shared
+    for key in part.keys() & shared.keys():
+        if not (isinstance(part[key], dict) and isinstance(shared[key], dict)):
+            raise wrong(f"{location}: {key}: is given beside each as well; expected it in one of the two places")
+        joined[key] = _joined(part[key], shared[key], f"{location}: {key}")
     return joined
 
 
@@ -233,8 +233,8 @@ def _panels(given: Any) -> list[Panel]:
     """The panels of a figure, each with its place in the list that is given."""
     panels = []
     for number, entry in enumerate(_ENTRIES.validate_python(_LIST.validate_python(given))):
-        for place, panel in entry.items():
-            panel._place = f"{number}: {place}" if place else str(number)
+        for location, panel in entry.items():
+            panel._place = f"{number}: {location}" if location else str(number)
             panels.append(panel)
     if len(panels) > MOST_PANELS:
         raise wrong(f"{len(panels)} panels; expected at most {MOST_PANELS}, one a letter")

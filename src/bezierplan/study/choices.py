@@ -48,7 +48,7 @@ def choices(study: Study) -> list[dict[str, Any]]:
     printed = {method for name, table in tables.items() for method in _methods(study, name, table)}
     compared = {table.reads.get(row["metric"], row["metric"]) for name, table in tables.items() for row in _published(study, name)}
     compared -= {entry.metric for table in tables.values() for entry in table.values if not entry.defined}
-    found = []
+    known = []
     for assumption in study.assumptions:
         governs: dict[str, Any] = {}
         if isinstance(assumption.default, str) and assumption.default in compared and METRICS.keys() >= set(assumption.alternatives):
@@ -64,7 +64,7 @@ def choices(study: Study) -> list[dict[str, Any]]:
             governs["table"] = assumption.table
         values = [value for value in assumption.alternatives if value not in assumption.not_searched]
         if governs and values:
-            found.append({"id": assumption.id, "detail": assumption.detail, "values": [None, *values]} | governs)
+            known.append({"id": assumption.id, "detail": assumption.detail, "values": [None, *values]} | governs)
     worlds: dict[str, list] = {}
     for table in tables.values():
         for column, value in table.primary.items():
@@ -73,7 +73,7 @@ def choices(study: Study) -> list[dict[str, Any]]:
     governed = {"workspace"} if any(assumption.workspace for assumption in study.assumptions) else set()
     # Workspaces of which a key is varied already are not exchanged as well.
     open_worlds = {column: values for column, values in worlds.items() if column not in governed and len(values) > 1}
-    return found + [_world(study, column, values, found) for column, values in open_worlds.items()]
+    return known + [_world(study, column, values, known) for column, values in open_worlds.items()]
 
 
 def _world(study: Study, column: str, values: list, settings: list[dict[str, Any]]) -> dict[str, Any]:
@@ -147,14 +147,14 @@ def maps(study: Study) -> list[str]:
     """Map files of the problems on which readings are judged, under any of them."""
     experiments = {table.experiment for table in printed_tables(study).values()}
     names = {problem["workspace"] for name in sorted(experiments) for problem in study.problems_of(name, "full").values()}
-    other = [
+    workspaces = [
         relative(study.folder / value)
         for assumption in study.assumptions
         for workspace, key in assumption.workspace.items()
         for value in assumption.alternatives
         if key in file_keys(type(study.workspaces[workspace]))
     ]
-    return sorted({*study.maps(names), *other})
+    return sorted({*study.maps(names), *workspaces})
 
 
 def _parts(study: Study) -> list[dict[str, list[str]]]:
@@ -165,12 +165,12 @@ def _parts(study: Study) -> list[dict[str, list[str]]]:
         for group in [{method} for method in methods] if _apart(table, _published(study, name)) else [set(methods)]:
             joined = [other for other in groups if other & group]
             groups = [other for other in groups if not other & group] + [group.union(*joined)]
-    found = choices(study)
+    known = choices(study)
     order = list(study.methods)
     return [
         {
             "methods": sorted(group, key=order.index),
-            "choices": [choice["id"] for choice in found if group & set(choice.get("methods", group))],
+            "choices": [choice["id"] for choice in known if group & set(choice.get("methods", group))],
         }
         for group in sorted(groups, key=lambda group: min(map(order.index, group)))
     ]

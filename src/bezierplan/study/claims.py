@@ -73,14 +73,14 @@ class Assumption(Model):
 
     @model_validator(mode="after")
     def _check_setting(self) -> "Assumption":
-        if unknown := [each for each in self.not_searched if each not in self.alternatives]:
+        if unknown := [value for value in self.not_searched if value not in self.alternatives]:
             raise wrong(f"not_searched: {shown(unknown[0])}: not among the alternatives")
-        defaults = {identity(each) for each in (self.default.values() if isinstance(self.default, dict) else [self.default])}
-        for each in self.alternatives:
-            if {identity(each)} == defaults:
-                raise wrong(f"alternatives: {each}: is the default; expected the other values")
-            if self.setting is not None and not re.fullmatch(PART, str(each)):
-                raise wrong(f"alternatives: {each!r}: is part of a file's name; expected {PART_EXPECTED}, or a number")
+        defaults = {identity(value) for value in (self.default.values() if isinstance(self.default, dict) else [self.default])}
+        for value in self.alternatives:
+            if {identity(value)} == defaults:
+                raise wrong(f"alternatives: {value}: is the default; expected the other values")
+            if self.setting is not None and not re.fullmatch(PART, str(value)):
+                raise wrong(f"alternatives: {value!r}: is part of a file's name; expected {PART_EXPECTED}, or a number")
         if self.setting and (self.workspace or self.table):
             raise wrong("setting: beside workspace or table; expected one of them")
         if self.table and self.default != "all":

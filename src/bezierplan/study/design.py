@@ -44,9 +44,9 @@ class Design:
             described = job(self.study, experiment, method, "full", 0)
             problems = [name for name, problem in described["problems"].items() if problem.get("layout", 0) < 2]
             for condition in conditions(problems, content.vary):
-                place = {key: value for key, value in described["problems"][condition.problem].items() if key != "settings"}
+                problem = {key: value for key, value in described["problems"][condition.problem].items() if key != "settings"}
                 names = {"experiment": experiment, "condition": condition.name, "problem": condition.problem, "method": method}
-                rows.append(names | place | settings_in(described, condition) | condition.values | {"planner": described["planner"]})
+                rows.append(names | problem | settings_in(described, condition) | condition.values | {"planner": described["planner"]})
         return rows
 
     def _planned(self, experiment: str) -> dict[str, str]:
@@ -72,17 +72,17 @@ class Design:
         """Extra columns that the planners of an experiment report; None if one of them does not say which."""
         if self.study.moves(experiment):
             return frozenset()
-        found: set[str] = set()
+        columns: set[str] = set()
         for method in self.study.methods_of(experiment):
             planner = self.study.planner(method)
             extra = getattr(planner_module(planner), "extra", None if planner.endswith(".py") else ())
             if extra is None:
                 return None
-            found.update(extra)
-        return frozenset(found)
+            columns.update(extra)
+        return frozenset(columns)
 
-    def check_column(self, experiments: list[str], column: str, kind: str, place: str) -> None:
-        """A column exists, and has the type that is asked for. Raises Fault, beginning with a place.
+    def check_column(self, experiments: list[str], column: str, kind: str, location: str) -> None:
+        """A column exists, and has the type that is asked for. Raises Fault, beginning with a location.
 
         kind: `column`, one that is known before a run; `number column`, such a column of numbers; `quantity`, any column of numbers.
         """
@@ -95,23 +95,23 @@ class Design:
             return
         if column not in types:
             if kind == "quantity" and column in METRICS and METRICS[column].compute is None:
-                self.check_metric(experiments, column, place)
+                self.check_metric(experiments, column, location)
                 return
-            raise Fault(f"{place}: {column}: unknown{closest(column, fit)}")
-        found = f"a {types[column]} of each run" if column in planned or column == "id" else f"a {types[column]} that a run finds out"
+            raise Fault(f"{location}: {column}: unknown{closest(column, fit)}")
+        kind_found = f"a {types[column]} of each run" if column in planned or column == "id" else f"a {types[column]} that a run finds out"
         expected = {
             "column": "a column that is known before a run",
             "number column": "a column of numbers that is known before a run",
             "quantity": "a column of numbers",
         }[kind]
-        raise Fault(f"{place}: {column}: {found}; expected {expected}{closest(column, fit)}")
+        raise Fault(f"{location}: {column}: {kind_found}; expected {expected}{closest(column, fit)}")
 
-    def check_metric(self, experiments: list[str], metric: str, place: str) -> None:
-        """Runs of each experiment can have a metric. Raises Fault, beginning with a place."""
+    def check_metric(self, experiments: list[str], metric: str, location: str) -> None:
+        """Runs of each experiment can have a metric. Raises Fault, beginning with a location."""
         for experiment in experiments:
             if (reason := self._lack(experiment, metric)) is not None:
                 known = [name for name in METRICS if self._lack(experiment, name) is None]
-                raise Fault(f"{place}: {metric}: no run of {experiment} has it: {reason}{closest(metric, known)}")
+                raise Fault(f"{location}: {metric}: no run of {experiment} has it: {reason}{closest(metric, known)}")
 
     def _lack(self, experiment: str, metric: str) -> str | None:
         """Why no run of an experiment has a metric, or None."""
@@ -125,52 +125,52 @@ class Design:
             return f"it is for workspaces of kind {' or '.join(described.on)}, not {', '.join(sorted(kinds))}"
         return None
 
-    def check_repeat(self, experiments: list[str], repeat: int, place: str) -> None:
-        """A repeat is run at scale full. Raises Fault, beginning with a place."""
+    def check_repeat(self, experiments: list[str], repeat: int, location: str) -> None:
+        """A repeat is run at scale full. Raises Fault, beginning with a location."""
         most = max(self.study.experiments[name].repeats["full"] for name in experiments)
         if repeat >= most:
-            raise Fault(f"{place}: {repeat}: expected a repeat from 0 to {most - 1}: {', '.join(experiments)} has {most} at scale full")
+            raise Fault(f"{location}: {repeat}: expected a repeat from 0 to {most - 1}: {', '.join(experiments)} has {most} at scale full")
 
-    def check_where(self, experiments: list[str], where: dict[str, Any], place: str, *, baselines: bool = True) -> None:
-        """A selection names existing columns and values, in a combination that some run has. Raises Fault, beginning with a place."""
+    def check_where(self, experiments: list[str], where: dict[str, Any], location: str, *, baselines: bool = True) -> None:
+        """A selection names existing columns and values, in a combination that some run has. Raises Fault, beginning with a location."""
         rows = self.selectable(experiments, baselines)
         for column, wanted in where.items():
             for value in one_or_list(wanted):
-                self._check_value(experiments, column, value, rows, f"{place}: {column}")
+                self._check_value(experiments, column, value, rows, f"{location}: {column}")
         if rows and not any(fits(row, where) for row in rows):
             raise Fault(
-                f"{place}: no run of {', '.join(experiments)} has all of {', '.join(f'{key} {value}' for key, value in where.items())}"
+                f"{location}: no run of {', '.join(experiments)} has all of {', '.join(f'{key} {value}' for key, value in where.items())}"
             )
 
-    def _check_value(self, experiments: list[str], column: str, value: Any, rows: list[Row], place: str) -> None:
+    def _check_value(self, experiments: list[str], column: str, value: Any, rows: list[Row], location: str) -> None:
         """A value is one that a column can have, as far as that is known before its runs."""
         types = {name: each for experiment in experiments for name, each in self.types(experiment).items()}
         planned = {name for experiment in experiments for name in self.planned(experiment)}
         if column not in types:
             if column not in METRICS or METRICS[column].compute is not None:
-                raise Fault(f"{place}: unknown{closest(column, types)}")
+                raise Fault(f"{location}: unknown{closest(column, types)}")
             # A planner's own column.
-            self.check_metric(experiments, column, place.rpartition(": ")[0])
+            self.check_metric(experiments, column, location.rpartition(": ")[0])
             kind = "flag" if METRICS[column].step == 1 else "number"
         else:
             kind = types[column]
         if column == "id" or (column not in planned and kind in ("number", "list")):
-            raise Fault(f"{place}: {value}: a {kind} that a run finds out is not selected by its value; expected another column")
+            raise Fault(f"{location}: {value}: a {kind} that a run finds out is not selected by its value; expected another column")
         if column not in planned:
             if kind == "flag" and not isinstance(value, bool):
-                raise Fault(f"{place}: {value}: expected true or false")
+                raise Fault(f"{location}: {value}: expected true or false")
             if kind == "word" and not isinstance(value, str):
-                raise Fault(f"{place}: {value}: expected a word")
+                raise Fault(f"{location}: {value}: expected a word")
             if column == "path_curve" and value not in CURVES:
-                raise Fault(f"{place}: {value}: unknown{closest(value, CURVES)}")
+                raise Fault(f"{location}: {value}: unknown{closest(value, CURVES)}")
         elif column == "repeat":
             if not is_number(value) or value != int(value) or value < 0:
-                raise Fault(f"{place}: {value}: expected a whole number of at least 0")
-            self.check_repeat(experiments, value, place)
+                raise Fault(f"{location}: {value}: expected a whole number of at least 0")
+            self.check_repeat(experiments, value, location)
         else:
             values = self.values(experiments, column, rows)
             if identity(value) not in map(identity, values):
-                raise Fault(f"{place}: {value}: unknown{self.hint(value, values)}")
+                raise Fault(f"{location}: {value}: unknown{self.hint(value, values)}")
 
     def selectable(self, experiments: list[str], baselines: bool) -> list[Row]:
         """Rows of experiments; claims do not include those of baselines."""
@@ -201,8 +201,8 @@ class Design:
         problems = {row["problem"] for row in rows if "layout" not in row}
         if any("layout" in row for row in rows):
             wanted = {key: one_or_list(values) for key, values in where.items() if key in (*PLACE, "problem")}
-            for name, place in self.study.problems_of(experiment, "full").items():
-                if "layout" in place and all((place | {"problem": name}).get(key) in values for key, values in wanted.items()):
+            for name, problem in self.study.problems_of(experiment, "full").items():
+                if "layout" in problem and all((problem | {"problem": name}).get(key) in values for key, values in wanted.items()):
                     problems.add(name)
         return {"problem": problems, "method": {row["method"] for row in rows}}
 
@@ -212,7 +212,7 @@ class Design:
             return f" here: a baseline; claims compare methods, known: {', '.join(map(str, values))}"
         return closest(value, values)
 
-    def check_mixtures(self, check: Check, where: dict[str, Any], place: str) -> None:
+    def check_mixtures(self, check: Check, where: dict[str, Any], location: str) -> None:
         """Raise Fault if a unit of a comparison, as identified by the check's columns, would mix several values of a column."""
         keys = [*check.every, *getattr(check, "pool", ()), *([check.cells] if check.cells else []), check.replicate]
         rows = [row for row in self.selectable(check.experiments, baselines=False) if fits(row, where)]
@@ -222,7 +222,7 @@ class Design:
             for factor in _FACTORS:
                 if factor not in keys and row[factor] != first[factor]:
                     values = f"{first[factor]} and {row[factor]}"
-                    raise Fault(f"{place}: several values of {factor} are neither told apart nor pooled, such as {values}")
+                    raise Fault(f"{location}: several values of {factor} are neither told apart nor pooled, such as {values}")
 
 
 def _type(values: list[Any]) -> str:
@@ -259,11 +259,13 @@ def judged_only(job: dict, claims: list[Claim]) -> dict:
     def wanted(column: str, value: Any) -> bool:
         return any(value in one_or_list(where.get(column, [value])) for where in wheres)
 
-    def met(place: dict) -> bool:
-        columns = place.keys() & set(PLACE)
-        return any(all(place[column] in one_or_list(where.get(column, [place[column]])) for column in columns) for where in wheres)
+    def met(problem: dict) -> bool:
+        columns = problem.keys() & set(PLACE)
+        return any(all(problem[column] in one_or_list(where.get(column, [problem[column]])) for column in columns) for where in wheres)
 
-    problems = {name: place for name, place in job["problems"].items() if met(place) and ("layout" in place or wanted("problem", name))}
+    problems = {
+        name: problem for name, problem in job["problems"].items() if met(problem) and ("layout" in problem or wanted("problem", name))
+    }
     return job | {
         "problems": problems,
         "vary": {column: [value for value in values if wanted(column, value)] for column, values in job["vary"].items()},

@@ -206,21 +206,21 @@ def leaders(studies: dict[str, Study], scale: str) -> dict[tuple[str, str, str],
     if scale == "smoke":
         artefacts, alone = smoke(studies)
         for key, artefact in artefacts:
-            own = studies[key]
-            made += [(key, each, method) for each in experiments_of(own, artefact) for method in methods_of(own, artefact, each)]
+            study = studies[key]
+            made += [(key, name, method) for name in experiments_of(study, artefact) for method in methods_of(study, artefact, name)]
         made += alone
     else:
-        for key, own in studies.items():
-            made += [(key, each, method) for each in own.experiments for method in own.methods_of(each)]
+        for key, study in studies.items():
+            made += [(key, name, method) for name in study.experiments for method in study.methods_of(name)]
     first: dict[str, tuple[str, str, str]] = {}
     for key, experiment, method in made:
         first.setdefault(studies[key].planner(method), (key, experiment, method))
     numbers = Counter[str]()
-    found = {}
-    for each in first.values():
-        found[each] = numbers[each[0]]
-        numbers[each[0]] += 1
-    return found
+    places = {}
+    for leader in first.values():
+        places[leader] = numbers[leader[0]]
+        numbers[leader[0]] += 1
+    return places
 
 
 def caption(study: Study, artefact: str, scale: str) -> str:

@@ -29,56 +29,56 @@ def is_whole(page_file: Path) -> bool:
         return content.read().strip().endswith(_END)
 
 
-def inputs(given: Studies, scale: str) -> dict[str, list[str]]:
+def inputs(studies: Studies, scale: str) -> dict[str, list[str]]:
     """Input files of the page: everything that is made at the scale, and the runs behind it."""
-    made = _made(given, scale, _artefacts(given, scale))
+    made = _made(studies, scale, _artefacts(studies, scale))
     tables = [f"results/{scale}/{name}.csv" for name in ("numbers", "claims", "worth")] if _summary(scale) in made else []
-    return {"made": made, "summary": tables, "verified": [f"results/{scale}/verified.json"]} | _shown(given, scale)
+    return {"made": made, "summary": tables, "verified": [f"results/{scale}/verified.json"]} | _shown(studies, scale)
 
 
-def _shown(given: Studies, scale: str) -> dict[str, list[str]]:
+def _shown(studies: Studies, scale: str) -> dict[str, list[str]]:
     """Files of all runs that the page shows, with their problems, bounds and traces."""
     shown: dict[str, list[str]] = {"runs": [], "problems": [], "bounds": [], "traces": []}
-    for key, names in _artefacts(given, scale).items():
-        for experiment, files in _experiments_behind(given, scale, key, names).items():
+    for key, names in _artefacts(studies, scale).items():
+        for experiment, files in _experiments_behind(studies, scale, key, names).items():
             shown["runs"] += files.chunks
             shown["problems"].append(files.problems)
             shown["bounds"].append(files.bounds)
-            shown["traces"] += _traces(given[key], experiment, files)
+            shown["traces"] += _traces(studies[key], experiment, files)
     return shown
 
 
-def verified_inputs(given: Studies, scale: str) -> dict[str, list[str]]:
+def verified_inputs(studies: Studies, scale: str) -> dict[str, list[str]]:
     """Input files of the check of all runs and bounds that the page shows. drives: those behind the bounds of worlds that move."""
-    return _shown(given, scale) | {"drives": list(dict.fromkeys(drive for *_, drives in _verified(given, scale) for drive in drives))}
+    return _shown(studies, scale) | {"drives": list(dict.fromkeys(drive for *_, drives in _verified(studies, scale) for drive in drives))}
 
 
-def verified_params(given: Studies, scale: str, root: str = "") -> dict[str, Any]:
+def verified_params(studies: Studies, scale: str, root: str = "") -> dict[str, Any]:
     """Params of the check: `job`, for each experiment its files of problems, of bounds, of runs, of all drives. root: as in `params`."""
     job = [
         [root + problems, root + bounds, *([root + file for file in files] for files in (runs, drives))]
-        for problems, bounds, runs, drives in _verified(given, scale)
+        for problems, bounds, runs, drives in _verified(studies, scale)
     ]
     return {"job": job, "code": versioned_digest(str(targets.SCRIPTS / "verified.py"))}
 
 
-def _verified(given: Studies, scale: str) -> Iterator[tuple[str, str, list[str], list[str]]]:
+def _verified(studies: Studies, scale: str) -> Iterator[tuple[str, str, list[str], list[str]]]:
     """The files of problems, of bounds, of the runs that the page shows, and of all drives, of each experiment."""
-    for key, names in _artefacts(given, scale).items():
-        for experiment, files in _experiments_behind(given, scale, key, names).items():
-            drives = targets.drives(given, scale, key, experiment) if given[key].moves(experiment) else []
+    for key, names in _artefacts(studies, scale).items():
+        for experiment, files in _experiments_behind(studies, scale, key, names).items():
+            drives = targets.drives(studies, scale, key, experiment) if studies[key].moves(experiment) else []
             yield files.problems, files.bounds, files.chunks, drives
 
 
-def params(given: Studies, scale: str, root: str = "") -> dict[str, Any]:
+def params(studies: Studies, scale: str, root: str = "") -> dict[str, Any]:
     """Params of the page. Alternatives and readings are shown if they have been tried: the page does not ask for them.
 
     root: what stands before the paths of results, with the slash at its end, in a workflow of which this one is a module.
     """
-    tried = {key: _tried(f"{root}results/{scale}/{key}") for key in given}
-    shown = _artefacts(given, scale)
+    tried = {key: _tried(f"{root}results/{scale}/{key}") for key in studies}
+    shown = _artefacts(studies, scale)
     return {
-        "job": {"scale": scale, "studies": {key: _study(given, scale, key, names, tried[key], root) for key, names in shown.items()}},
+        "job": {"scale": scale, "studies": {key: _study(studies, scale, key, names, tried[key], root) for key, names in shown.items()}},
         "tried": content_digest(*(file for files in tried.values() for file in files.values())),
         "look": content_digest(*page.files()),
         "code": versioned_digest(str(targets.SCRIPTS / "page.py")),
@@ -92,19 +92,19 @@ def _tried(folder: str) -> dict[str, str]:
     return there if {"readings", "explained"} <= there.keys() else {name: file for name, file in there.items() if name == "sensitivity"}
 
 
-def _artefacts(given: Studies, scale: str) -> dict[str, list[str]]:
+def _artefacts(studies: Studies, scale: str) -> dict[str, list[str]]:
     """By study, the names of the tables and figures of a scale, also of a table that is as at `full` if the summary counts it."""
     if scale == "smoke":
-        made = jobs.smoke(given)[0]
-        return {key: in_printed_order([name for study, name in made if study == key]) for key in given}
-    counted = set(targets.comparison_files(given, scale).values()) if _summary(scale) in targets.files_of_scale(given, scale) else set()
+        made = jobs.smoke(studies)[0]
+        return {key: in_printed_order([name for study, name in made if study == key]) for key in studies}
+    counted = set(targets.comparison_files(studies, scale).values()) if _summary(scale) in targets.files_of_scale(studies, scale) else set()
     return {
         key: [
             name
             for name in in_printed_order([*study.tables, *study.figures])
-            if name in targets.artefacts_of(study, scale) or counted.intersection(targets.files_of(given, scale, key, name))
+            if name in targets.artefacts_of(study, scale) or counted.intersection(targets.files_of(studies, scale, key, name))
         ]
-        for key, study in given.items()
+        for key, study in studies.items()
     }
 
 
@@ -112,16 +112,16 @@ def _summary(scale: str) -> str:
     return f"results/{scale}/summary.md"
 
 
-def _made(given: Studies, scale: str, shown: dict[str, list[str]]) -> list[str]:
-    own = [each for study, names in shown.items() for name in names for each in targets.files_of(given, scale, study, name)]
-    return own if scale == "smoke" else list(dict.fromkeys([*targets.files_of_scale(given, scale), *own]))
+def _made(studies: Studies, scale: str, shown: dict[str, list[str]]) -> list[str]:
+    own = [each for study, names in shown.items() for name in names for each in targets.files_of(studies, scale, study, name)]
+    return own if scale == "smoke" else list(dict.fromkeys([*targets.files_of_scale(studies, scale), *own]))
 
 
-def _experiments_behind(given: Studies, scale: str, key: str, names: list[str]) -> dict[str, Files]:
+def _experiments_behind(studies: Studies, scale: str, key: str, names: list[str]) -> dict[str, Files]:
     """Files of the experiments behind some tables and figures of a study and its claims, with the methods that these show."""
-    shown = [targets.shown_by(given[key], scale, name) for name in names]
-    if scale != "smoke" and given[key].claims:
-        shown.append(targets.judged_by_claims(given[key], scale))
+    shown = [targets.shown_by(studies[key], scale, name) for name in names]
+    if scale != "smoke" and studies[key].claims:
+        shown.append(targets.judged_by_claims(studies[key], scale))
     behind: dict[str, Files] = {}
     for experiments in shown:
         for name, files in experiments.items():
@@ -134,13 +134,13 @@ def _traces(study: Study, experiment: str, files: Files) -> list[str]:
     return [str(Path(chunk).with_suffix(".traces.parquet")) for chunk in files.chunks] if study.moves(experiment) else []
 
 
-def _study(given: Studies, scale: str, key: str, made: list[str], tried: dict[str, str], root: str) -> dict[str, Any]:
+def _study(studies: Studies, scale: str, key: str, made: list[str], tried: dict[str, str], root: str) -> dict[str, Any]:
     """What the page needs to know of a study beside its results. made: the names of its tables and figures."""
-    study, folder = given[key], f"{root}results/{scale}/{key}"
+    study, folder = studies[key], f"{root}results/{scale}/{key}"
     judged = scale != "smoke" and study.claims
     files = {"claims": f"{folder}/claims.csv", "checks": f"{folder}/claim_checks.csv"} if judged else {}
     audit = f"{folder}/audit.csv"
-    files |= {"audit": audit} if scale != "smoke" and audit in targets.files_of_study(given, scale, key) else {}
+    files |= {"audit": audit} if scale != "smoke" and audit in targets.files_of_study(studies, scale, key) else {}
     described = {name: {"title": spec.title, "caption": jobs.caption(study, name, scale)} for name, spec in _specs(study, made).items()}
     return {
         "title": study.title,
@@ -153,7 +153,7 @@ def _study(given: Studies, scale: str, key: str, made: list[str], tried: dict[st
         "assumptions": [each.plain() for each in study.assumptions],
         "files": files | (tried if judged else {}),
         "latex": f"{key}/tables.tex" if scale != "smoke" and targets.tables_of(study, scale) else "",
-        "experiments": _experiments(given, scale, key, made, root),
+        "experiments": _experiments(studies, scale, key, made, root),
     }
 
 
@@ -178,10 +178,10 @@ def _specs(study: Any, names: list[str]) -> dict[str, Any]:
     return {name: study.tables.get(name) or study.figures[name] for name in names}
 
 
-def _experiments(given: Studies, scale: str, key: str, made: list[str], root: str) -> dict[str, dict[str, Any]]:
+def _experiments(studies: Studies, scale: str, key: str, made: list[str], root: str) -> dict[str, dict[str, Any]]:
     """The experiments whose runs the page shows: methods other than baselines, repeats, and files."""
-    study, experiments = given[key], {}
-    for name, files in _experiments_behind(given, scale, key, made).items():
+    study, experiments = studies[key], {}
+    for name, files in _experiments_behind(studies, scale, key, made).items():
         if files.chunks:
             experiments[name] = {
                 "methods": [method for method in study.methods_of(name) if method not in study.baselines],

@@ -10,24 +10,24 @@ from bezierplan.study.definition import Study
 from bezierplan.study.files import inside
 
 
-def loaded(study: Study, method: str, place: str) -> ModuleType:
-    """The module of a method's planner. Raises Fault, beginning with a place, unless it has the interface of a planner and no
+def loaded(study: Study, method: str, location: str) -> ModuleType:
+    """The module of a method's planner. Raises Fault, beginning with a location, unless it has the interface of a planner and no
     setting named like a column of the runs table."""
     name = study.methods[method].planner
-    place = f"{place}: planner: {name}"
+    location = f"{location}: planner: {name}"
     if name.endswith(".py"):
-        inside(study.folder, name, place)
+        inside(study.folder, name, location)
     elif name not in known_planners():
-        raise Fault(f"{place}: unknown{closest(name, known_planners())}; one of your own is a file, {name}.py")
-    module = interface.loaded(study.planner(method), place)
+        raise Fault(f"{location}: unknown{closest(name, known_planners())}; one of your own is a file, {name}.py")
+    module = interface.loaded(study.planner(method), location)
     for setting in planner_settings(module):
         # The column `generations` holds the number actually performed, so a setting of that name adds nothing.
         if setting in TAKEN and setting != "generations":
-            raise Fault(f"{place}: its setting {setting} is a column of the runs table, or joined to it; give it another name")
+            raise Fault(f"{location}: its setting {setting} is a column of the runs table, or joined to it; give it another name")
     return module
 
 
-def check_complete(study: Study, place: str) -> None:
+def check_complete(study: Study, location: str) -> None:
     """Every method has a value for each of its settings. Raises Fault, which names all missing ones, by planner."""
     missing: dict[str, dict[str, None]] = {}
     for method in study.methods:
@@ -37,4 +37,4 @@ def check_complete(study: Study, place: str) -> None:
         f"{', '.join(names)}: missing; {planner} needs {'it' if len(names) == 1 else 'them'}" for planner, names in missing.items() if names
     ]
     if told:
-        raise Fault(f"{place}: settings: {'; '.join(told)}")
+        raise Fault(f"{location}: settings: {'; '.join(told)}")

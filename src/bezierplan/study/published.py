@@ -51,38 +51,38 @@ def check_files(study: Study) -> None:
 @cache
 def read(file: Path) -> Rows:
     """A csv file. Raises Fault, with file and line."""
-    place = relative(file)
-    text = text_of(file, place)
+    location = relative(file)
+    text = text_of(file, location)
     if odd := next((char for char in text if not char.isprintable() and char not in "\r\n"), None):
-        raise Fault(f"{place}: line {text[: text.index(odd)].count(chr(10)) + 1}: has the character {odd!r}; expected csv")
+        raise Fault(f"{location}: line {text[: text.index(odd)].count(chr(10)) + 1}: has the character {odd!r}; expected csv")
     reader = csv.reader(io.StringIO(text, newline=""), strict=True)
-    found: list[tuple[int, list[str]]] = []
+    lines: list[tuple[int, list[str]]] = []
     try:
         for row in reader:
-            found += [(reader.line_num, row)] if row else []
-            if len(found) > MOST_ROWS + 1:
-                raise Fault(f"{place}: line {reader.line_num}: expected at most {MOST_ROWS} rows")
+            lines += [(reader.line_num, row)] if row else []
+            if len(lines) > MOST_ROWS + 1:
+                raise Fault(f"{location}: line {reader.line_num}: expected at most {MOST_ROWS} rows")
     except csv.Error as error:
-        raise Fault(f"{place}: line {reader.line_num}: not csv ({error})") from None
-    (_, header), *rows = found or [(1, [])]
-    if not found:
-        raise Fault(f"{place}: line 1: the file is empty; expected a header of columns, and rows below it")
+        raise Fault(f"{location}: line {reader.line_num}: not csv ({error})") from None
+    (_, header), *rows = lines or [(1, [])]
+    if not lines:
+        raise Fault(f"{location}: line 1: the file is empty; expected a header of columns, and rows below it")
     if len(header) > MOST_COLUMNS:
-        raise Fault(f"{place}: line 1: {len(header)} columns; expected at most {MOST_COLUMNS}")
+        raise Fault(f"{location}: line 1: {len(header)} columns; expected at most {MOST_COLUMNS}")
     for number, column in enumerate(header):
         if column in header[:number]:
-            raise Fault(f"{place}: line 1: column {column} is listed twice")
+            raise Fault(f"{location}: line 1: column {column} is listed twice")
         if not column.strip():
-            raise Fault(f"{place}: line 1: column {number + 1} has no name")
+            raise Fault(f"{location}: line 1: column {number + 1} has no name")
     if not rows:
-        raise Fault(f"{place}: line 1: has no rows below it; expected at least one")
+        raise Fault(f"{location}: line 1: has no rows below it; expected at least one")
     for number, row in rows:
         if len(row) != len(header):
-            raise Fault(f"{place}: line {number}: {len(row)} values; expected {len(header)} values, one a column")
+            raise Fault(f"{location}: line {number}: {len(row)} values; expected {len(header)} values, one a column")
     tidy = Rows(header, [(number, dict(zip(header, row))) for number, row in rows])
     if set(header) >= TIDY:
         for number, row in tidy.rows:
-            _check_value(row["value"], f"{place}: line {number}", empty=True)
+            _check_value(row["value"], f"{location}: line {number}", empty=True)
     return tidy
 
 
@@ -105,17 +105,17 @@ def check(design: Design, table: Pivot, told: str) -> None:
     """
     study, experiment = design.study, table.experiment
     file = study.folder / "published" / table.published
-    place = relative(file)
+    location = relative(file)
     header, rows = read(file)
     for column in COLUMNS:
         if column not in header:
-            raise Fault(f"{place}: line 1: column {column} is missing; expected key columns, {', '.join(COLUMNS)}")
+            raise Fault(f"{location}: line 1: column {column} is missing; expected key columns, {', '.join(COLUMNS)}")
     by_name = [column for column in header if column not in COLUMNS]
     for column in by_name:
-        design.check_column([experiment], column, "column", f"{place}: line 1: column")
+        design.check_column([experiment], column, "column", f"{location}: line 1: column")
     for rule in table.monotone:
         if rule.along not in by_name:
-            raise Fault(f"{place}: line 1: column {rule.along} is missing; the table's key monotone has numbers in order along it")
+            raise Fault(f"{location}: line 1: column {rule.along} is missing; the table's key monotone has numbers in order along it")
     known = {
         "metric": metrics.METRICS,
         "statistic": statistics.STATISTICS,
@@ -126,7 +126,7 @@ def check(design: Design, table: Pivot, told: str) -> None:
     chosen = design.rows(experiment)
     lines: dict[tuple, int] = {}
     for number, row in rows:
-        where = f"{place}: line {number}"
+        where = f"{location}: line {number}"
         for column in (name for name in known if name in row):
             if row[column] not in known[column]:
                 raise Fault(f"{where}: {column}: {row[column]}: unknown{closest(row[column], known[column])}")
@@ -147,20 +147,20 @@ def check(design: Design, table: Pivot, told: str) -> None:
     printed = {(row["metric"], row["statistic"]) for _, row in rows}
     for metric in table.reads:
         if metric not in {name for name, _ in printed}:
-            raise Fault(f"{told}: reads: {metric}: unknown{closest(metric, {name for name, _ in printed})}, metrics in {place}")
+            raise Fault(f"{told}: reads: {metric}: unknown{closest(metric, {name for name, _ in printed})}, metrics in {location}")
     for number, rule in enumerate(table.monotone):
         if (rule.metric, rule.statistic) not in printed:
-            raise Fault(f"{told}: monotone: {number}: {place} has no {rule.statistic} of {rule.metric}, which must rise or fall")
+            raise Fault(f"{told}: monotone: {number}: {location} has no {rule.statistic} of {rule.metric}, which must rise or fall")
 
 
-def _check_key(design: Design, experiment: str, column: str, text: str, rows: list[dict[str, Any]], place: str) -> None:
+def _check_key(design: Design, experiment: str, column: str, text: str, rows: list[dict[str, Any]], location: str) -> None:
     """A text names a value of a key column."""
     if column == "repeat":
         values: list[Any] = list(range(design.study.experiments[experiment].repeats["full"]))
     else:
         values = design.values([experiment], column, rows)
     if not any(_is_same(text, value) for value in values):
-        raise Fault(f"{place}: {column}: {text!r}: unknown{closest(text, values)}")
+        raise Fault(f"{location}: {column}: {text!r}: unknown{closest(text, values)}")
 
 
 def _is_same(text: str, value: Any) -> bool:
@@ -170,12 +170,12 @@ def _is_same(text: str, value: Any) -> bool:
     return text == str(value)
 
 
-def _check_numbers(row: dict[str, str], place: str) -> None:
-    _check_value(row["value"], place)
+def _check_numbers(row: dict[str, str], location: str) -> None:
+    _check_value(row["value"], location)
     n = row["n"]
     if n and not (n.isascii() and n.isdecimal() and len(n) <= MOST_DIGITS and 1 <= int(n) <= MOST_RUNS):
         wanted = f"a whole number from 1 to {MOST_RUNS}, or nothing"
-        raise Fault(f"{place}: n: {n[:MOST_DIGITS]!r}; expected how many runs the paper made, {wanted}")
+        raise Fault(f"{location}: n: {n[:MOST_DIGITS]!r}; expected how many runs the paper made, {wanted}")
     value, metric, statistic = float(row["value"]), metrics.METRICS[row["metric"]], row["statistic"]
     # What no paper can mean. A number that contradicts a map, the paper's own rule or another number is a matter of the audit.
     spread = statistic in ("std", "iqr", "range")
@@ -184,54 +184,54 @@ def _check_numbers(row: dict[str, str], place: str) -> None:
     most = {"share": 1.0, "count": float(n or MOST_RUNS)}.get(statistic, LARGEST)
     if not least <= value <= most:
         limits = f"a number of at least {least:g}" + (f", at most {most:g}" if most < LARGEST else "")
-        raise Fault(f"{place}: value: {row['value']}: expected {limits}, as the {statistic} of {row['metric']} is")
+        raise Fault(f"{location}: value: {row['value']}: expected {limits}, as the {statistic} of {row['metric']} is")
     if statistic == "count" and not value.is_integer():
-        raise Fault(f"{place}: value: {row['value']}: expected a whole number, as the count of {row['metric']} is")
+        raise Fault(f"{location}: value: {row['value']}: expected a whole number, as the count of {row['metric']} is")
 
 
-def _check_value(text: str, place: str, empty: bool = False) -> None:
+def _check_value(text: str, location: str, empty: bool = False) -> None:
     """A text is a number as papers print it. An exponent of three digits is no measurement, and exact arithmetic with it never ends."""
     if empty and not text:
         return
     if len(text) > MOST_DIGITS or not _NUMBER.fullmatch(text) or abs(float(text)) > LARGEST:
         wanted = f"a number in ASCII digits, of at most {MOST_DIGITS} characters, at most {LARGEST:g} in absolute value"
-        raise Fault(f"{place}: value: {text[:MOST_DIGITS]!r}; expected {wanted}")
+        raise Fault(f"{location}: value: {text[:MOST_DIGITS]!r}; expected {wanted}")
 
 
-def check_arithmetic(study: Study, arithmetic: Check, place: str) -> None:
-    """The printed cells of a check of the kind `published_arithmetic` exist and are numbers. Raises Fault, beginning with a place."""
+def check_arithmetic(study: Study, arithmetic: Check, location: str) -> None:
+    """The printed cells of a check of the kind `published_arithmetic` exist and are numbers. Raises Fault, beginning with a location."""
     selectors = [(f"of: {number}", selector) for number, selector in enumerate(arithmetic.of)]
     if isinstance(arithmetic.equals, dict):
         selectors.append(("equals", arithmetic.equals))
     for key, selector in selectors:
-        cells = _cells(study, selector, f"{place}: {key}")
+        cells = _cells(study, selector, f"{location}: {key}")
         for cell in cells:
-            _check_value(cell["value"], f"{place}: {key}: {_told(selector)}", empty=True)
+            _check_value(cell["value"], f"{location}: {key}: {_told(selector)}", empty=True)
         if arithmetic.form == "increase_percent" and key == "of: 0" and any(cell["value"] and not float(cell["value"]) for cell in cells):
-            raise Fault(f"{place}: {key}: {_told(selector)}: is 0; expected another number, of which the increase is a share")
+            raise Fault(f"{location}: {key}: {_told(selector)}: is 0; expected another number, of which the increase is a share")
 
 
-def _cells(study: Study, selector: dict[str, Any], place: str) -> list[dict[str, str]]:
+def _cells(study: Study, selector: dict[str, Any], location: str) -> list[dict[str, str]]:
     """The rows that a selector names."""
     known = [Path(file).stem for file in study.published_files()]
     rows: list[dict[str, str]] = []
     header: set[str] = set()
     for table in one_or_list(selector["table"]):
         if table not in known:
-            raise Fault(f"{place}: table: {table}: unknown{closest(table, known)}, files of the folder published")
+            raise Fault(f"{location}: table: {table}: unknown{closest(table, known)}, files of the folder published")
         content = read(study.folder / "published" / f"{table}.csv")
         if "value" not in content.header:
-            raise Fault(f"{place}: table: {table}: has no column value; expected a table of numbers")
+            raise Fault(f"{location}: table: {table}: has no column value; expected a table of numbers")
         header.update(content.header)
         rows += [row for _, row in content.rows]
     for column, wanted in selector.items():
         if column == "table":
             continue
         if column not in header:
-            raise Fault(f"{place}: {column}: unknown{closest(column, header)}")
+            raise Fault(f"{location}: {column}: unknown{closest(column, header)}")
         rows = [row for row in rows if any(_is_same(row.get(column, ""), value) for value in one_or_list(wanted))]
     if not rows:
-        raise Fault(f"{place}: {_told(selector)}: no such cell is printed")
+        raise Fault(f"{location}: {_told(selector)}: no such cell is printed")
     return rows
 
 

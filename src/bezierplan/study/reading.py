@@ -27,25 +27,25 @@ Folders = dict[Path, dict[str, Any]]
 """Folders of studies, with the settings that take the place of a study's own."""
 
 
-def read_config(given: Mapping[str, Any], alone: bool = False) -> Folders:
+def read_config(config: Mapping[str, Any], alone: bool = False) -> Folders:
     """The studies that a configuration names: config/config.yaml in the working folder, updated with the given values, or these alone.
 
     Alone they count in a workflow that includes this one: config/config.yaml is its own there. Raises Fault.
     """
     file = Path("config/config.yaml")
-    place = "config of the module" if alone else f"{file} or --config"
-    content = parsed(ConfigFile, (checked.read(file) if file.is_file() and not alone else {}) | dict(given), place)
+    location = "config of the module" if alone else f"{file} or --config"
+    content = parsed(ConfigFile, (checked.read(file) if file.is_file() and not alone else {}) | dict(config), location)
     folders: Folders = {}
     for name in content.studies:
         folder = STUDIES / name if "/" not in name else Path(name)
         if not (folder / "experiments.yaml").exists():
-            known = [place.parent.name for place in STUDIES.glob("*/experiments.yaml")]
-            raise Fault(f"{place}: studies: {name}: no experiments.yaml in {relative(folder)}{closest(name, known)}")
+            known = [location.parent.name for location in STUDIES.glob("*/experiments.yaml")]
+            raise Fault(f"{location}: studies: {name}: no experiments.yaml in {relative(folder)}{closest(name, known)}")
         folders[folder] = content.settings.get(folder.resolve().name, {})
     names = [folder.resolve().name for folder in folders]
     for name in content.settings:
         if name not in names:
-            raise Fault(f"{place}: settings: {name}: not one of the studies to run{closest(name, names)}")
+            raise Fault(f"{location}: settings: {name}: not one of the studies to run{closest(name, names)}")
     return folders
 
 
@@ -121,38 +121,38 @@ def _read(folder: Path, name: str, model: type[M]) -> M | None:
     file = folder / f"{name}.yaml"
     if name != "experiments" and not file.exists() and not file.is_symlink():
         return None
-    place = relative(file)
-    inside(folder, file.name, place)
-    return parsed(model, checked.read(file, place), place)
+    location = relative(file)
+    inside(folder, file.name, location)
+    return parsed(model, checked.read(file, location), location)
 
 
 def check_names(given: Mapping[str, Study], taken: Iterable[str]) -> None:
     """Raise Fault for a study whose results or targets would clash with others. taken: names of rules and other targets."""
     owners = dict.fromkeys(taken, "the workflow")
     for key, study in given.items():
-        place = relative(study.folder)
-        check_name(key, f"{place}: {key}")
-        if {"{", "}"} & set(place):
-            raise Fault(f"{place}: Snakemake reads braces as a pattern; expected a folder without them; rename it")
+        location = relative(study.folder)
+        check_name(key, f"{location}: {key}")
+        if {"{", "}"} & set(location):
+            raise Fault(f"{location}: Snakemake reads braces as a pattern; expected a folder without them; rename it")
         if (STUDIES / key).is_dir() and not (STUDIES / key).samefile(study.folder):
-            raise Fault(f"{place}: config/studies has a study {key} already, whose results this one would overwrite; rename the folder")
+            raise Fault(f"{location}: config/studies has a study {key} already, whose results this one would overwrite; rename the folder")
         for target in [key, *(f"{key}_{item}" for item in [*study.tables, *study.figures])]:
             if target in owners:
-                raise Fault(f"{place}: {target}: {owners[target]} has a target of this name already; rename the folder")
+                raise Fault(f"{location}: {target}: {owners[target]} has a target of this name already; rename the folder")
             owners[target] = f"study {key}"
 
 
-def check_name(key: str, place: str) -> None:
-    """Raise Fault, beginning with a place, unless a study can have this name."""
+def check_name(key: str, location: str) -> None:
+    """Raise Fault, beginning with a location, unless a study can have this name."""
     if not re.fullmatch("[A-Za-z][A-Za-z0-9_-]*", key) or len(key) > LONGEST_NAME or key.lower() in DEVICES:
         wanted = f"at most {LONGEST_NAME} letters, digits, _ and -, a letter first, and not the name of a device"
-        raise Fault(f"{place}: not a name of a study; expected {wanted}; choose another name for its folder")
+        raise Fault(f"{location}: not a name of a study; expected {wanted}; choose another name for its folder")
 
 
 def check_start(cores: int | None) -> None:
     """Raise Fault unless there is a core to work on, if their number is given, and results can be written below the working folder."""
     if cores is not None and cores < 1:
         raise Fault(f"--cores: {cores}; expected a number of at least 1")
-    for place in (Path(), Path("results")):
-        if place.exists() and not (place.is_dir() and os.access(place, os.W_OK | os.X_OK)):
-            raise Fault(f"{place.resolve()}: cannot be written; the workflow writes its results into results/ of the working folder")
+    for location in (Path(), Path("results")):
+        if location.exists() and not (location.is_dir() and os.access(location, os.W_OK | os.X_OK)):
+            raise Fault(f"{location.resolve()}: cannot be written; the workflow writes its results into results/ of the working folder")

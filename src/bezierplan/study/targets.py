@@ -85,14 +85,14 @@ def _planner(planner: str) -> str:
 # Problems and runs
 
 
-def problems_params(given: Studies, scale: str, study: str, experiment: str) -> dict:
+def problems_params(studies: Studies, scale: str, study: str, experiment: str) -> dict:
     """Params of the job that builds the problems of an experiment."""
-    job = jobs.problems_job(given[study], experiment, scale)
+    job = jobs.problems_job(studies[study], experiment, scale)
     return {
         "job": job,
-        "folder": definition.relative(given[study].folder),
-        "maps": content_digest(*problem_maps(given, scale, study, experiment)),
-        "code": _code("worlds" if given[study].moves(experiment) else "problems", *_kinds_of_workspace(job)),
+        "folder": definition.relative(studies[study].folder),
+        "maps": content_digest(*problem_maps(studies, scale, study, experiment)),
+        "code": _code("worlds" if studies[study].moves(experiment) else "problems", *_kinds_of_workspace(job)),
     }
 
 
@@ -101,9 +101,9 @@ def _kinds_of_workspace(job: dict) -> list[str]:
     return sorted({f"bezierplan.workspaces.kinds.{described['kind']}" for described in job["workspaces"].values()})
 
 
-def problem_maps(given: Studies, scale: str, study: str, experiment: str) -> list[str]:
+def problem_maps(studies: Studies, scale: str, study: str, experiment: str) -> list[str]:
     """Map files of an experiment."""
-    return given[study].maps(jobs.problems_job(given[study], experiment, scale)["workspaces"])
+    return studies[study].maps(jobs.problems_job(studies[study], experiment, scale)["workspaces"])
 
 
 def bounds_params(script: str) -> dict:
@@ -111,27 +111,27 @@ def bounds_params(script: str) -> dict:
     return {"code": _code(script)}
 
 
-def run_params(given: Studies, scale: str, study: str, experiment: str, method: str, chunk: str) -> dict:
+def run_params(studies: Studies, scale: str, study: str, experiment: str, method: str, chunk: str) -> dict:
     """Params of a chunk of runs."""
     return {
-        "job": jobs.job(given[study], experiment, method, scale, int(chunk)),
-        "code": _code("drives" if given[study].moves(experiment) else "runs", _planner(given[study].planner(method))),
+        "job": jobs.job(studies[study], experiment, method, scale, int(chunk)),
+        "code": _code("drives" if studies[study].moves(experiment) else "runs", _planner(studies[study].planner(method))),
     }
 
 
-def drives(given: Studies, scale: str, study: str, experiment: str) -> list[str]:
+def drives(studies: Studies, scale: str, study: str, experiment: str) -> list[str]:
     """All drives of an experiment."""
-    return _files(given[study], scale, experiment, given[study].methods_of(experiment)).chunks
+    return _files(studies[study], scale, experiment, studies[study].methods_of(experiment)).chunks
 
 
-def clairvoyant_params(given: Studies, scale: str, study: str, experiment: str) -> dict:
+def clairvoyant_params(studies: Studies, scale: str, study: str, experiment: str) -> dict:
     """Params of the job that computes the bounds of problems whose worlds move."""
-    return {"repeats": given[study].experiments[experiment].repeats[scale], "code": _code("clairvoyant")}
+    return {"repeats": studies[study].experiments[experiment].repeats[scale], "code": _code("clairvoyant")}
 
 
-def moving(given: Studies, moves: bool) -> dict[str, list[str]]:
+def moving(studies: Studies, moves: bool) -> dict[str, list[str]]:
     """The experiments whose runs are simulated drives, or the others, by study."""
-    return {key: [name for name in study.experiments if study.moves(name) == moves] for key, study in given.items()}
+    return {key: [name for name in study.experiments if study.moves(name) == moves] for key, study in studies.items()}
 
 
 # ---------------------------------------------------------------------------------------------------------------------
@@ -144,23 +144,23 @@ def shown_by(study: Study, scale: str, artefact: str) -> dict[str, Files]:
     return {name: _files(study, scale, name, shown) for name, shown in methods.items()}
 
 
-def table_inputs(given: Studies, scale: str, study: str, table: str) -> dict[str, Any]:
+def table_inputs(studies: Studies, scale: str, study: str, table: str) -> dict[str, Any]:
     """Input files of a table of runs."""
-    return of_experiments(shown_by(given[study], scale, table)) | _published(given[study], table)
+    return of_experiments(shown_by(studies[study], scale, table)) | _published(studies[study], table)
 
 
-def table_params(given: Studies, scale: str, study: str, table: str) -> dict:
+def table_params(studies: Studies, scale: str, study: str, table: str) -> dict:
     """Params of a table of runs."""
     return {
-        "job": _shown(given[study], table, jobs.table_job(given[study], table, scale)),
-        "published": content_digest(*filter(None, [given[study].published_file(table)])),
+        "job": _shown(studies[study], table, jobs.table_job(studies[study], table, scale)),
+        "published": content_digest(*filter(None, [studies[study].published_file(table)])),
         "code": _code("table"),
     }
 
 
-def listing_inputs(given: Studies, scale: str, study: str, listing: str) -> dict[str, str]:
+def listing_inputs(studies: Studies, scale: str, study: str, listing: str) -> dict[str, str]:
     """The file that a transcribed table shows, the comparison files of a comparison table, or all published files for a function."""
-    spec, own = given[study].tables[listing], given[study]
+    spec, own = studies[study].tables[listing], studies[study]
     if isinstance(spec, Comparison):
         return named("published", {name: _comparison_file(scale, study, name) for name in spec.of})
     return _published(own, listing) or _all_published(own)
@@ -170,20 +170,20 @@ def _comparison_file(scale: str, study: str, table: str) -> str:
     return f"{_folder(scale, study)}/tables/{table}.comparison.csv"
 
 
-def listing_params(given: Studies, scale: str, study: str, listing: str) -> dict:
+def listing_params(studies: Studies, scale: str, study: str, listing: str) -> dict:
     """Params of a table without runs."""
-    job, kind = jobs.listing_job(given[study], listing), given[study].tables[listing].kind
-    sources = [] if kind == "comparison" else listing_inputs(given, scale, study, listing).values()
+    job, kind = jobs.listing_job(studies[study], listing), studies[study].tables[listing].kind
+    sources = [] if kind == "comparison" else listing_inputs(studies, scale, study, listing).values()
     return {
-        "job": _shown(given[study], listing, job),
+        "job": _shown(studies[study], listing, job),
         "published": content_digest(*sources),
         "code": _code("listing", job["module"] if kind == "function" else None),
     }
 
 
-def latex_inputs(given: Studies, scale: str, study: str) -> dict[str, str]:
+def latex_inputs(studies: Studies, scale: str, study: str) -> dict[str, str]:
     """The tables of a study that are made at a scale."""
-    return named("tables", {name: f"{_folder(scale, study)}/tables/{name}.csv" for name in tables_of(given[study], scale)})
+    return named("tables", {name: f"{_folder(scale, study)}/tables/{name}.csv" for name in tables_of(studies[study], scale)})
 
 
 def tables_of(study: Study, scale: str) -> list[str]:
@@ -191,47 +191,50 @@ def tables_of(study: Study, scale: str) -> list[str]:
     return [name for name in artefacts_of(study, scale) if name in study.tables]
 
 
-def latex_params(given: Studies, scale: str, study: str) -> dict:
+def latex_params(studies: Studies, scale: str, study: str) -> dict:
     """Params of the tables of a study as LaTeX."""
-    return {"captions": {name: jobs.caption(given[study], name, scale) for name in tables_of(given[study], scale)}, "code": _code("latex")}
+    return {
+        "captions": {name: jobs.caption(studies[study], name, scale) for name in tables_of(studies[study], scale)},
+        "code": _code("latex"),
+    }
 
 
-def figure_inputs(given: Studies, scale: str, study: str, figure: str) -> dict[str, Any]:
+def figure_inputs(studies: Studies, scale: str, study: str, figure: str) -> dict[str, Any]:
     """Input files of a figure: published numbers only for the kinds that draw them and the functions that ask for them."""
-    published = _all_published(given[study]) if jobs.published_drawn(given[study], figure) else {}
-    maps = {"maps": _maps_of_figure(given[study], scale, figure)}
-    return of_experiments(shown_by(given[study], scale, figure)) | maps | published
+    published = _all_published(studies[study]) if jobs.published_drawn(studies[study], figure) else {}
+    maps = {"maps": _maps_of_figure(studies[study], scale, figure)}
+    return of_experiments(shown_by(studies[study], scale, figure)) | maps | published
 
 
 def _maps_of_figure(study: Study, scale: str, figure: str) -> list[str]:
     return study.maps(jobs.figure_job(study, figure, scale)["workspaces"])
 
 
-def narrow_inputs(given: Studies, scale: str, study: str, figure: str) -> dict[str, Any]:
+def narrow_inputs(studies: Studies, scale: str, study: str, figure: str) -> dict[str, Any]:
     """Input files of a figure on a sheet of one text column: what it draws, and the problems and map files that it is drawn on."""
-    problems = {name: files.problems for name, files in shown_by(given[study], scale, figure).items()}
-    wide = {"data": f"{_folder(scale, study)}/figures/{figure}.csv", "maps": _maps_of_figure(given[study], scale, figure)}
+    problems = {name: files.problems for name, files in shown_by(studies[study], scale, figure).items()}
+    wide = {"data": f"{_folder(scale, study)}/figures/{figure}.csv", "maps": _maps_of_figure(studies[study], scale, figure)}
     return wide | named(PROBLEMS, problems)
 
 
-def figure_params(given: Studies, scale: str, study: str, figure: str) -> dict:
+def figure_params(studies: Studies, scale: str, study: str, figure: str) -> dict:
     """Params of a figure."""
-    job, inputs = jobs.figure_job(given[study], figure, scale), figure_inputs(given, scale, study, figure)
-    panels = given[study].figures[figure].panels
+    job, inputs = jobs.figure_job(studies[study], figure, scale), figure_inputs(studies, scale, study, figure)
+    panels = studies[study].figures[figure].panels
     kinds = {f"bezierplan.figures.panels.{panel.kind}" for panel in panels}
-    module = given[study].module() if any(getattr(panel, "data", None) for panel in panels) else None
+    module = studies[study].module() if any(getattr(panel, "data", None) for panel in panels) else None
     again = {_planner(each["planner"]) for methods in job["jobs"].values() for each in methods.values()}
     return {
-        "job": _shown(given[study], figure, job),
-        "folder": definition.relative(given[study].folder),
+        "job": _shown(studies[study], figure, job),
+        "folder": definition.relative(studies[study].folder),
         "sources": content_digest(*inputs["maps"], *part(inputs, "published").values()),
         "code": _code("figure", *sorted(kinds), module, *sorted(again), *_kinds_of_workspace(job)),
     }
 
 
-def caption(given: Studies, scale: str, study: str, table: str = "", listing: str = "", figure: str = "") -> str:
+def caption(studies: Studies, scale: str, study: str, table: str = "", listing: str = "", figure: str = "") -> str:
     """The report's caption of a table or figure, as reStructuredText; nothing from a study's files acts as markup."""
-    return escaped(jobs.caption(given[study], table or listing or figure, scale))
+    return escaped(jobs.caption(studies[study], table or listing or figure, scale))
 
 
 def escaped(text: str) -> str:
@@ -284,14 +287,14 @@ def judged_by_claims(study: Study, scale: str) -> dict[str, Files]:
     return {name: _files(study, scale, name, study.experiments[name].methods) for name in experiments}
 
 
-def claims_inputs(given: Studies, scale: str, study: str) -> dict[str, Any]:
+def claims_inputs(studies: Studies, scale: str, study: str) -> dict[str, Any]:
     """Input files of claims."""
-    return of_experiments(judged_by_claims(given[study], scale)) | _all_published(given[study])
+    return of_experiments(judged_by_claims(studies[study], scale)) | _all_published(studies[study])
 
 
-def claims_params(given: Studies, scale: str, study: str) -> dict:
+def claims_params(studies: Studies, scale: str, study: str) -> dict:
     """Params of claims."""
-    own = given[study]
+    own = studies[study]
     return {
         "job": _claims_job(own, scale, own.claims, primary_alone=False),
         "published": content_digest(*own.published_files()),
@@ -310,32 +313,32 @@ def _claims_job(study: Study, scale: str, claims: list[Claim], primary_alone: bo
     return job | {"artefacts": artefacts, "repeats": {name: study.experiments[name].repeats[scale] for name in job["paired"]}}
 
 
-def alternative_inputs(given: Studies, scale: str, study: str, alternative: str) -> dict[str, Any]:
+def alternative_inputs(studies: Studies, scale: str, study: str, alternative: str) -> dict[str, Any]:
     """Input files of an alternative: runs of the methods that it does not change."""
-    own = given[study]
+    own = studies[study]
     claims, changed = alternatives.headline_claims(own, alternative), alternatives.methods_changed(own, alternative)
     methods = {name: alternatives.methods_of_claims(own, claims, name) for name in alternatives.experiments_of_claims(claims)}
     files = {name: _files(own, scale, name, [method for method in known if method not in changed]) for name, known in methods.items()}
     return of_experiments(files) | _all_published(own)
 
 
-def alternative_params(given: Studies, scale: str, study: str, alternative: str) -> dict:
+def alternative_params(studies: Studies, scale: str, study: str, alternative: str) -> dict:
     """Params of an alternative: `chunks`, the numbers and jobs of the chunks of runs that it changes."""
-    own, tried = given[study], alternatives.with_alternative(given[study], alternative)
-    claims, changed = alternatives.headline_claims(own, alternative), alternatives.methods_changed(own, alternative)
+    content, tried = studies[study], alternatives.with_alternative(studies[study], alternative)
+    claims, changed = alternatives.headline_claims(content, alternative), alternatives.methods_changed(content, alternative)
     chunks = [
         [chunk, design.judged_only(jobs.job(tried, experiment, method, scale, chunk), claims)]
         for experiment in alternatives.experiments_of_claims(claims)
-        for method in alternatives.methods_of_claims(own, claims, experiment)
+        for method in alternatives.methods_of_claims(content, claims, experiment)
         if method in changed
-        for chunk in jobs.chunks(own, experiment, scale)
+        for chunk in jobs.chunks(content, experiment, scale)
     ]
     planners = sorted({_planner(job["planner"]) for _, job in chunks})
     return {
         "chunks": chunks,
-        "job": _claims_job(own, scale, alternatives.claims_tried(own, alternative), primary_alone=True),
-        "published": content_digest(*own.published_files()),
-        "code": _code("alternative", own.module(), *_kinds(claims), *planners),
+        "job": _claims_job(content, scale, alternatives.claims_tried(content, alternative), primary_alone=True),
+        "published": content_digest(*content.published_files()),
+        "code": _code("alternative", content.module(), *_kinds(claims), *planners),
     }
 
 
@@ -361,9 +364,9 @@ def _audited_experiments(study: Study) -> list[str]:
     return sorted({table.experiment for table in _audited(study).values()})
 
 
-def audit_inputs(given: Studies, scale: str, study: str) -> dict[str, str]:
+def audit_inputs(studies: Studies, scale: str, study: str) -> dict[str, str]:
     """Input files of the audit."""
-    own = given[study]
+    own = studies[study]
     files = {name: _files(own, scale, name) for name in _audited_experiments(own)}
     bounds = named(BOUNDS, {name: each.bounds for name, each in files.items()})
     problems = named(PROBLEMS, {name: each.problems for name, each in files.items() if _identifies(own, name)})
@@ -375,48 +378,48 @@ def _identifies(study: Study, experiment: str) -> bool:
     return any(table.identify and table.experiment == experiment for table in _audited(study).values())
 
 
-def audit_params(given: Studies, scale: str, study: str) -> dict:
+def audit_params(studies: Studies, scale: str, study: str) -> dict:
     """Params of the audit."""
-    own = given[study]
+    content = studies[study]
     return {
         "job": {
             "study": study,
-            "module": own.module(),
-            "tables": {name: table.experiment for name, table in _audited(own).items()},
-            "primary": {name: table.primary for name, table in _audited(own).items()},
-            "layouts": {name: _layout(table) for name, table in _audited(own).items()},
+            "module": content.module(),
+            "tables": {name: table.experiment for name, table in _audited(content).items()},
+            "primary": {name: table.primary for name, table in _audited(content).items()},
+            "layouts": {name: _layout(table) for name, table in _audited(content).items()},
         },
-        "published": content_digest(*own.published_files()),
-        "code": _code("audit", own.module()),
+        "published": content_digest(*content.published_files()),
+        "code": _code("audit", content.module()),
     }
 
 
-def sensitivity_inputs(given: Studies, scale: str, study: str) -> dict[str, str]:
+def sensitivity_inputs(studies: Studies, scale: str, study: str) -> dict[str, str]:
     """Input files of the table of alternatives."""
-    tried = {name: f"{_folder(scale, study, name)}/claims.csv" for name in alternatives.tried(given[study])}
+    tried = {name: f"{_folder(scale, study, name)}/claims.csv" for name in alternatives.tried(studies[study])}
     return {"claims": f"{_folder(scale, study)}/claims.csv"} | named("alternatives", tried)
 
 
-def sensitivity_params(given: Studies, scale: str, study: str) -> dict:
+def sensitivity_params(studies: Studies, scale: str, study: str) -> dict:
     """Params of the table of alternatives."""
-    return {"described": alternatives.alternatives_described(given[study]), "code": _code("sensitivity")}
+    return {"described": alternatives.alternatives_described(studies[study]), "code": _code("sensitivity")}
 
 
-def readings_inputs(given: Studies, scale: str, study: str) -> dict[str, Any]:
+def readings_inputs(studies: Studies, scale: str, study: str) -> dict[str, Any]:
     """Input files of the search for a reading, which makes problems and runs of its own."""
-    own = given[study]
+    own = studies[study]
     return {"maps": choices.maps(own)} | named("published", {name: own.published_file(name) for name in choices.printed_tables(own)})
 
 
-def readings_params(given: Studies, scale: str, study: str) -> dict:
+def readings_params(studies: Studies, scale: str, study: str) -> dict:
     """Params of the search for a reading."""
-    job = choices.search_job(given[study])
+    job = choices.search_job(studies[study])
     planners = {_planner(each["planner"]) for table in job["screened"]["tables"].values() for each in table["jobs"].values()}
     kinds = {module for world in job["screened"]["worlds"].values() for module in _kinds_of_workspace(world)}
     return {
         "job": job,
-        "folder": definition.relative(given[study].folder),
-        "published": content_digest(*(given[study].published_file(name) for name in choices.printed_tables(given[study]))),
+        "folder": definition.relative(studies[study].folder),
+        "published": content_digest(*(studies[study].published_file(name) for name in choices.printed_tables(studies[study]))),
         "code": _code("readings", *sorted(planners), *sorted(kinds)),
     }
 
@@ -425,37 +428,37 @@ def readings_params(given: Studies, scale: str, study: str) -> dict:
 # All studies together
 
 
-def _published_tables(given: Studies) -> dict[tuple[str, str], Pivot]:
+def _published_tables(studies: Studies) -> dict[tuple[str, str], Pivot]:
     """The tables compared with published numbers, by study and table."""
-    return {(key, name): table for key, study in given.items() for name, table in study.compared().items() if table.published}
+    return {(key, name): table for key, study in studies.items() for name, table in study.compared().items() if table.published}
 
 
-def comparison_files(given: Studies, scale: str) -> dict[tuple[str, str], str]:
+def comparison_files(studies: Studies, scale: str) -> dict[tuple[str, str], str]:
     """The comparison of each table with published numbers, by study and table."""
-    return {(study, table): _comparison_file(scale, study, table) for study, table in _published_tables(given)}
+    return {(study, table): _comparison_file(scale, study, table) for study, table in _published_tables(studies)}
 
 
-def summary_inputs(given: Studies, scale: str) -> dict[str, Any]:
+def summary_inputs(studies: Studies, scale: str) -> dict[str, Any]:
     """Input files of the summary."""
-    claims = {key: f"{_folder(scale, key)}/claims.csv" for key, study in given.items() if study.claims}
-    comparisons = {f"{study}/{table}": file for (study, table), file in comparison_files(given, scale).items()}
+    claims = {key: f"{_folder(scale, key)}/claims.csv" for key, study in studies.items() if study.claims}
+    comparisons = {f"{study}/{table}": file for (study, table), file in comparison_files(studies, scale).items()}
     return named("comparisons", comparisons) | named("claims", claims) | {"worth": f"results/{scale}/worth.csv"}
 
 
-def summary_params(given: Studies, scale: str) -> dict:
+def summary_params(studies: Studies, scale: str) -> dict:
     """Params of the summary."""
     job = {
-        "tables": [list(name) for name in _published_tables(given)],
-        "titles": {key: study.title for key, study in given.items()},
+        "tables": [list(name) for name in _published_tables(studies)],
+        "titles": {key: study.title for key, study in studies.items()},
     }
     return {"job": job, "code": _code("summary")}
 
 
-def worth_inputs(given: Studies, scale: str) -> dict[str, Any]:
+def worth_inputs(studies: Studies, scale: str) -> dict[str, Any]:
     """Input files of the table `worth`: experiments by study and name."""
     files = {
         f"{key}/{name}": _files(study, scale, name, _measured(study, name))
-        for key, study in given.items()
+        for key, study in studies.items()
         if study.worth
         for name in study.worth.experiments
     }
@@ -467,14 +470,14 @@ def _measured(study: Study, experiment: str) -> list[str]:
     return [*study.experiments[experiment].methods, study.worth.baseline]
 
 
-def worth_params(given: Studies, scale: str) -> dict:
+def worth_params(studies: Studies, scale: str) -> dict:
     """Params of the table `worth`: `job`, study -> baseline, and experiment -> repeats."""
     job = {
         key: {
             "baseline": study.worth.baseline,
             "repeats": {name: study.experiments[name].repeats[scale] for name in study.worth.experiments},
         }
-        for key, study in given.items()
+        for key, study in studies.items()
         if study.worth
     }
     return {"job": job, "code": _code("worth")}
@@ -484,10 +487,10 @@ def worth_params(given: Studies, scale: str) -> dict:
 # Targets
 
 
-def files_of(given: Studies, scale: str, study: str, name: str) -> list[str]:
+def files_of(studies: Studies, scale: str, study: str, name: str) -> list[str]:
     """The files of a table or figure."""
-    if name in given[study].tables:
-        endings = (".csv", ".comparison.csv") if name in given[study].compared() else (".csv",)
+    if name in studies[study].tables:
+        endings = (".csv", ".comparison.csv") if name in studies[study].compared() else (".csv",)
         return [f"{_folder(scale, study)}/tables/{name}{ending}" for ending in endings]
     return [f"{_folder(scale, study)}/figures/{name}{ending}" for ending in (".svg", ".png", ".pdf", ".csv", ".txt")]
 
@@ -508,49 +511,51 @@ def _experiments_behind(study: Study, artefact: str) -> list[str]:
     return jobs.experiments_of(study, artefact)
 
 
-def files_of_narrow(given: Studies, scale: str) -> list[str]:
+def files_of_narrow(studies: Studies, scale: str) -> list[str]:
     """All figures of a scale, each on a sheet of one text column."""
     return [
         f"{_folder(scale, key)}/figures/{name}.narrow{ending}"
-        for key, study in given.items()
+        for key, study in studies.items()
         for name in artefacts_of(study, scale)
         if name in study.figures
         for ending in (".svg", ".pdf")
     ]
 
 
-def files_of_study(given: Studies, scale: str, study: str) -> list[str]:
+def files_of_study(studies: Studies, scale: str, study: str) -> list[str]:
     """All tables and figures of a study that are made at a scale, its claims, and its audit if it has claims or published numbers."""
-    files = [file for name in artefacts_of(given[study], scale) for file in files_of(given, scale, study, name)]
-    if tables_of(given[study], scale):
+    files = [file for name in artefacts_of(studies[study], scale) for file in files_of(studies, scale, study, name)]
+    if tables_of(studies[study], scale):
         files.append(f"{_folder(scale, study)}/tables.tex")
-    if given[study].claims:
+    if studies[study].claims:
         files.append(f"{_folder(scale, study)}/claims.csv")
-    if given[study].claims or _audited(given[study]):
+    if studies[study].claims or _audited(studies[study]):
         files.append(f"{_folder(scale, study)}/audit.csv")
     return files
 
 
-def files_of_scale(given: Studies, scale: str) -> list[str]:
+def files_of_scale(studies: Studies, scale: str) -> list[str]:
     """Everything that is made at a scale; a summary if some table has published numbers."""
-    summary = _published_tables(given)
-    return [file for study in given for file in files_of_study(given, scale, study)] + ([f"results/{scale}/summary.md"] if summary else [])
+    summary = _published_tables(studies)
+    return [file for study in studies for file in files_of_study(studies, scale, study)] + (
+        [f"results/{scale}/summary.md"] if summary else []
+    )
 
 
-def files_of_sensitivity(given: Studies, scale: str) -> list[str]:
+def files_of_sensitivity(studies: Studies, scale: str) -> list[str]:
     """The table of alternatives of each study that has any."""
-    return [f"{_folder(scale, key)}/sensitivity.csv" for key, study in given.items() if alternatives.tried(study)]
+    return [f"{_folder(scale, key)}/sensitivity.csv" for key, study in studies.items() if alternatives.tried(study)]
 
 
-def files_of_readings(given: Studies, scale: str) -> list[str]:
+def files_of_readings(studies: Studies, scale: str) -> list[str]:
     """The readings of each study that has published numbers and leaves choices open."""
     return [
-        f"{_folder(scale, key)}/readings.csv" for key, study in given.items() if choices.printed_tables(study) and choices.choices(study)
+        f"{_folder(scale, key)}/readings.csv" for key, study in studies.items() if choices.printed_tables(study) and choices.choices(study)
     ]
 
 
-def files_of_smoke(given: Studies) -> list[str]:
+def files_of_smoke(studies: Studies) -> list[str]:
     """The small subset."""
-    artefacts, methods = jobs.smoke(given)
-    files = [file for study, name in artefacts for file in files_of(given, "smoke", study, name)]
+    artefacts, methods = jobs.smoke(studies)
+    files = [file for study, name in artefacts for file in files_of(studies, "smoke", study, name)]
     return files + [f"{_folder('smoke', study)}/runs/{experiment}/{method}/0.parquet" for study, experiment, method in methods]

@@ -108,11 +108,11 @@ def fitness_leads(
     """
     shares = []
     for name in check.experiments:
-        found = results[name]
-        for _, run in select(found.runs, check.where).iterrows():
+        experiment = results[name]
+        for _, run in select(experiment.runs, check.where).iterrows():
             path = path_of(run)
             if path is not None:
-                x, _ = samples(path, found.problems[run["problem"]].workspace)
+                x, _ = samples(path, experiment.problems[run["problem"]].workspace)
                 fitness = run["evaluations"] * len(path.points) * len(x)
                 batch = population * offspring * run["valid_share"]
                 pairs = [math.comb(round(population + batches * batch), 2) for batches in (1, 2)]
@@ -120,13 +120,13 @@ def fitness_leads(
                 shares.append([fitness / (fitness + compared * math.ceil(genes / word)) for word in words])
     if not shares:
         raise Untestable("no run has a path")
-    found = np.array(shares)
-    ends = [statistics.interval("mean", own, generator(f"elhoseny2017/C21/{word}")) for word, own in zip(words, found.T, strict=True)]
+    experiment = np.array(shares)
+    ends = [statistics.interval("mean", own, generator(f"elhoseny2017/C21/{word}")) for word, own in zip(words, experiment.T, strict=True)]
     marks = ["+" if low > 0.5 else "-" if high < 0.5 else "?" for low, high in ends]
     if len(set(marks)) > 1:
-        each = ", ".join(f"{share:.2f} if {word} at a time" for word, share in zip(words, found.mean(axis=0), strict=True))
+        each = ", ".join(f"{share:.2f} if {word} at a time" for word, share in zip(words, experiment.mean(axis=0), strict=True))
         raise Untestable(f"the share of fitness in the work depends on how many genes are compared at once: {each}")
-    return marks[0], float(found[:, 0].mean()), ends[0], len(found)
+    return marks[0], float(experiment[:, 0].mean()), ends[0], len(experiment)
 
 
 def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
@@ -148,17 +148,17 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
             rows.append(_row(table, _place(row), rule, row.value, 2 * side, row.value <= 2 * side))
         for (route, obstacles), column in cells.groupby(["route", "obstacles"]):
             lengths = column.set_index("method")["value"]
-            place = f"route={route}, obstacles={obstacles}"
+            cell = f"route={route}, obstacles={obstacles}"
             others = lengths.drop("prm").max()
             rule = "the text has PRM the longest"
-            rows.append(_row(table, f"{place}, method=prm", rule, lengths["prm"], others, lengths["prm"] > others))
+            rows.append(_row(table, f"{cell}, method=prm", rule, lengths["prm"], others, lengths["prm"] > others))
             least = lengths.drop("mga").min()
             rule = "the text has the proposed method the shortest"
-            rows.append(_row(table, f"{place}, method=mga", rule, lengths["mga"], least, lengths["mga"] < least))
+            rows.append(_row(table, f"{cell}, method=mga", rule, lengths["mga"], least, lengths["mga"] < least))
             if table == "table2":
                 rivals = lengths.drop(["mga", "ga"]).min()
                 rule = "the text has GA second"
-                rows.append(_row(table, f"{place}, method=ga", rule, lengths["ga"], rivals, lengths["mga"] < lengths["ga"] < rivals))
+                rows.append(_row(table, f"{cell}, method=ga", rule, lengths["ga"], rivals, lengths["mga"] < lengths["ga"] < rivals))
     means = {
         name: published[name].query("statistic == 'mean'").set_index(["method", "obstacles"])["value"].sort_index()
         for name in ("table5", "table6")
@@ -169,12 +169,12 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
             rule = "the text has the proposed method cheaper than all others in all cases"
             rows.append(_row(table, f"method=mga, obstacles={obstacles}, beside {method}", rule, ours, time, ours < time))
     for obstacles, time in means["table5"]["mga"].items():
-        other = means["table6"]["mga", obstacles]
+        later = means["table6"]["mga", obstacles]
         rule = "Tables 5 and 6 print the same time of the proposed method"
-        rows.append(_row("table5", f"method=mga, obstacles={obstacles}", rule, time, other, time == other))
-        time, other = means["table5"]["mga_plain", obstacles], means["table6"]["ga", obstacles]
+        rows.append(_row("table5", f"method=mga, obstacles={obstacles}", rule, time, later, time == later))
+        time, later = means["table5"]["mga_plain", obstacles], means["table6"]["ga", obstacles]
         rule = "Tables 5 and 6 print the same time of what both call GA"
-        rows.append(_row("table5", f"method=GA, obstacles={obstacles}", rule, time, other, time == other))
+        rows.append(_row("table5", f"method=GA, obstacles={obstacles}", rule, time, later, time == later))
     genes = solutions(published)
     for name, found in counts(genes["S1"], genes["S2"]).items():
         number = int(printed[f"{name} of S1 and S2"])
@@ -211,14 +211,14 @@ def _growth(published: dict[str, pd.DataFrame]) -> list[dict]:
     printed, fields = _printed_lengths(published), int(published["table2"]["n"].iloc[0])
     blocked = fields * (printed["value"] / printed["side"] - DIAGONAL) / (2 - DIAGONAL)
     whole = int(np.isclose(blocked, blocked.round()).sum())
-    found, tried = (each.groupby(printed["obstacles"]).sum() for each in (blocked, 0 * blocked + fields))
+    blocked_cells, tried = (each.groupby(printed["obstacles"]).sum() for each in (blocked, 0 * blocked + fields))
     radius = radius_errors(published).groupby("radius")["relative_error"].mean().idxmin()
-    share = (expected_length(1, radius, found.index.to_numpy()) - DIAGONAL) / (2 - DIAGONAL)
+    share = (expected_length(1, radius, blocked_cells.index.to_numpy()) - DIAGONAL) / (2 - DIAGONAL)
     rule = f"means of {fields} fields, with {DIAGONAL:g} or 2 cells for each of the side: how many of the printed can be such"
     rows = [_row("table2, table3", "method=mga", rule, whole, len(printed), whole == len(printed))]
     # The radius is fitted to these lengths.
-    freedom = len(found) - 1
-    chi_square, limit = ((found - tried * share) ** 2 / (tried * share * (1 - share))).sum(), stats.chi2.ppf(0.95, freedom)
+    freedom = len(blocked_cells) - 1
+    chi_square, limit = ((blocked_cells - tried * share) ** 2 / (tried * share * (1 - share))).sum(), stats.chi2.ppf(0.95, freedom)
     rule = f"lengths grow with the obstacles as diagonals get blocked: chi-square ({freedom} degrees of freedom) and its limit at 5 %"
     return [*rows, _row("table2, table3", "method=mga", rule, round(chi_square, 1), round(limit, 1), chi_square <= limit)]
 
@@ -350,9 +350,9 @@ def crossover_and_mutation(*, parents: list[str]) -> pd.DataFrame:
     """
     rows, columns = ("10", "00", "01", "11"), ("00", "01", "11", "10")
     at = {row + column: (i, -j) for i, column in enumerate(columns) for j, row in enumerate(rows)}
-    one, other = parents
-    crossed = {head[:cut] + tail[cut:] for cut in range(1, 4) for head, tail in ((one, other), (other, one))}
-    mutated = {one[:digit] + "10"[int(one[digit])] + one[digit + 1 :] for digit in range(4)}
+    first, second = parents
+    crossed = {head[:cut] + tail[cut:] for cut in range(1, 4) for head, tail in ((first, second), (second, first))}
+    mutated = {first[:digit] + "10"[int(first[digit])] + first[digit + 1 :] for digit in range(4)}
     marks = []
     for operator, origins, children in (("crossover", parents, crossed), ("mutation", parents[:1], mutated)):
         for chromosome, (x, y) in at.items():
@@ -362,13 +362,13 @@ def crossover_and_mutation(*, parents: list[str]) -> pd.DataFrame:
             marks.append(box | {"operator": operator})
         words = {"mark": "text", "role": "note", "operator": operator}
         marks += [words | {"x": x, "y": y, "text": " ".join(chromosome)} for chromosome, (x, y) in at.items()]
-    x, y = at[one]
+    x, y = at[first]
     for child in sorted(mutated):
         towards = np.subtract(at[child], (x, y))
         arrow = {"mark": "arrow", "role": "second", "group": f"to {child}", "operator": "mutation"}
         tail, head = ((x, y) + share * towards for share in (0.3, 0.68))
         marks += [arrow | {"x": tail[0], "y": tail[1]}, arrow | {"x": head[0], "y": head[1]}]
-    frame = np.add([[-0.5, 0.5], [3.5, 0.5], [3.5, -0.5], [-0.5, -0.5], [-0.5, 0.5]], (0, at[one][1]))
+    frame = np.add([[-0.5, 0.5], [3.5, 0.5], [3.5, -0.5], [-0.5, -0.5], [-0.5, 0.5]], (0, at[first][1]))
     border = {"mark": "line", "role": "first", "group": "subspace", "label": "subspace 00 of the parents", "operator": "crossover"}
     return pd.DataFrame([*marks, *(border | {"x": x, "y": y} for x, y in frame)])
 
@@ -398,12 +398,12 @@ def chromosome(*, least_distance: float) -> pd.DataFrame:
         label = {-1: "obstacle, -1", 1: "control point, 1", 0: None}[value]
         box = {"mark": "cell", "group": f"gene {gene}", "role": role, "label": label, "gene": gene, "value": value}
         marks.append(box | {"x": x, "y": y + top, "width": 1.0, "height": 1.0})
-        place = side / 2 + gene_width * (gene - 12)
-        marks.append(box | {"x": place, "y": 0.0, "width": gene_width, "height": gene_width})
-        marks.append(words | {"x": place, "y": 0.0, "text": str(value)})
+        middle = side / 2 + gene_width * (gene - 12)
+        marks.append(box | {"x": middle, "y": 0.0, "width": gene_width, "height": gene_width})
+        marks.append(words | {"x": middle, "y": 0.0, "text": str(value)})
         marks.append(words | {"x": x + 0.22, "y": y + top - 0.3, "text": str(gene)})
         if y == 0 or gene == (side + 1) ** 2 - 1:
-            marks.append(words | {"x": place, "y": -0.45, "text": str(gene)})
+            marks.append(words | {"x": middle, "y": -0.45, "text": str(gene)})
     x, y = grid.in_units(np.column_stack(samples(path, grid))).T
     marks += [{"mark": "line", "role": "second", "group": "curve", "label": "Bezier curve", "x": a, "y": b + top} for a, b in zip(x, y)]
     for role, (a, b) in (("start", start), ("target", target)):
@@ -434,9 +434,9 @@ def validation(
         described = {"side": side, "start": ends[0], "target": ends[1], "obstacles": obstacles, "layout": number}
         grid = random_field.field(workspace, described, "elhoseny2017/figure4")
         drawn = np.random.default_rng(number).integers(0, side + 1, (points, 2))
-        found = verdicts(drawn, grid, least_distance)
-        path = curve_through([each.point for each in found if each.word == "accepted"], *ends)
-        if {each.word for each in found} == {"obstacle", "too near", "accepted"} and is_free(path, grid):
+        judged = verdicts(drawn, grid, least_distance)
+        path = curve_through([each.point for each in judged if each.word == "accepted"], *ends)
+        if {each.word for each in judged} == {"obstacle", "too near", "accepted"} and is_free(path, grid):
             break
     angles = np.linspace(0, 2 * math.pi, 61)
     marks = [
@@ -448,14 +448,14 @@ def validation(
         "obstacle": ("accent", "on an obstacle"),
         "too near": ("second", "too near to another"),
     }
-    for candidate, (point, word) in enumerate(found, 1):
+    for candidate, (point, word) in enumerate(judged, 1):
         if word == "accepted":
             ring = {"mark": "line", "role": "muted", "group": f"ring {candidate}", "label": f"distance r = {least_distance:g}"}
             circle = np.array(point) + least_distance * np.column_stack([np.cos(angles), np.sin(angles)])
             marks += [ring | {"x": x, "y": y} for x, y in circle.tolist()]
     x, y = grid.in_units(np.column_stack(samples(path, grid))).T
     marks += [{"mark": "line", "role": "third", "group": "curve", "label": "Bezier curve", "x": a, "y": b} for a, b in zip(x, y)]
-    for candidate, (point, word) in enumerate(found, 1):
+    for candidate, (point, word) in enumerate(judged, 1):
         role, label = looks[word]
         dot = {"mark": "dots", "role": role, "group": word, "label": label, "candidate": candidate, "verdict": word}
         marks.append(dot | {"x": point[0], "y": point[1]})

@@ -51,15 +51,15 @@ def crossover(*, parents: list[list[int]], bits: int, cut: int) -> pd.DataFrame:
     parents: cells, counted from 0 as the planner does; they are shown as equation (10) counts, from 1. bits: of a cell number. cut: the
     number of genes before the cut.
     """
-    own = np.array(parents)
-    children = own.copy()
+    chromosomes = np.array(parents)
+    children = chromosomes.copy()
     swap_tails(*children, bits * cut, bits)
     frames = []
-    for drawn, rows in (("before", own), ("after", children)):
+    for drawn, rows in (("before", chromosomes), ("after", children)):
         for height, row in zip((1.3, 0.0), rows):
             # A gene keeps the colour of its original chromosome.
             for place, gene in enumerate(row):
-                role = "accent" if gene == own[0, place] else "muted"
+                role = "accent" if gene == chromosomes[0, place] else "muted"
                 box = {"mark": "cell", "role": role, "x": place, "y": height, "width": 0.96, "height": 0.8}
                 frames.append(
                     pd.DataFrame([box, {"mark": "text", "role": "note", "x": place, "y": height, "text": str(gene + 1)}]).assign(
@@ -90,13 +90,13 @@ def drawn_farther(
 
     The effect is the least excess in clearance, the units are the paths. Raises Untestable if a method has no feasible run on a map.
     """
-    found = results[check.experiment]
+    experiment = results[check.experiment]
     excess = []
-    for _, runs in found.runs.groupby("problem"):
+    for _, runs in experiment.runs.groupby("problem"):
         drawn = [pick(runs[runs["method"] == name], {"lowest": "length"}) for name in (method, other)]
         if any(run is None for run in drawn):
             raise Untestable("a method has no feasible run on a map")
-        own, beside = obstacle_clearance(pd.DataFrame(drawn), found.problems)
+        own, beside = obstacle_clearance(pd.DataFrame(drawn), experiment.problems)
         excess.append(own - beside)
     return "+" if min(excess) > 0 else "-", float(min(excess)), None, 2 * len(excess)
 

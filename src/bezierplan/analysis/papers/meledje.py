@@ -214,15 +214,15 @@ def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
             total = sum(table[method, metric] for metric in ("optimal", "near_optimal", "infeasible"))
             rule = "the three counts add to the trials"
             rows.append(_row(name, f"method={method}", rule, total, trials[name], total == trials[name]))
-        for each in said:
-            sign = SIGN[each.best]
-            own, *theirs = (_printed(table, method, each.quantity) for method in ("proposed", *others))
+        for sentence in said:
+            sign = SIGN[sentence.best]
+            own, *theirs = (_printed(table, method, sentence.quantity) for method in ("proposed", *others))
             best = sign * max(sign * value for value in theirs)
-            rule = f"the proposed mutation has the {each.words} (Section 4)"
-            rows.append(_row(name, f"metric={each.quantity}", rule, own, best, sign * (own - best) > 0))
-    for each in said:
-        if each.quantity in TESTED:
-            rows += _fisher_rows(tables, trials, others, each.quantity, each.words, SIGN[each.best])
+            rule = f"the proposed mutation has the {sentence.words} (Section 4)"
+            rows.append(_row(name, f"metric={sentence.quantity}", rule, own, best, sign * (own - best) > 0))
+    for sentence in said:
+        if sentence.quantity in TESTED:
+            rows += _fisher_rows(tables, trials, others, sentence.quantity, sentence.words, SIGN[sentence.best])
     ranks = {name: [table[method, "optimal"] for method in ("proposed", *others)] for name, table in tables.items()}
     pairs = list(itertools.combinations(range(len(operators)), 2))
     for name in ("table3", "table4", "table5"):

@@ -61,16 +61,16 @@ def identified_paths(
     if len(own) != 1:
         raise ValueError(f"identified_paths: {len(own)} printed numbers of {method} from {start} to {target}; expected one")
     problem = Problem("", workspace, workspace.centre(start), workspace.centre(target))
-    found = identified.in_problem(problem, float(own["value"].iloc[0]), decimals, edges)
+    identification = identified.in_problem(problem, float(own["value"].iloc[0]), decimals, edges)
     rows = []
-    for number, path in reversed(list(enumerate(found.paths))):
+    for number, path in reversed(list(enumerate(identification.paths))):
         role = ("accent", "first", "third")[min(number, 2)]
-        name = f"{' '.join(map(str, path))}: length {found.length * workspace.cell:.6f}"
+        name = f"{' '.join(map(str, path))}: length {identification.length * workspace.cell:.6f}"
         points = [{"x": x, "y": y} for x, y in map(workspace.centre, path)]
         rows += [{"mark": "line", "role": role, "group": f"path {number}", "label": name} | point for point in points]
     rows += [
         {"mark": "text", "role": "note", "x": x, "y": y + 0.55 * workspace.cell, "text": str(cell)}
-        for path in found.paths[:1]
+        for path in identification.paths[:1]
         for cell, (x, y) in zip(path[1:-1], map(workspace.centre, path[1:-1]), strict=True)
     ]
     for role, cell in (("start", start), ("target", target)):

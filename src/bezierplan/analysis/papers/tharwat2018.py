@@ -224,12 +224,12 @@ def best_curve(problem: Problem, control_points: int, samples: int) -> tuple[flo
     x_low, x_high, y_low, y_high = problem.workspace.bounds
     line = np.linspace(problem.start, problem.target, control_points + 2)[1:-1]
     reach = math.dist(problem.start, problem.target) / 3
-    found = []
+    curves = []
     for start in range(STARTS):
         near = line + rng.normal(0, reach, line.shape)
         anywhere = rng.uniform((x_low, y_low), (x_high, y_high), line.shape)
-        found.append(_shortened(problem, near if start % 2 else anywhere, FEW_SAMPLES))
-    best = [_shortened(problem, points[1:-1], samples) for _, points in sorted(found, key=lambda each: each[0])[:IMPROVED]]
+        curves.append(_shortened(problem, near if start % 2 else anywhere, FEW_SAMPLES))
+    best = [_shortened(problem, points[1:-1], samples) for _, points in sorted(curves, key=lambda each: each[0])[:IMPROVED]]
     length, points = min(best, key=lambda each: each[0])
     if math.isinf(length):
         raise ValueError(f"no free curve of {control_points} control points found from {STARTS} starts")

@@ -22,17 +22,17 @@ def verdicts(points: np.ndarray, grid: Grid, least: float) -> list[Verdict]:
 
     least: the smallest allowed distance from the points accepted before.
     """
-    found: list[Verdict] = []
+    verdicts_made: list[Verdict] = []
     for x, y in points.tolist():
-        accepted = [each.point for each in found if each.word == "accepted"]
+        accepted = [each.point for each in verdicts_made if each.word == "accepted"]
         if grid.occupied[grid.cell_of(x, y)]:
             word = "obstacle"
         elif any(math.dist((x, y), point) < least for point in accepted):
             word = "too near"
         else:
             word = "accepted"
-        found.append(Verdict((x, y), word))
-    return found
+        verdicts_made.append(Verdict((x, y), word))
+    return verdicts_made
 
 
 def curve_through(points: list[tuple[int, int]], start: tuple[int, int], target: tuple[int, int]) -> Path:

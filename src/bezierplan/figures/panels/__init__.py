@@ -192,14 +192,14 @@ PICK = (
 )
 
 
-def _check_view(given: list[float]) -> list[float]:
-    west, east, south, north = given
+def _check_view(view: list[float]) -> list[float]:
+    west, east, south, north = view
     sides = sorted([east - west, north - south])
     # Ticks of narrower ones do not tell their ends apart, and longer ones are no more than a line.
-    if not (sides[0] >= 1e-6 and sides[1] <= 100 * sides[0] and max(map(abs, given)) <= 1e6):
+    if not (sides[0] >= 1e-6 and sides[1] <= 100 * sides[0] and max(map(abs, view)) <= 1e6):
         limits = "1e-6 apart at least, one side at most 100 times the other, numbers of at most 1e6 in absolute value"
-        raise wrong(f"{given}: expected [lowest x, highest x, lowest y, highest y], {limits}")
-    return given
+        raise wrong(f"{view}: expected [lowest x, highest x, lowest y, highest y], {limits}")
+    return view
 
 
 View = Annotated[list[Number], after(_check_view)]

@@ -90,8 +90,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     """Draw the rows of `data`, the first box on top."""
     by = options.by
     groups = style.in_order(frame[by], options.where)
-    own = [frame[frame[by] == group].groupby("part")["value"].apply(list).to_dict() for group in groups]
-    _draw_boxes(axes, own)
+    boxes = [frame[frame[by] == group].groupby("part")["value"].apply(list).to_dict() for group in groups]
+    _draw_boxes(axes, boxes)
     for name, look in LIMITS.items():
         for value in frame.loc[frame["part"] == name, "value"]:
             axes.axvline(value, zorder=1.5, **look)
@@ -104,7 +104,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         style.fit(axes.xaxis, frame["value"], medians)
         far = set()
     else:
-        far = _draw_far(axes, own, frame.loc[frame["part"].isin(list(LIMITS)), "value"].to_list())
+        far = _draw_far(axes, boxes, frame.loc[frame["part"].isin(list(LIMITS)), "value"].to_list())
     marks = {
         "beyond": {"color": style.BLUE, "marker": ".", "markersize": 1.6, "alpha": 0.6, "label": "outlier", "zorder": 1},
         "mean": {"color": style.RED, "marker": "x", "markersize": 4, "label": "mean", "zorder": 4},
@@ -112,10 +112,10 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         "published": {**style.PUBLISHED_MARK, "label": "published mean", "zorder": 5},
     }
     for part, look in marks.items():
-        points = [(value, height) for height, parts in enumerate(own) for value in parts.get(part, []) if value not in far]
+        points = [(value, height) for height, parts in enumerate(boxes) for value in parts.get(part, []) if value not in far]
         if points:
             axes.plot(*zip(*points), **({"linestyle": ""} | look))
-    none = [height for height, parts in enumerate(own) if "none" in parts]
+    none = [height for height, parts in enumerate(boxes) if "none" in parts]
     if none:
         cross = {"color": style.BLACK, "linestyle": "", "marker": "x", "markersize": 4, "clip_on": False, "label": "no value"}
         axes.plot(np.ones(len(none)), none, transform=axes.get_yaxis_transform(), **cross)
@@ -132,10 +132,10 @@ def _draw_far(axes: Axes, groups: list[dict[str, list[float]]], limits: list[flo
 
     groups: values by part. limits: other values that are shown.
     """
-    found = limits + [value for parts in groups for part, values in parts.items() if part != "published" for value in values]
-    if not found:
+    values_shown = limits + [value for parts in groups for part, values in parts.items() if part != "published" for value in values]
+    if not values_shown:
         return set()
-    low, high = min(found), max(found)
+    low, high = min(values_shown), max(values_shown)
     reach = _FAR * (high - low)
     far = set()
     for height, parts in enumerate(groups):
@@ -154,7 +154,7 @@ def _draw_far(axes: Axes, groups: list[dict[str, list[float]]], limits: list[flo
             axes.plot(1.0 if above else 0.0, height, transform=axes.get_yaxis_transform(), clip_on=False, zorder=5, **edge)
     if far:
         # Ends of the scale: the threshold for far means, if there are any; otherwise everything shown, with a small margin.
-        shown = found + [value for parts in groups for value in parts.get("published", []) if value not in far]
+        shown = values_shown + [value for parts in groups for value in parts.get("published", []) if value not in far]
         room = 0.05 * (high - low)
         axes.set_xlim(low - reach if min(far) < low else min(shown) - room, high + reach if max(far) > high else max(shown) + room)
     return far

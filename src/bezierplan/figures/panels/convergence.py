@@ -175,17 +175,17 @@ def _draw_groups(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) 
     groups = style.in_order(frame[hue], options.where)
     looks = style.lines(groups, scene.looks)
     lines = [frame.loc[frame[hue] == group] for group in groups]
-    for number, (group, own, look) in enumerate(zip(groups, lines, looks)):
-        step = max(1, len(own) // _MARKS)
+    for number, (group, rows, look) in enumerate(zip(groups, lines, looks)):
+        step = max(1, len(rows) // _MARKS)
         if len(groups) <= style.MOST_BANDS:
-            interval_band(axes, own["generation"], own["low95"], own["high95"], look["color"], "95 % interval")
+            interval_band(axes, rows["generation"], rows["low95"], rows["high95"], look["color"], "95 % interval")
         named = look | {"label": style.printed(group, hue, scene.labels)}
-        axes.plot(own["generation"], own["objective"], markevery=(number * step // len(groups), step), **named)
+        axes.plot(rows["generation"], rows["objective"], markevery=(number * step // len(groups), step), **named)
     axes.set_ylabel(f"{statistic} objective ({scene.unit})")
     axes.set_box_aspect(style.HIGH_PANEL_HEIGHT)
     axes.autoscale_view()
     style.fit(axes.yaxis, frame["objective"], [])
-    ends = [own.iloc[-1] for own in lines]
+    ends = [rows.iloc[-1] for rows in lines]
     _draw_ends(axes, ends, looks, statistic)
     return Note("", f"{runs_note(frame, statistic, 'line')}; right: last values")
 
@@ -205,17 +205,17 @@ def _draw_ends(axes: Axes, ends: list[pd.Series], looks: list[dict], statistic: 
     strip.set_xlim(-0.7, len(ends) - 0.3)
     strip.set_xlabel(f"final {statistic}", labelpad=style.SMALLEST_TEXT + 8)  # level with that of the panel, below its last number
     strip.grid(visible=True, axis="y")
-    for place, (end, look, value) in enumerate(zip(ends, looks, printed)):
-        strip.plot([place, place], [end["low95"], end["high95"]], color=look["color"], linewidth=0.9, zorder=2)
-        strip.plot(place, end["objective"], zorder=3, **look | {"linestyle": ""})
+    for column, (end, look, value) in enumerate(zip(ends, looks, printed)):
+        strip.plot([column, column], [end["low95"], end["high95"]], color=look["color"], linewidth=0.9, zorder=2)
+        strip.plot(column, end["objective"], zorder=3, **look | {"linestyle": ""})
         if not np.isfinite(value):
             continue
         if low <= value <= high:
-            strip.plot(place, value, label="published final mean", zorder=4, **_PRINTED)
+            strip.plot(column, value, label="published final mean", zorder=4, **_PRINTED)
         else:
             above = value > high
             edge = _PRINTED | {"marker": "^" if above else "v", "clip_on": False, "label": "published, off the scale"}
-            strip.plot(place, high if above else low, zorder=4, **edge)
+            strip.plot(column, high if above else low, zorder=4, **edge)
     _tell_far(strip, sorted(value for value in printed if value > high), above=True)
     _tell_far(strip, sorted(value for value in printed if value < low), above=False)
     axes.set_ylim(low, high)

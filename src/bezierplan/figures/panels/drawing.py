@@ -105,21 +105,21 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     return Note()
 
 
-def _draw_marks(axes: Axes, own: pd.DataFrame, zorder: float) -> None:
+def _draw_marks(axes: Axes, rows: pd.DataFrame, zorder: float) -> None:
     """Draw neighbouring rows of one mark, group and role."""
     import pandas as pd
     from matplotlib.collections import PatchCollection
     from matplotlib.patches import Circle, Rectangle
 
-    mark, role = own["mark"].iloc[0], own["role"].iloc[0]
-    label = {} if pd.isna(own["label"].iloc[0]) else {"label": own["label"].iloc[0]}
-    points = own[["x", "y"]].to_numpy()
+    mark, role = rows["mark"].iloc[0], rows["role"].iloc[0]
+    label = {} if pd.isna(rows["label"].iloc[0]) else {"label": rows["label"].iloc[0]}
+    points = rows[["x", "y"]].to_numpy()
     if mark in ("cell", "circle"):
         shapes = [
             Circle(at, each.radius)
             if mark == "circle"
             else Rectangle(at - np.array([each.width, each.height]) / 2, each.width, each.height)
-            for at, each in zip(points, own.itertuples())
+            for at, each in zip(points, rows.itertuples())
         ]
         axes.add_collection(PatchCollection(shapes, linewidth=0.5, zorder=zorder, **_FILL.get(role, _NO_FILL), **label))
     elif mark == "line":
@@ -132,7 +132,7 @@ def _draw_marks(axes: Axes, own: pd.DataFrame, zorder: float) -> None:
     elif mark == "dots":
         axes.plot(*points.T, linestyle="", zorder=zorder, **_DOTS.get(role, _DOTS["third"]), **label)
     else:
-        for at, words in zip(points, own["text"]):
+        for at, words in zip(points, rows["text"]):
             # A csv file reads back a column of digits as numbers, not as words.
             axes.text(
                 *at,

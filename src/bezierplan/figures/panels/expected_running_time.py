@@ -54,15 +54,15 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     for within in running_time.TARGETS:
         marked = runs.assign(done=running_time.solves(runs, within))
         running_time.by_problem(marked, marked["done"].to_numpy(dtype=float))
-        for method, own in marked.groupby("method"):
-            groups = _by_condition(own, cost)
+        for method, group in marked.groupby("method"):
+            groups = _by_condition(group, cost)
             values = np.array([running_time.expected(work.sum(), done.sum()) for work, done in groups])
             low, high = _interval(groups, values, generator(f"expected running time/{cost}/{within}/{method}"))
             counts = {
                 "problems": len(groups),
                 "reached": int(np.isfinite(values).sum()),
-                "runs": len(own),
-                "successes": int(own["done"].sum()),
+                "runs": len(group),
+                "successes": int(group["done"].sum()),
             }
             rows.append({"method": method, "within": within, "value": _middle(values), "low95": low, "high95": high, **counts})
     return pd.DataFrame(rows)
@@ -109,13 +109,13 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     axes.set_xlim(low / 2, never * 1.5)
     axes.set_xlabel(_NAMES[options.cost])
     for number, (target, look) in enumerate(zip(targets, style.lines([str(target) for target in targets]))):
-        own = frame[frame["within"] == target].set_index("method").reindex(methods)
+        times = frame[frame["within"] == target].set_index("method").reindex(methods)
         heights = np.arange(len(methods)) + _APART * (number - (len(targets) - 1) / 2)
-        known = np.isfinite(own["value"].to_numpy())
-        ends = [own[name].clip(low / 2, never)[known] for name in ("low95", "high95")]
+        known = np.isfinite(times["value"].to_numpy())
+        ends = [times[name].clip(low / 2, never)[known] for name in ("low95", "high95")]
         axes.hlines(heights[known], *ends, color=look["color"], linewidth=0.8, zorder=2, label="95 % interval")
         mark = look | {"linestyle": "", "zorder": 3}
-        axes.plot(own["value"][known], heights[known], label=f"within {100 * target:g} %", **mark)
+        axes.plot(times["value"][known], heights[known], label=f"within {100 * target:g} %", **mark)
         axes.plot(np.full((~known).sum(), never), heights[~known], **mark | {"markerfacecolor": style.FREE})
     axes.axvline(never / 1.8, color="0.5", linewidth=0.6, linestyle=(0, (1, 2)), zorder=1)
     # So far from the last place that their labels do not touch.

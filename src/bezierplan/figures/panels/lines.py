@@ -112,15 +112,15 @@ def summary(results: Results, keys: list[str], metric: str, statistic: str) -> p
 
     runs = results.runs.assign(value=metrics.values(results.runs, metric, results.problems))
     rows = []
-    for key, own in runs.groupby(keys):
+    for key, group in runs.groupby(keys):
         # Sorted, so that nothing depends on the order in which chunks are read.
-        numbers = np.sort(own["value"].dropna().to_numpy())
+        numbers = np.sort(group["value"].dropna().to_numpy())
         named = dict(zip(keys, key))
         name = "/".join([metric, statistic, *(f"{column}={value}" for column, value in named.items())])
         low, high = np.nan, np.nan
         if not metrics.METRICS[metric].of_group:
             low, high = statistics.interval(statistic, numbers, generator(name))
-        counts = {"runs": len(own), "feasible_runs": int(own["feasible"].sum()), "n": len(numbers)}
+        counts = {"runs": len(group), "feasible_runs": int(group["feasible"].sum()), "n": len(numbers)}
         rows.append(constants(runs) | named | counts | {"value": statistics.statistic(statistic, numbers), "low95": low, "high95": high})
     return pd.DataFrame(rows)
 
@@ -160,14 +160,14 @@ def published(results: Results, runs: pd.DataFrame, metric: str, statistic: str 
     A number that is of a part of the runs only, such as one of several problems, is none of theirs. One repeated in several tables counts
     once.
     """
-    found = results.published
-    if found is None:
+    numbers = results.published
+    if numbers is None:
         return []
-    found = found[(found["metric"] == metric) & (found["statistic"] == statistic)]
-    for column in found.columns.difference(_PRINTED):
-        fits = found[column].isin(runs[column].unique() if runs[column].nunique() == 1 else []) if column in runs else False
-        found = found[found[column].isna() | fits]
-    return sorted(found["value"].unique())
+    numbers = numbers[(numbers["metric"] == metric) & (numbers["statistic"] == statistic)]
+    for column in numbers.columns.difference(_PRINTED):
+        fits = numbers[column].isin(runs[column].unique() if runs[column].nunique() == 1 else []) if column in runs else False
+        numbers = numbers[numbers[column].isna() | fits]
+    return sorted(numbers["value"].unique())
 
 
 def interval_band(axes: Axes, x: pd.Series, low: pd.Series, high: pd.Series, colour: str, label: str) -> None:
@@ -199,23 +199,23 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     values = np.unique(frame[x])
     apart = min(np.diff(values), default=1)
     for number, (group, look) in enumerate(zip(groups, _looks(groups, frame, scene))):
-        own = frame if hue is None else frame[frame[hue] == group]
+        rows = frame if hue is None else frame[frame[hue] == group]
         named = {} if hue is None else {"label": style.printed(group, hue, scene.labels)}
         if not of_runs:
-            axes.plot(own[x], own["value"], **_joined(look, len(own)), **named)
+            axes.plot(rows[x], rows["value"], **_joined(look, len(rows)), **named)
             continue
-        theirs = own[own["part"] == "published"]
+        theirs = rows[rows["part"] == "published"]
         if len(theirs):
             edge = style.PUBLISHED_MARK | {"markeredgecolor": look["color"]}
             axes.plot(theirs[x], theirs["value"], zorder=5, **edge)
             axes.plot([], [], label="published mean", **style.PUBLISHED_MARK)
         if options.joined:
             bands = len(groups) <= style.MOST_BANDS
-            _draw_statistic(axes, own[own["part"] == "statistic"], x, look | named, bands=bands)
-            _draw_repeats(axes, own[own["part"] == "repeat"], x, look["color"])
+            _draw_statistic(axes, rows[rows["part"] == "statistic"], x, look | named, bands=bands)
+            _draw_repeats(axes, rows[rows["part"] == "repeat"], x, look["color"])
         else:
             aside = _SPREAD * apart * ((number + 0.5) / len(groups) - 0.5)
-            _draw_apart(axes, own[own["part"] == "statistic"], x, aside, look | named)
+            _draw_apart(axes, rows[rows["part"] == "statistic"], x, aside, look | named)
     if not options.joined or (len(values) <= _FEW and len(set(np.diff(values))) <= 1):
         axes.set_xticks(values)
     elif (frame[x] % 1 == 0).all():

@@ -70,12 +70,12 @@ def data(results: Results, options: Options) -> pd.DataFrame:
         else running_time.work_to(options.cost, options.within, runs, results.problems)
     )
     table = running_time.by_problem(runs, values)
-    found, rows = running_time.ratios(table), []
-    solved = int(np.isfinite(found).any(axis=1).sum())
-    for method in found:
-        steps = np.sort(found[method][np.isfinite(found[method])].to_numpy())
-        counts = {"problems": len(found), "reached": len(steps), "solved": solved}
-        level = np.searchsorted(steps, np.unique(steps), side="right") / len(found)
+    ratios, rows = running_time.ratios(table), []
+    solved = int(np.isfinite(ratios).any(axis=1).sum())
+    for method in ratios:
+        steps = np.sort(ratios[method][np.isfinite(ratios[method])].to_numpy())
+        counts = {"problems": len(ratios), "reached": len(steps), "solved": solved}
+        level = np.searchsorted(steps, np.unique(steps), side="right") / len(ratios)
         rows += [{"method": method, "ratio": ratio, "share": share, **counts} for ratio, share in zip(np.unique(steps), level)]
         if not len(steps):
             rows.append({"method": method, "ratio": 1.0, "share": 0.0, **counts})

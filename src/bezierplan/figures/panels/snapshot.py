@@ -122,8 +122,8 @@ def show(axes: Axes, frame: pd.DataFrame) -> None:
         look = {"angles": "xy", "scale_units": "xy", "scale": 1, "color": style.BLACK, "width": 0.005, "zorder": 2}
         axes.quiver(circles["x"], circles["y"], *arrows.T, **look)
         axes.plot([], [], color=style.BLACK, linestyle="", marker=r"$\rightarrow$", markersize=8, label="velocity")
-    for _, own in frame[frame["part"] == "dropped"].groupby("number"):
-        axes.plot(own["x"], own["y"], color="0.7", linewidth=0.5, zorder=2.5, label="discarded plan")
+    for _, rows in frame[frame["part"] == "dropped"].groupby("number"):
+        axes.plot(rows["x"], rows["y"], color="0.7", linewidth=0.5, zorder=2.5, label="discarded plan")
     looks = {
         "plan": {"color": style.BLUE, "linewidth": 1.2, "linestyle": (0, (5, 1.5)), "zorder": 3, "label": "current plan"},
         "way": {"color": style.RED, "linewidth": 1.8, "zorder": 3.5, "label": "path driven"},
@@ -133,6 +133,6 @@ def show(axes: Axes, frame: pd.DataFrame) -> None:
         "collision": {"color": style.BLACK, "linestyle": "", "marker": "x", "markersize": 8, "zorder": 6, "label": "first collision"},
     }
     for part, look in looks.items():
-        own = frame[frame["part"] == part]
-        if len(own):
-            axes.plot(own["x"], own["y"], **look)
+        rows = frame[frame["part"] == part]
+        if len(rows):
+            axes.plot(rows["x"], rows["y"], **look)

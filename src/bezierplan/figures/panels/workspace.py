@@ -105,11 +105,11 @@ def _table(bounds: tuple[float, float, float, float], *drawn: pd.DataFrame) -> p
     return table.reindex(columns=[*_COLUMNS, *table.columns.intersection(["height"])])
 
 
-def _cells(whole: Grid, own: Grid, numbers: str) -> pd.DataFrame:
+def _cells(whole: Grid, grid: Grid, numbers: str) -> pd.DataFrame:
     """Cells of a grid; those beyond its own part are surplus."""
     import pandas as pd
 
-    own_rows, own_columns = own.occupied.shape
+    own_rows, own_columns = grid.occupied.shape
     left_out = ~whole.occupied if numbers == "none" and whole.heights is None and whole.occupied.size > _MOST_OUTLINES else False
     row, column = np.nonzero(~np.broadcast_to(left_out, whole.occupied.shape))
     surplus = (row >= own_rows) | (column >= own_columns)
@@ -118,7 +118,7 @@ def _cells(whole: Grid, own: Grid, numbers: str) -> pd.DataFrame:
     x, y = whole.in_units(np.column_stack([column, row]) + 0.5).T
     cells = pd.DataFrame({"part": part, "x": x, "y": y, "size": whole.cell})
     cells["number"] = pd.Series(row * whole.occupied.shape[1] + column, dtype="Int64").where(shown)
-    if whole.heights is not None and whole is own:
+    if whole.heights is not None and whole is grid:
         cells["height"] = whole.heights.ravel()
     return cells
 

@@ -77,12 +77,12 @@ def way_out(grid: Grid, way: Way) -> float:
     cells = region(grid)
     if not blocks(cells, tuple(way.points[0])):
         return 0.0
-    for begin, (one, other) in zip(way.at, itertools.pairwise(way.points)):
-        ends = grid.in_cells(np.array([one, other]))
+    for begin, (start, end) in zip(way.at, itertools.pairwise(way.points)):
+        ends = grid.in_cells(np.array([start, end]))
         cuts = np.unique(np.concatenate([[0.0, 1.0], *map(_crossings, *ends)]))
         for enters, leaves in itertools.pairwise(cuts):
-            if not blocks(cells, tuple(one + (enters + leaves) / 2 * (other - one))):
-                return float(begin + enters * math.dist(one, other))
+            if not blocks(cells, tuple(start + (enters + leaves) / 2 * (end - start))):
+                return float(begin + enters * math.dist(start, end))
     return 0.0
 
 
@@ -100,17 +100,17 @@ def way_to_start(motion: Motion, grid: Grid, start: Literal["position", "centre"
     """Points (n, 2) from where a motion ends to where a plan begins: there, or at the centre of its cell; if that place is occupied, back
     along the motion to a free one. Only where the motion ends if there is none.
     """
-    place = motion.points[-1]
-    begin = _start(grid, place, start)
+    robot = motion.points[-1]
+    begin = _start(grid, robot, start)
     if begin is not None:
-        return np.array([place, begin])
+        return np.array([robot, begin])
     back = motion.points[::-1]
     lengths = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(back, axis=0).T))])
     for s in np.arange(_BACK, lengths[-1], _BACK):
-        place = np.array([np.interp(s, lengths, back[:, axis]) for axis in range(2)])
-        begin = _start(grid, place, start)
+        robot = np.array([np.interp(s, lengths, back[:, axis]) for axis in range(2)])
+        begin = _start(grid, robot, start)
         if begin is not None:
-            return np.concatenate([back[lengths < s], [place, begin]])
+            return np.concatenate([back[lengths < s], [robot, begin]])
     return motion.points[-1:]
 
 

@@ -71,15 +71,15 @@ def _among_circles(world: MovingCircles, problem: Problem) -> Schedule:
     if straight == 0:
         return Schedule(0.0, 0.0)
     search = _search(world, problem)
-    found, bounds = Schedule(math.inf, math.inf), np.array(world.bounds, dtype=float)
+    schedule, bounds = Schedule(math.inf, math.inf), np.array(world.bounds, dtype=float)
     points, waits = _on_lattice(*search, world.end, True)
     while len(points):
         points, waits = _pulled(points, waits, search.centres, world.radii, bounds, world.pace)
         length = float(np.hypot(*np.diff(points, axis=0).T).sum())
-        found = Schedule(float(waits.sum()) + length / world.pace, length)
-        points, waits = _with_one_bend(*search, found.arrival)
-    arrival = _straight(world, problem, found.arrival)
-    return Schedule(arrival, straight) if arrival < found.arrival else found
+        schedule = Schedule(float(waits.sum()) + length / world.pace, length)
+        points, waits = _with_one_bend(*search, schedule.arrival)
+    arrival = _straight(world, problem, schedule.arrival)
+    return Schedule(arrival, straight) if arrival < schedule.arrival else schedule
 
 
 def _straight(world: MovingCircles, problem: Problem, before: float) -> float:
@@ -160,21 +160,21 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end, any_an
                 column, row = node % columns + dx, node // columns + dy
                 if (dx == 0 and dy == 0) or not (0 <= column < columns and 0 <= row < rows):
                     continue
-                other = row * columns + column
+                neighbour = row * columns + column
                 other_x, other_y = origin[0] + column * pace, origin[1] + row * pace
                 duration = math.hypot(dx, dy)
                 # Each safe interval of the other place that this one can reach.
                 step = int(time + duration)
                 while step < end and step <= leave + duration:
-                    if begins[other, step] < 0:
+                    if begins[neighbour, step] < 0:
                         step += 1
                         continue
-                    into = np.int64(begins[other, step])
+                    into = np.int64(begins[neighbour, step])
                     until = step
-                    while until < end and begins[other, until] == into:
+                    while until < end and begins[neighbour, until] == into:
                         until += 1
                     step = until
-                    known = best[other, into] if reached[other, into] else np.inf
+                    known = best[neighbour, into] if reached[neighbour, into] else np.inf
                     arrival, before, before_interval = known, node, interval
                     if parent >= 0:
                         direct = math.hypot(other_x - parent_x, other_y - parent_y) / pace
@@ -189,10 +189,10 @@ def _on_lattice(origin, counts, centres, radii, start, target, pace, end, any_an
                         if depart + duration < arrival:
                             arrival, before, before_interval = depart + duration, node, interval
                     if arrival < known:
-                        reached[other, into], best[other, into] = True, arrival
-                        parents[other, into], since[other, into] = before, before_interval
+                        reached[neighbour, into], best[neighbour, into] = True, arrival
+                        parents[neighbour, into], since[neighbour, into] = before, before_interval
                         rest = math.hypot(target[0] - other_x, target[1] - other_y) / pace
-                        heapq.heappush(heap, (arrival + rest, arrival, other, into))
+                        heapq.heappush(heap, (arrival + rest, arrival, neighbour, into))
     return np.empty((0, 2)), np.empty(0)
 
 
@@ -229,17 +229,17 @@ def _with_one_bend(origin, counts, centres, radii, start, target, pace, before):
     before a time, in steps; none if there is none. The search misses it where it reaches a place of the way earlier by another one.
     """
     columns, rows = counts
-    found, points, waits = before - _EARLIER, np.empty((3, 2)), np.zeros(3)
+    best, points, waits = before - _EARLIER, np.empty((3, 2)), np.zeros(3)
     tried = np.empty((3, 2))
     tried[0, 0], tried[0, 1], tried[2, 0], tried[2, 1] = start[0], start[1], target[0], target[1]
     for node in range(columns * rows):
         tried[1, 0], tried[1, 1] = origin[0] + node % columns * pace, origin[1] + node // columns * pace
         length = math.hypot(tried[1, 0] - start[0], tried[1, 1] - start[1]) + math.hypot(target[0] - tried[1, 0], target[1] - tried[1, 1])
-        if length / pace < found and _arrival(tried, waits, 3, centres, radii, pace) < np.inf:
-            found = length / pace
+        if length / pace < best and _arrival(tried, waits, 3, centres, radii, pace) < np.inf:
+            best = length / pace
             for i in range(3):
                 points[i, 0], points[i, 1] = tried[i, 0], tried[i, 1]
-    if found < before - _EARLIER:
+    if best < before - _EARLIER:
         return points, waits
     return points[:0], waits[:0]
 
@@ -460,17 +460,17 @@ def _end_of(since, first, begins):
 
 
 @allocation_free
-def _free_departure(one, other, size, depart, latest, occupied, begins, pace, cuts):
+def _free_departure(start, end, size, depart, latest, occupied, begins, pace, cuts):
     """The first departure from a time on, in steps, after which the straight drive meets no occupied cell; infinite after the latest.
 
     cuts: room for `_write_crossings`.
     """
-    pieces = _write_crossings(one, other, cuts) - 1
+    pieces = _write_crossings(start, end, cuts) - 1
     while depart <= latest:
         delayed = depart
         for k in range(pieces):
             middle = (cuts[k] + cuts[k + 1]) / 2.0
-            x, y = one[0] + middle * (other[0] - one[0]), one[1] + middle * (other[1] - one[1])
+            x, y = start[0] + middle * (end[0] - start[0]), start[1] + middle * (end[1] - start[1])
             enters, leaves = depart + cuts[k] * size / pace, depart + cuts[k + 1] * size / pace
             for f in range(np.searchsorted(begins, enters, side="right") - 1, len(begins)):
                 ends = begins[f + 1] if f + 1 < len(begins) else np.inf
@@ -488,15 +488,15 @@ def _free_departure(one, other, size, depart, latest, occupied, begins, pace, cu
 
 
 @allocation_free
-def _write_crossings(one, other, cuts):
+def _write_crossings(start, end, cuts):
     """Write the ascending parameters from 0 to 1 at which a segment crosses a grid line, each once; returns their number."""
     cuts[0] = 0.0
     count = 1
-    column, columns, right = _lines_between(one[0], other[0])
-    row, rows, up = _lines_between(one[1], other[1])
+    column, columns, right = _lines_between(start[0], end[0])
+    row, rows, up = _lines_between(start[1], end[1])
     while columns > 0 or rows > 0:
-        across = (column - one[0]) / (other[0] - one[0]) if columns > 0 else np.inf
-        along = (row - one[1]) / (other[1] - one[1]) if rows > 0 else np.inf
+        across = (column - start[0]) / (end[0] - start[0]) if columns > 0 else np.inf
+        along = (row - start[1]) / (end[1] - start[1]) if rows > 0 else np.inf
         if across <= along:
             column, columns = column + right, columns - 1
         else:

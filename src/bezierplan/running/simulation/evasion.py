@@ -15,7 +15,7 @@ _DRIVES = (1, 2, 4, 8)
 _AHEAD = 20.0
 
 
-def refuge(world: MovingCircles, place: np.ndarray, step: int, policy: Policy) -> np.ndarray:
+def refuge(world: MovingCircles, robot: np.ndarray, step: int, policy: Policy) -> np.ndarray:
     """The place (2,) where the robot is best at the end of a step: where it stands, unless a circle is about to come there.
 
     It knows what its policy lets it see. A step in which it meets no circle is better than one in which it does; of two such steps, the
@@ -29,26 +29,26 @@ def refuge(world: MovingCircles, place: np.ndarray, step: int, policy: Policy) -
     angles = 2.0 * np.pi * np.arange(_DIRECTIONS) / _DIRECTIONS
     moves = world.pace * np.concatenate([np.zeros((1, 2)), np.column_stack([np.cos(angles), np.sin(angles)])])
     during = seen - drift if policy.sees == "after" else seen
-    return _best(place, moves, during, drift, world.radii, float(policy.check_margin), np.array(world.bounds, dtype=float))
+    return _best(robot, moves, during, drift, world.radii, float(policy.check_margin), np.array(world.bounds, dtype=float))
 
 
 @compiled
-def _best(place, moves, centres, drift, radii, margin, bounds):
+def _best(robot, moves, centres, drift, radii, margin, bounds):
     """The place (2,) at the end of the best step, as `refuge` ranks them.
 
     moves (n, 2): in units per step, of which the first is to stay. centres (k, 2): of the circles at the beginning of the step, with their
     drift (k, 2) in units per step and radii (k,). bounds (4,): of the field, as in `MovingCircles`. Lengths are in units.
     """
-    best, best_depth, best_time, best_apart = place, -np.inf, 0.0, 0.0
+    best, best_depth, best_time, best_apart = robot, -np.inf, 0.0, 0.0
     for i in range(len(moves)):
         for steps in _DRIVES:
-            end_x = min(max(place[0] + steps * moves[i, 0], bounds[0]), bounds[1])
-            end_y = min(max(place[1] + steps * moves[i, 1], bounds[2]), bounds[3])
-            move_x, move_y = (end_x - place[0]) / steps, (end_y - place[1]) / steps
+            end_x = min(max(robot[0] + steps * moves[i, 0], bounds[0]), bounds[1])
+            end_y = min(max(robot[1] + steps * moves[i, 1], bounds[2]), bounds[3])
+            move_x, move_y = (end_x - robot[0]) / steps, (end_y - robot[1]) / steps
             depth, free, apart = 0.0, _AHEAD, np.inf
             for k in range(len(radii)):
                 # Relative to the circle: during the first step, during the drive, and then while the robot stays.
-                dx, dy = place[0] - centres[k, 0], place[1] - centres[k, 1]
+                dx, dy = robot[0] - centres[k, 0], robot[1] - centres[k, 1]
                 vx, vy = move_x - drift[k, 0], move_y - drift[k, 1]
                 depth = min(depth, _nearest(dx, dy, vx, vy) - radii[k])
                 reach = radii[k] + margin
@@ -58,10 +58,10 @@ def _best(place, moves, centres, drift, radii, margin, bounds):
                 free = min(free, met)
                 apart = min(apart, math.hypot(dx + vx, dy + vy) - radii[k])
             if (depth, free, apart) > (best_depth, best_time, best_apart):
-                best = place + np.array([move_x, move_y])
+                best = robot + np.array([move_x, move_y])
                 best_depth, best_time, best_apart = depth, free, apart
             if i == 0 and depth == 0.0 and free == _AHEAD:
-                return place
+                return robot
     return best
 
 

@@ -32,7 +32,7 @@ def known_at(motion: Motion, collision_at: float, world: World, policy: Policy) 
     moments = np.linspace(collision_at, min(collision_at + 1.0, motion.times[-1]), _MOMENTS)
     robot = np.column_stack([np.interp(moments, motion.times, motion.points[:, axis]) for axis in range(2)])
     hit = _met(robot[0], collision_at, world)
-    found, step = math.nan, math.floor(collision_at)
+    moment, step = math.nan, math.floor(collision_at)
     while step >= 0:
         looked = step + (policy.sees == "after")
         seen = world.at(looked)[hit]
@@ -40,8 +40,8 @@ def known_at(motion: Motion, collision_at: float, world: World, policy: Policy) 
         apart = np.hypot(*(robot - seen - np.outer(moments - looked, drift)).T)
         if apart.min() > world.radii[hit] + _TOUCH:
             break
-        found, step = float(step), step - 1
-    return found
+        moment, step = float(step), step - 1
+    return moment
 
 
 def _met(place: np.ndarray, time: float, world: MovingCircles) -> int:
@@ -57,12 +57,12 @@ def avoidable(motion: Motion, since: float, world: World, problem: Problem) -> b
     """
     if math.isnan(since):
         return False
-    place = tuple(float(np.interp(since, motion.times, motion.points[:, axis])) for axis in range(2))
-    enough = _LONGER + _DETOUR * math.dist(place, problem.target) / world.pace
+    robot = tuple(float(np.interp(since, motion.times, motion.points[:, axis])) for axis in range(2))
+    enough = _LONGER + _DETOUR * math.dist(robot, problem.target) / world.pace
     end = math.ceil(min(world.end - since, enough))
     if isinstance(world, ChangingCells):
         first = world.index(since)
         later = replace(world, maps=world.maps[first:], moments=world.moments[first:] - since, end=end)
     else:
         later = replace(world, centres=world.centres + world.velocities * since, end=end)
-    return clairvoyant.reachable(later, problem._replace(start=place))
+    return clairvoyant.reachable(later, problem._replace(start=robot))

@@ -47,13 +47,13 @@ def check(motion: Motion, world: World) -> Verdict:
 
 def _among_circles(motion: Motion, world: MovingCircles) -> Verdict:
     walls = np.array(world.walls, dtype=float)
-    found, clearance = _approach(motion.points, motion.times, world.centres, world.velocities, walls, world.radii, TOUCHING)
+    hit, clearance = _approach(motion.points, motion.times, world.centres, world.velocities, walls, world.radii, TOUCHING)
     x_low, x_high, y_low, y_high = world.bounds
     x, y = motion.points.T
     outside = np.max([x_low - x, x - x_high, y_low - y, y - y_high], axis=0)
     # The field is convex, so a way leaves it only at a vertex.
     left = motion.times[outside > TOUCHING].min(initial=math.inf)
-    collision_at = min(found, left)
+    collision_at = min(hit, left)
     depth = max(-clearance.min(initial=math.inf), outside.max(), 0.0)
     return Verdict(
         collision_at if math.isfinite(collision_at) else math.nan,
@@ -117,13 +117,13 @@ def _among_cells(motion: Motion, world: ChangingCells) -> Verdict:
     cuts = np.unique(np.concatenate([[motion.times[0], motion.times[-1]], np.arange(first + 1, last), inner]))
     for begin, end in itertools.pairwise(cuts):
         points, times = between(motion, begin, end)
-        found = checker.check(np.stack([points[:-1], points[1:]], axis=1), regions[world.index(begin)])
+        check = checker.check(np.stack([points[:-1], points[1:]], axis=1), regions[world.index(begin)])
         step = math.floor(begin) - first
-        clearance[step] = min(clearance[step], found.clearance)
-        depth, tolerance = max(depth, found.depth), max(tolerance, found.tolerance)
-        if not found.feasible and math.isnan(collision_at):
-            leg = min(int(found.collision_at), len(points) - 2)
-            collision_at = float(times[leg] + (found.collision_at - leg) * (times[leg + 1] - times[leg]))
+        clearance[step] = min(clearance[step], check.clearance)
+        depth, tolerance = max(depth, check.depth), max(tolerance, check.tolerance)
+        if not check.feasible and math.isnan(collision_at):
+            leg = min(int(check.collision_at), len(points) - 2)
+            collision_at = float(times[leg] + (check.collision_at - leg) * (times[leg + 1] - times[leg]))
     return Verdict(collision_at, clearance, depth, tolerance)
 
 

@@ -160,10 +160,10 @@ def _plan(
     return Planned(time, None, math.inf, math.nan, clock.process_time() - began, evaluations), None, state
 
 
-def _is_free(world: World, problem: Problem, place: tuple[float, float]) -> bool:
+def _is_free(world: World, problem: Problem, point: tuple[float, float]) -> bool:
     """Whether a place is free in the workspace that a planner sees. Where that is drawn as cells, all of the place's cell must be."""
     seen = problem.workspace
     if isinstance(world, MovingCircles) and isinstance(seen, Grid):
-        cell = seen.cell_of(*place)
+        cell = seen.cell_of(*point)
         return cell is not None and not seen.occupied[cell]
-    return not blocks(region(seen), place)
+    return not blocks(region(seen), point)

@@ -66,18 +66,18 @@ def drivable(path: Path, spacing: float, obstacles: Region) -> np.ndarray:
 
 def _halved(path: Path, at: np.ndarray, points: np.ndarray, obstacles: Region) -> np.ndarray:
     """Points (m, 2) of a path: those given (n, 2), at parameters (n,) as in `curves.point_at`, and more where chords enter an obstacle."""
-    found = [points[0]]
+    corners = [points[0]]
     open_ = list(itertools.pairwise(zip(at, points)))[::-1]
     while open_:
-        one, other = open_.pop()
-        chord = np.array([one[1], other[1]])
+        begin, until = open_.pop()
+        chord = np.array([begin[1], until[1]])
         if math.dist(*chord) < _SHORTEST or _free(chord, obstacles) or any(blocks(obstacles, tuple(end)) for end in chord):
-            found.append(other[1])
+            corners.append(until[1])
             continue
-        between = (one[0] + other[0]) / 2
+        between = (begin[0] + until[0]) / 2
         middle = (between, curves.point_at(path, between))
-        open_ += [(middle, other), (one, middle)]
-    return np.array(found)
+        open_ += [(middle, until), (begin, middle)]
+    return np.array(corners)
 
 
 def _free(points: np.ndarray, obstacles: Region) -> bool:
