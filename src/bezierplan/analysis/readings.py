@@ -28,7 +28,7 @@ import pyarrow.parquet as parquet
 from bezierplan.analysis import comparison, explained, metrics, statistics, tables
 from bezierplan.analysis.explained import Evaluated, Reading, name_of, together
 from bezierplan.analysis.results import Results, joined, select
-from bezierplan.analysis.search import Evaluate, Part, Task, confirm, search
+from bezierplan.analysis.search import Evaluate, Part, Task, confirm, search, whole
 from bezierplan.planners import planner_module
 from bezierplan.running import execution
 from bezierplan.running import problems as problem_files
@@ -292,7 +292,8 @@ def _evaluated(task: Task) -> Evaluated | None:
 
 
 def found_by(job: dict, files: dict[str, str], maps: Path, folder: Path, processes: int) -> dict[str, pd.DataFrame]:
-    """The three tables of `explained`, by name, after the search for a study's best reading; the best are judged again by more runs.
+    """The three tables of `explained`, by name, after the search for a study's best reading; the best are judged again by more
+    runs, and the very best anew, by runs with other seeds.
 
     job: as from `study.choices.search_job`.
     """
@@ -303,10 +304,13 @@ def found_by(job: dict, files: dict[str, str], maps: Path, folder: Path, process
     more = Evaluator(job["confirmed"], files, maps, folder)
     with evaluating(more, parts, processes) as evaluate:
         confirmed = confirm(found, parts, evaluate, FINALISTS)
+    best = max(confirmed, key=lambda each: each.rank).reading
+    with evaluating(Evaluator(job["fresh"], files, maps, folder), parts, processes) as evaluate:
+        fresh = whole(best, parts, evaluate)
     shared = {choice["id"] for choice in choices if sum(choice["id"] in part.choices for part in parts) > 1}
     lines = {name: (along, explained.yardstick(more.published[name], along)) for name, along in job["along"].items()}
     return {
-        "readings": explained.readings_table(study, confirmed, found.readings, choices),
+        "readings": explained.readings_table(study, confirmed, found.readings, fresh, choices),
         "explained": explained.explained_table(study, confirmed, found.of_parts, shared),
         "held_out": explained.held_out_table(study, confirmed, lines),
     }
