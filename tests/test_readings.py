@@ -176,6 +176,19 @@ def test_likelihood_is_highest_at_the_truth_and_knows_that_runs_are_common():
     assert likelihood(5.0, 5.3, 6.3) > likelihood(5.0, 5.3, 5.7) + 1
 
 
+def test_an_event_that_none_of_our_few_runs_had_may_be_in_print_once_or_twice():
+    spec = SPEC | {"values": [{"metric": "feasible", "statistic": "count", "label": "runs"}]}
+    ours = results(5.0)
+    ours = ours._replace(runs=ours.runs.assign(feasible=False))
+
+    def likelihood(count):
+        frame = printed(count, 0).assign(metric="feasible", statistic="count", n=100)
+        return readings.numbers_of(ours, spec, frame, "study/table")[1]
+
+    assert likelihood(0) > likelihood(2) > likelihood(0) - 2
+    assert likelihood(50) < likelihood(0) - 50
+
+
 def test_too_few_runs_explain_nothing():
     found, likelihood = readings.numbers_of(results(5.0, runs=3), SPEC, printed(5.0, 6.0), "study/table")
     assert not found["in_range"].any()
