@@ -1,6 +1,7 @@
 """Does the search find a reading that was planted? Synthetic surfaces with the choices of the five studies, on which no planner runs.
 
-    python tests/planted.py [readings]    how often several searches find it with so many readings, two surfaces a study
+    python tests/planted.py [readings]    how often several searches find it, two surfaces a study, with so many readings, or as many as
+                                          the study tries
 
 A surface gives each part of a study some printed numbers, whose means depend on the choices of the part, one by one and in pairs, as in
 runs of few repeats. The numbers are drawn under a reading that is then forgotten. It is found if the score of the best reading tried is
@@ -27,10 +28,12 @@ NUMBERS, FREEDOM, ERROR = 14, 19, 0.2
 
 
 class Surface:
-    """A planted reading, and what a search is given to find it. noise: whether no reading is planted: the numbers are noise."""
+    """A planted reading, and what a search is given to find it. noise: whether no reading is planted: the numbers are noise. most: how many
+    readings the study tries.
+    """
 
-    def __init__(self, name: str, given: list[dict], parts: list[Part], noise: bool = False) -> None:
-        rng = generator(f"surface/{name}")
+    def __init__(self, name: str, given: list[dict], parts: list[Part], noise: bool = False, most: int = 60) -> None:
+        rng, self.most = generator(f"surface/{name}"), most
         self.choices, self.parts, self.asked, self.name = given, parts, 0, name
         self.effects: list[dict[str, list[np.ndarray]]] = []
         self.pairs: list[dict[tuple[str, str], np.ndarray]] = []
@@ -95,7 +98,7 @@ class Surface:
 def of_study(key: str, number: int, noise: bool = False) -> Surface:
     """A surface with the choices of a study."""
     job = choices.search_job(reading.load(reading.read_config({"studies": [key]}, alone=True))[key])
-    return Surface(f"{key}/{number}", job["screened"]["choices"], [Part(**part) for part in job["parts"]], noise)
+    return Surface(f"{key}/{number}", job["screened"]["choices"], [Part(**part) for part in job["parts"]], noise, job["most"])
 
 
 # Other searches, which get the same surface: as many parts are paid for as the search pays for.
@@ -186,14 +189,15 @@ def found_by(surface: Surface, most: int, how: Any = None) -> float:
     return best - surface.score(surface.truth)
 
 
-def main(most: int) -> None:
+def main(most: int | None) -> None:
     keys = ["song2016", "elhoseny2017", "ma2020", "tharwat2018", "meledje"]
     for how in (None, ascent, evolution, random_readings):
-        away = {f"{key}/{number}": found_by(of_study(key, number), most, how) for key, number in itertools.product(keys, range(2))}
+        surfaces = {f"{key}/{number}": of_study(key, number) for key, number in itertools.product(keys, range(2))}
+        away = {name: found_by(surface, most or surface.most, how) for name, surface in surfaces.items()}
         hits = sum(each >= -NEAR for each in away.values())
-        told = ", ".join(f"{name} {each:+.1f}" for name, each in away.items())
-        print(f"{how.__name__ if how else 'search'}: {hits} of {len(away)} found with {most} readings: {told}", flush=True)
+        told = ", ".join(f"{name} ({most or surfaces[name].most}) {each:+.1f}" for name, each in away.items())
+        print(f"{how.__name__ if how else 'search'}: {hits} of {len(away)} found: {told}", flush=True)
 
 
 if __name__ == "__main__":
-    main(int(sys.argv[1]) if len(sys.argv) > 1 else 150)
+    main(int(sys.argv[1]) if len(sys.argv) > 1 else None)

@@ -82,7 +82,7 @@ def rules(**changed):
 
 
 def nothing_found():
-    return planner.Found(np.empty(0, dtype=np.int64), np.inf, np.zeros(1), np.zeros(1), np.zeros(1), 0, 1, 1.0)
+    return planner.Found(np.empty(0, dtype=np.int64), np.inf, np.zeros(1), np.zeros(1), np.zeros(1), np.zeros(1), 0, 1, 1.0)
 
 
 def run(task, seed=0, **changed):
@@ -560,8 +560,19 @@ def test_children_in_the_pool_make_the_population_alike():
     both, alone = (run(task, 3, offspring=offspring) for offspring in ("both", "mutated"))
     assert both.extra["distinct_chromosomes"] < 0.5 * alone.extra["distinct_chromosomes"]
     assert both.extra["mean_q"] > alone.extra["mean_q"]
+    assert both.extra["population_q"] > alone.extra["population_q"]
     assert both.extra["extra_batches"] > alone.extra["extra_batches"]
     assert both.evaluations > 1.5 * alone.evaluations
+
+
+@pytest.mark.parametrize("diversity", ["none", "more_offspring"])
+def test_the_survivors_are_more_alike_than_the_pool_whatever_the_rule_for_diversity(diversity):
+    """Without changes all chromosomes soon are one, which has a Q of 1 with itself."""
+    changing, still = (run(problem(), 3, diversity=diversity, **changes) for changes in ({}, {"mutation_rate": 0.0}))
+    assert changing.extra["population_q"] < still.extra["population_q"] <= 1.0
+    assert still.extra["population_q"] > 0.9
+    if diversity == "more_offspring":
+        assert changing.extra["mean_q"] < changing.extra["population_q"]
 
 
 def test_twice_as_many_children():

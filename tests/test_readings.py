@@ -2,6 +2,7 @@
 
 import json
 import math
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -68,6 +69,24 @@ def test_every_study_has_a_grid_of_plain_values(studies, key):
     assert json.loads(json.dumps(job)) == job
     assert job["tables"]
     assert job["choices"]
+
+
+@pytest.mark.parametrize("key", KEYS)
+def test_the_best_reading_is_judged_anew_by_a_thousand_runs_that_no_other_saw(studies, key):
+    job = choices.search_job(studies[key])
+
+    def runs(part, table, method):
+        chunk = job[part]["tables"][table]["jobs"][method]
+        return {(problem, repeat) for problem in chunk["problems"] for repeat in range(*chunk["repeats"])}
+
+    for name, table in job["confirmed"]["tables"].items():
+        drawn = "layout" in next(iter(table["jobs"][next(iter(table["jobs"]))]["problems"].values()))
+        for method in table["jobs"]:
+            fresh, seen = runs("fresh", name, method), runs("confirmed", name, method)
+            assert seen >= runs("screened", name, method)
+            assert fresh.isdisjoint(seen)
+            counts = Counter("drawn" if drawn else problem for problem, _ in fresh)
+            assert min(counts.values()) >= choices.FRESH
 
 
 # One reading.
@@ -155,6 +174,19 @@ def test_likelihood_is_highest_at_the_truth_and_knows_that_runs_are_common():
     assert likelihood(5.0, 5.0, 6.0) > likelihood(5.5, 5.0, 6.0) > likelihood(7.0, 5.0, 6.0)
     # Both lie equally far off, but together only where the same runs moved both.
     assert likelihood(5.0, 5.3, 6.3) > likelihood(5.0, 5.3, 5.7) + 1
+
+
+def test_an_event_that_none_of_our_few_runs_had_may_be_in_print_once_or_twice():
+    spec = SPEC | {"values": [{"metric": "feasible", "statistic": "count", "label": "runs"}]}
+    ours = results(5.0)
+    ours = ours._replace(runs=ours.runs.assign(feasible=False))
+
+    def likelihood(count):
+        frame = printed(count, 0).assign(metric="feasible", statistic="count", n=100)
+        return readings.numbers_of(ours, spec, frame, "study/table")[1]
+
+    assert likelihood(0) > likelihood(2) > likelihood(0) - 2
+    assert likelihood(50) < likelihood(0) - 50
 
 
 def test_too_few_runs_explain_nothing():
@@ -331,7 +363,7 @@ def test_tables_of_readings_numbers_and_tables_left_out():
     tables = ["table1", "table1", "table2"]
     in_force = Evaluated({}, numbers([True, False, True], tables), {"table1": -1.0, "table2": -1.0})
     other = Evaluated({"O1": 2}, numbers([True, True, False], tables), {"table1": 0.0, "table2": -5.0})
-    found = explained.readings_table("study", [in_force, other], [in_force, other], CHOICES)
+    found = explained.readings_table("study", [in_force, other], [in_force, other], other, CHOICES)
     assert found["reading"].to_list() == ["in force", "O1=2"]
     assert found[["in_range", "in_range_table1", "in_range_table2"]].to_numpy().tolist() == [[2, 1, 1], [2, 2, 0]]
     numbers_found = explained.explained_table("study", [in_force, other], [[in_force, other]], set())
@@ -346,7 +378,9 @@ def told(*tried, lines=None):
     confirmed = list(tried)
     numbers_found = explained.explained_table("one", confirmed, [confirmed], set())
     held_out = explained.held_out_table("one", confirmed, lines or {})
-    (*_, text) = explained.section(explained.readings_table("one", confirmed, [], CHOICES), numbers_found, held_out, {"one": "The first"})
+    (*_, text) = explained.section(
+        explained.readings_table("one", confirmed, [], confirmed[-1], CHOICES), numbers_found, held_out, {"one": "The first"}
+    )
     return text
 
 
@@ -357,6 +391,7 @@ def test_summary_says_what_no_reading_gives_and_what_the_best_one_does():
     text = told(in_force, better)
     assert "are most likely from an experiment in which these choices differ from ours: : 2 (O1=2)" in text
     assert "log-likelihood ratio against the one in force +5.0 (10^2 times as likely)" in text
+    assert "Judged anew by runs with other seeds, it has 3 of 4 in range and a log-likelihood of -1.0 (by the runs" in text
     assert "No reading explains 1 of the numbers: 1 of table2 for d." in text
     assert text.endswith("readings bring 3 into range, that in force 1: the tables held out agree with a change.")
     assert "none of 1 readings is more likely" in told(in_force)
@@ -380,7 +415,7 @@ def test_a_reading_under_which_a_printed_number_is_impossible_is_ruled_out_whate
     in_force = Evaluated({}, numbers([True, False]), {"table1": -9.0})
     likely = Evaluated({"O1": 2}, numbers([True, True]).assign(possible=[True, False]), {"table1": 0.0})
     assert max([in_force, likely], key=lambda each: each.rank) is in_force
-    found = explained.readings_table("study", [in_force, likely], [], CHOICES)
+    found = explained.readings_table("study", [in_force, likely], [], likely, CHOICES)
     assert found[["reading", "impossible"]].to_numpy().tolist() == [["in force", 0], ["O1=2", 1]]
     text = told(in_force, likely)
     assert "1 of 2 readings is ruled out: under it a printed mean or extreme lies below the exact bound of its map." in text
@@ -409,7 +444,8 @@ def test_a_line_predicts_numbers_on_it_and_not_others():
 
 
 def test_figure_shows_every_choice_that_some_reading_makes():
-    table = explained.readings_table("study", [evaluated(chosen, {}) for chosen in ({}, {"O1": 2}, {"O3": 1})], [], CHOICES)
+    judged = [evaluated(chosen, {}) for chosen in ({}, {"O1": 2}, {"O3": 1})]
+    table = explained.readings_table("study", judged, [], judged[0], CHOICES)
     above, below = specification.draw(table, [choice["id"] for choice in CHOICES]).axes
     assert [label.get_text() for label in below.get_yticklabels()] == ["O1 = 2", "O3 = 1"]
     assert above.lines[0].get_ydata().tolist() == sorted(table["in_range"])
@@ -418,11 +454,11 @@ def test_figure_shows_every_choice_that_some_reading_makes():
 def test_a_search_goes_on_with_the_runs_that_it_kept_in_any_number_of_processes(studies, tmp_path, monkeypatch):
     study = studies["song2016"]
     job = choices.search_job(study) | {"most": 2}
-    for part in ("screened", "confirmed"):
+    for part in ("screened", "confirmed", "fresh"):
         for table in job[part]["tables"].values():
             for chunk in table["jobs"].values():
                 chunk["settings"] = chunk["settings"] | {"generations": 5, "population": 20}
-                chunk["repeats"] = [0, statistics.LEAST_RUNS]
+                chunk["repeats"] = [chunk["repeats"][0], chunk["repeats"][0] + statistics.LEAST_RUNS]
     monkeypatch.chdir(ROOT)
     files = {"table1": study.published_file("table1")}
 

@@ -12,7 +12,8 @@ Columns of readings.csv, one row per reading, the best first:
 | by_chance | how many would if each printed number were exchanged with another of its kind in the same table (expected value) |
 | impossible | printed means and extremes below the exact bound of their map under this reading; with one, it is ruled out |
 | score | sum of the logarithms of the tables' likelihoods, by which readings that are not ruled out are compared |
-| in_range_<table> | the same by table |
+| in_range_<table> | in_range by table |
+| fresh_in_range, fresh_score | those of the best reading by runs of its own, with other seeds, that the search did not see |
 
 Columns of explained.csv, one row per published number, those that no reading gives first: study, table, the table's keys, metric,
 statistic, value_published; in_force and best, whether it lies in range under the reading in force and under the best one; tried, how many
@@ -80,8 +81,12 @@ def in_words(reading: Reading, choices: list[dict]) -> str:
     return "; ".join(made)
 
 
-def readings_table(study: str, confirmed: list[Evaluated], screened: list[Evaluated], choices: list[dict]) -> pd.DataFrame:
-    """readings.csv. confirmed: the best, judged by more runs. screened: all, of which those confirmed are left out."""
+def readings_table(
+    study: str, confirmed: list[Evaluated], screened: list[Evaluated], fresh: Evaluated, choices: list[dict]
+) -> pd.DataFrame:
+    """readings.csv. confirmed: the best, judged by more runs. screened: all, of which those confirmed are left out. fresh: the very best,
+    judged by runs with other seeds.
+    """
     rows, again = [], {name_of(each.reading) for each in confirmed}
     rest = [each for each in screened if name_of(each.reading) not in again]
     ordered = [sorted(given, key=lambda each: each.rank, reverse=True) for given in (confirmed, rest)]
@@ -96,7 +101,8 @@ def readings_table(study: str, confirmed: list[Evaluated], screened: list[Evalua
             | {"impossible": each.impossible, "score": each.score}
             | {f"in_range_{table}": int(count) for table, count in by_table.items()}
         )
-    return pd.DataFrame(rows)
+    rows[0] |= {"fresh_in_range": int(fresh.numbers["in_range"].sum()), "fresh_score": fresh.score}
+    return pd.DataFrame(rows).astype({"fresh_in_range": "Int64"})
 
 
 def by_chance(numbers: pd.DataFrame) -> float:
@@ -201,6 +207,7 @@ def sentences(readings: pd.DataFrame, explained: pd.DataFrame, held_out: pd.Data
             None,
             [
                 _most_likely(best, in_force, len(readings)),
+                _judged_anew(best),
                 _beside_a_line(held_out),
                 _never(explained),
                 _searched(explained),
@@ -225,6 +232,16 @@ def _most_likely(best: pd.Series, in_force: pd.Series, tried: int) -> str:
     return (
         f"Of {tried} readings, the printed numbers are most likely from an experiment in which these choices differ from ours: "
         f"{best['in_words']} ({best['reading']}); {against}. It has {_counted(best)}{level}; that in force has {_counted(in_force)}."
+    )
+
+
+def _judged_anew(best: pd.Series) -> str:
+    """Whether the best reading keeps its score by runs that did not choose it."""
+    if best["impossible"]:
+        return ""
+    return (
+        f"Judged anew by runs with other seeds, it has {best['fresh_in_range']} of {best['numbers']} in range and a log-likelihood of "
+        f"{best['fresh_score']:.1f} (by the runs that chose it, {best['score']:.1f})."
     )
 
 

@@ -353,6 +353,7 @@ METRICS: dict[str, Metric] = {
     ),
     "distinct_chromosomes": Metric("-", "different chromosomes in the population, mean over the generations", False),
     "mean_q": Metric("-", "mean Q statistic of the pool, mean over the generations", False),
+    "population_q": Metric("-", "mean Q statistic of the surviving population, mean over the generations", False),
     "extra_batches": Metric("-", "further batches of offspring that the rule for diversity asked for", False, step=1.0),
     "valid_share": Metric("-", "share of the children that the planner kept", False),
     "outlier": Metric("-", "whether the objective lies beyond the whiskers of its method's box", False, measures.outlier, step=1.0),

@@ -28,7 +28,7 @@ import pyarrow.parquet as parquet
 from bezierplan.analysis import comparison, explained, metrics, statistics, tables
 from bezierplan.analysis.explained import Evaluated, Reading, name_of, together
 from bezierplan.analysis.results import Results, joined, select
-from bezierplan.analysis.search import Evaluate, Part, Task, confirm, search
+from bezierplan.analysis.search import Evaluate, Part, Task, confirm, search, whole
 from bezierplan.planners import planner_module
 from bezierplan.running import execution
 from bezierplan.running import problems as problem_files
@@ -116,7 +116,7 @@ def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str)
     both = theirs.merge(ours.drop(columns="value"), on=[*given, "metric", "statistic"], how="left")
     runs = select(results.runs, spec["where"])
     measured = {metric: metrics.values(runs, metric, results.problems) for metric in both["metric"].unique()}
-    rows, draws = [], []
+    rows, draws, least = [], [], []
     for number, row in both.iterrows():
         if metrics.METRICS[row["metric"]].unit == "s" or not isinstance(row["numbers"], np.ndarray):
             continue
@@ -134,8 +134,9 @@ def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str)
         rows.append(described | {"low": low - half, "high": high + half, "in_range": inside, "possible": not below})
         own = runs[np.logical_and.reduce([runs[key] == row[key] for key in given])].assign(value=measured[row["metric"]])
         draws.append(_experiments(own, row, name) if enough else np.full(EXPERIMENTS, np.nan))
+        least.append(max(half / math.sqrt(3), _least_of_count(row, size)))
     frame = pd.DataFrame(rows, columns=[*given, "metric", "statistic", "value_published", "low", "high", "in_range", "possible"])
-    return frame, _likelihood(frame["value_published"].to_numpy(dtype=float), np.array(draws), results)
+    return frame, _likelihood(frame["value_published"].to_numpy(dtype=float), np.array(draws), np.array(least), results)
 
 
 def _experiments(runs: pd.DataFrame, row: pd.Series, name: str) -> np.ndarray:
@@ -160,11 +161,26 @@ def _unit_columns(runs: pd.DataFrame) -> list[str]:
     return [column for column in ("layout", "repeat") if column in runs]
 
 
-def _likelihood(published: np.ndarray, draws: np.ndarray, results: Results) -> float:
+def _least_of_count(row: pd.Series, size: int | None) -> float:
+    """The least spread of a count or share, 0 for other statistics.
+
+    If none of our n runs has an event, its probability may still be some 3 / n, so that a printed 2 of 100 is no wonder: that of Jeffreys'
+    prior (Brown, Cai and DasGupta 2001, "Interval estimation for a binomial proportion").
+    """
+    if row["statistic"] not in ("count", "share"):
+        return 0.0
+    runs = row["numbers"]
+    share = (runs.sum() + 0.5) / (len(runs) + 1)
+    asked = size or len(runs)
+    spread = math.sqrt(share * (1 - share) * (1 / asked + 1 / (len(runs) + 1)))
+    return spread * (asked if row["statistic"] == "count" else 1)
+
+
+def _likelihood(published: np.ndarray, draws: np.ndarray, least: np.ndarray, results: Results) -> float:
     """Logarithm of the density of the published numbers (k,) in the multivariate t distribution of draws (k, EXPERIMENTS).
 
     The draws come from n units, which cannot determine k x k covariances: they are shrunk to the diagonal by k / (k + n), and the
-    distribution has n - 1 degrees of freedom. A spread below a thousandth of the number counts as that.
+    distribution has n - 1 degrees of freedom. A spread is at least that of `least` (k,) and a thousandth of the number.
     """
     known = ~np.isnan(draws).any(axis=1) if len(draws) else np.zeros(0, dtype=bool)
     units = max(len(results.runs[_unit_columns(results.runs)].drop_duplicates()), 2)
@@ -172,9 +188,9 @@ def _likelihood(published: np.ndarray, draws: np.ndarray, results: Results) -> f
     missing = -50.0 * float((~known).sum())
     if not known.any():
         return missing
-    draws, published = draws[known], published[known]
+    draws, published, least = draws[known], published[known], least[known]
     k, centre = len(draws), draws.mean(axis=1)
-    spread = np.maximum(draws.std(axis=1), 1e-3 * np.maximum(np.abs(centre), 1e-3))
+    spread = np.maximum.reduce([draws.std(axis=1), least, 1e-3 * np.maximum(np.abs(centre), 1e-3)])
     with np.errstate(invalid="ignore"):  # a number without spread is correlated with none
         correlation = np.nan_to_num(np.atleast_2d(np.corrcoef(draws)), nan=0.0) if k > 1 else np.eye(1)
     shrunk = (1 - k / (k + units)) * correlation
@@ -292,7 +308,8 @@ def _evaluated(task: Task) -> Evaluated | None:
 
 
 def found_by(job: dict, files: dict[str, str], maps: Path, folder: Path, processes: int) -> dict[str, pd.DataFrame]:
-    """The three tables of `explained`, by name, after the search for a study's best reading; the best are judged again by more runs.
+    """The three tables of `explained`, by name, after the search for a study's best reading; the best are judged again by more
+    runs, and the very best anew, by runs with other seeds.
 
     job: as from `study.choices.search_job`.
     """
@@ -303,10 +320,13 @@ def found_by(job: dict, files: dict[str, str], maps: Path, folder: Path, process
     more = Evaluator(job["confirmed"], files, maps, folder)
     with evaluating(more, parts, processes) as evaluate:
         confirmed = confirm(found, parts, evaluate, FINALISTS)
+    best = max(confirmed, key=lambda each: each.rank).reading
+    with evaluating(Evaluator(job["fresh"], files, maps, folder), parts, processes) as evaluate:
+        fresh = whole(best, parts, evaluate)
     shared = {choice["id"] for choice in choices if sum(choice["id"] in part.choices for part in parts) > 1}
     lines = {name: (along, explained.yardstick(more.published[name], along)) for name, along in job["along"].items()}
     return {
-        "readings": explained.readings_table(study, confirmed, found.readings, choices),
+        "readings": explained.readings_table(study, confirmed, found.readings, fresh, choices),
         "explained": explained.explained_table(study, confirmed, found.of_parts, shared),
         "held_out": explained.held_out_table(study, confirmed, lines),
     }

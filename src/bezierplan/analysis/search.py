@@ -138,6 +138,13 @@ def confirm(found: Found, parts: list[Part], evaluate: Evaluate, finalists: int)
     return book.found(finalists).readings
 
 
+def whole(reading: Reading, parts: list[Part], evaluate: Evaluate) -> Evaluated:
+    """A reading, all of whose parts are evaluated."""
+    book = _Book([], parts, evaluate, len(parts))
+    book.ask([reading])
+    return together(reading, book.evaluated(reading))
+
+
 def _climb_on(choices: list[dict], book: _Book, name: str) -> None:
     """Climb from the reading in force, then from kicks of the best one, until nothing may be spent or nothing is new."""
     reading = _climb({}, choices, book, generator(f"{name}/climb/0"))

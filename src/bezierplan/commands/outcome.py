@@ -18,7 +18,7 @@ from bezierplan.study import reading
 
 RESULTS, FULL = Path("results/extended"), Path("results/full")
 KEPT, README = Path("docs/outcome"), Path("README.md")
-PICTURE = "song2016/figures/figure3.png"
+PICTURES = ("song2016/figures/figure3.png", "song2016/figures/identified.png")
 # The run of the README's animation, and its file.
 DRIVE, ANIMATION = "elhoseny2017/moving/moving_fast_0_15/mga_evades/0", "elhoseny2017_moving.gif"
 BLOCK = "outcome"
@@ -66,7 +66,8 @@ def write() -> None:
                 shutil.copyfile(FULL / key / name, kept)
     shutil.copyfile(RESULTS / WORTH, KEPT / WORTH)
     forecast.keep(studies, Path())
-    shutil.copyfile(FULL / PICTURE, KEPT / PICTURE.replace("/figures/", "_"))
+    for picture in PICTURES:
+        shutil.copyfile(FULL / picture, KEPT / picture.replace("/figures/", "_"))
     replay.animate(replay.replay(DRIVE, studies), KEPT / ANIMATION)
     README.write_text(summary.with_block(README.read_text(encoding="utf-8"), BLOCK, table(KEPT)), encoding="utf-8")
 

@@ -27,7 +27,7 @@ from bezierplan.planners.parts.settings import with_settings
 from bezierplan.planners.prm import roadmap
 from bezierplan.workspaces.problem import Path, Problem
 
-extra = ("distinct_chromosomes", "mean_q", "extra_batches", "valid_share")
+extra = ("distinct_chromosomes", "mean_q", "population_q", "extra_batches", "valid_share")
 workspaces = ("grid",)
 
 PAPER = "elhoseny2017"
@@ -116,7 +116,8 @@ class Found(NamedTuple):
     """Result of a search. ones: those of the best chromosome, empty if there is none. cost: its length.
 
     history: (iterations + 1,) best cost so far. distinct: (iterations + 1,) number of distinct chromosomes in the population. q:
-    (iterations,) mean Q of the pool at the end of an iteration, where requested. batches: number of extra batches of offspring.
+    (iterations,) mean Q of the pool at the end of an iteration, where requested. population_q: (iterations,) mean Q of the chromosomes that
+    survive it. batches: number of extra batches of offspring.
     evaluations: number of chromosomes validated. valid_share: share of valid children.
     """
 
@@ -125,6 +126,7 @@ class Found(NamedTuple):
     history: np.ndarray
     distinct: np.ndarray
     q: np.ndarray
+    population_q: np.ndarray
     batches: int
     evaluations: int
     valid_share: float
@@ -156,7 +158,8 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings, last: n
     -------
     Plan
         `claimed_feasible`: no cell that the sampled curve touches is occupied. Extra columns: distinct_chromosomes in the population and
-        mean_q of the pool, both averaged over the iterations; extra_batches of offspring; valid_share of the children.
+        mean_q of the pool and population_q of the survivors, averaged over the iterations; extra_batches of offspring; valid_share of the
+        children.
 
     References
     ----------
@@ -165,7 +168,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings, last: n
     grid = problem.workspace
     ends = grid.in_cells(np.array([problem.start, problem.target], dtype=float))
     if problem.start == problem.target:
-        nothing = {"distinct_chromosomes": 0.0, "mean_q": math.nan, "extra_batches": 0, "valid_share": math.nan}
+        nothing = {"distinct_chromosomes": 0.0, "mean_q": math.nan, "population_q": math.nan, "extra_batches": 0, "valid_share": math.nan}
         return Plan(Path("polyline", grid.in_units(ends)), 0.0, True, 1, np.zeros(1), "start is target", nothing)
     # A start on the upper or right border lies in the last cell, not beyond it.
     ends = np.minimum(ends, np.nextafter(np.array(grid.occupied.shape[::-1], dtype=float), 0.0))
@@ -190,6 +193,7 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings, last: n
         extra={
             "distinct_chromosomes": float(found.distinct.mean()),
             "mean_q": float(found.q.mean()),
+            "population_q": float(found.population_q.mean()),
             "extra_batches": found.batches,
             "valid_share": found.valid_share,
         },
@@ -236,7 +240,7 @@ def search(rng: np.random.Generator, field: Field, rules: Settings, first: np.nd
     pool, spare = gene_lists.empty_pool(size + batches * children, _ROOM), gene_lists.empty_pool(size, _ROOM)
     child, memory = np.empty(_ROOM, dtype=np.int64), gene_lists.empty_memory(_ROOM)
     history, distinct = np.empty(rules.iterations + 1), np.empty(rules.iterations + 1)
-    q = np.full(rules.iterations, np.nan)
+    q, population_q = np.full(rules.iterations, np.nan), np.empty(rules.iterations)
     best, best_cost = np.empty(0, dtype=np.int64), np.inf
     further = evaluations = bred = lost = 0
 
@@ -280,8 +284,9 @@ def search(rng: np.random.Generator, field: Field, rules: Settings, first: np.nd
                     break
         # Where a diversity rule rejects so many children that places remain free, the last parents keep them.
         gene_lists.select(pool, min(size, filled - size) if rules.survival == Survival.generational else 0, filled, spare)
+        population_q[iteration] = gene_lists.sum_of_q(pool, 0, size, len(field.points)) / (size * (size - 1) / 2)
         eta *= rules.eta_decay
-    return Found(best, best_cost, history, distinct, q, further, evaluations, 1.0 - lost / bred)
+    return Found(best, best_cost, history, distinct, q, population_q, further, evaluations, 1.0 - lost / bred)
 
 
 @allocation_free

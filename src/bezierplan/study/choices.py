@@ -12,7 +12,6 @@ A choice is a mapping of plain values: id; detail; values, the one in force firs
 """
 
 import csv
-import math
 from pathlib import Path
 from typing import Any
 
@@ -27,6 +26,9 @@ from bezierplan.workspaces.kinds import file_keys
 
 SCREENED = 4
 """The search judges readings by one of so many of the runs by which the best are judged."""
+
+FRESH = 1000
+"""With so many runs of each method on each problem, or on all fields drawn together, and other seeds, the best reading is judged anew."""
 
 
 def printed_tables(study: Study) -> dict[str, Pivot]:
@@ -101,42 +103,58 @@ def _apart(table: Pivot, rows: list[dict[str, str]]) -> bool:
 def search_job(study: Study) -> dict[str, Any]:
     """What the search for a reading depends on, in addition to the files of maps and published numbers.
 
-    screened, confirmed: `readings_job` for the search and for the best that it finds. parts: as `analysis.search.Part`. along: of some
-    tables, the column along which the paper says that its numbers rise or fall.
+    screened, confirmed, fresh: `readings_job` for the search, for the best that it finds, and for the very best. parts: as
+    `analysis.search.Part`. along: of some tables, the column along which the paper says that its numbers rise or fall.
     """
     tables = printed_tables(study)
     along = {name: table.monotone[0].along for name, table in tables.items() if table.monotone}
     found = {"study": study.key, "most": study.readings_tried, "parts": _parts(study), "along": along}
-    return found | {"screened": readings_job(study, SCREENED), "confirmed": readings_job(study, 1)}
+    return found | {
+        "screened": readings_job(study, SCREENED),
+        "confirmed": readings_job(study, 1),
+        "fresh": readings_job(study, fresh=True),
+    }
 
 
-def readings_job(study: Study, share: int) -> dict[str, Any]:
+def readings_job(study: Study, share: int = 1, fresh: bool = False) -> dict[str, Any]:
     """What readings are judged by: the jobs of their runs, and the problems of these.
 
     share: a share of 1 / share of the runs that judge a reading, though at least as many as are judged at all. Where there is one run in
-    each layout, it is a share of the layouts, of which twice those of scale full judge a reading.
+    each layout, it is a share of the layouts, of which twice those of scale full judge a reading. fresh: `FRESH` runs instead, whose
+    repeats, and layouts where there are more, come after all those.
     """
     tables, worlds = {}, {}
     for name, table in printed_tables(study).items():
         content = study.experiments[table.experiment]
-        drawn = [study.problems[each].layouts for each in content.problems if study.problems[each].layouts]
-        by_layout = bool(drawn) and content.readings is None
+        drawn = next((study.problems[each].layouts for each in content.problems if study.problems[each].layouts), None)
+        by_layout = drawn is not None and content.readings is None
         repeats = content.readings or content.repeats["full"]
         scale = "extended" if by_layout else "full"
-        layouts = _share(min(2 * drawn[0]["full"], drawn[0]["extended"]), share, LEAST_RUNS) if by_layout else math.inf
+        layouts = _layouts(drawn, share, fresh) if by_layout else None
         methods = _methods(study, name, table)
         chunk_jobs = {method: jobs.job(study, table.experiment, method, scale, 0) for method in methods}
         world = jobs.problems_job(study, table.experiment, scale)
         for given in (world, *chunk_jobs.values()):
-            given["problems"] = {key: place for key, place in given["problems"].items() if place.get("layout", 0) < layouts}
+            given["problems"] = {
+                key: place for key, place in given["problems"].items() if layouts is None or place.get("layout") in layouts
+            }
         for job in chunk_jobs.values():
-            job["repeats"] = [0, repeats if by_layout else _share(repeats, share, 1 if drawn else LEAST_RUNS)]
+            if fresh:
+                job["repeats"] = [repeats, repeats + (-(-FRESH // len(job["problems"])) if drawn else FRESH)]
+            else:
+                job["repeats"] = [0, repeats if by_layout else _share(repeats, share, 1 if drawn else LEAST_RUNS)]
         # What the paper does not define has no vote.
         voting = [entry.plain() for entry in table.values if entry.defined]
         spec = table.plain() | {"where": table.where | {"method": methods}, "values": voting}
         tables[name] = {"experiment": table.experiment, "spec": spec, "jobs": chunk_jobs}
         worlds[table.experiment] = world
     return {"study": study.key, "tables": tables, "choices": choices(study), "worlds": worlds, "maps": content_digest(*maps(study))}
+
+
+def _layouts(drawn: dict[str, int], share: int, fresh: bool) -> range:
+    """Numbers of the fields on which readings are judged; the fresh ones are those that no other reading met, if there are such."""
+    judged, most = min(2 * drawn["full"], drawn["extended"]), drawn["extended"]
+    return range(judged if judged < most else 0, most) if fresh else range(_share(judged, share, LEAST_RUNS))
 
 
 def _share(whole: int, share: int, least: int) -> int:
