@@ -405,14 +405,14 @@ def sensitivity_params(studies: Studies, scale: str, study: str) -> dict:
     return {"described": alternatives.alternatives_described(studies[study]), "code": _code("sensitivity")}
 
 
-def readings_inputs(studies: Studies, scale: str, study: str) -> dict[str, Any]:
-    """Input files of the search for a reading, which makes problems and runs of its own."""
+def interpretations_inputs(studies: Studies, scale: str, study: str) -> dict[str, Any]:
+    """Input files of the search for an interpretation, which makes problems and runs of its own."""
     own = studies[study]
     return {"maps": choices.maps(own)} | named("published", {name: own.published_file(name) for name in choices.printed_tables(own)})
 
 
-def readings_params(studies: Studies, scale: str, study: str) -> dict:
-    """Params of the search for a reading."""
+def interpretations_params(studies: Studies, scale: str, study: str) -> dict:
+    """Params of the search for an interpretation."""
     job = choices.search_job(studies[study])
     planners = {_planner(each["planner"]) for table in job["screened"]["tables"].values() for each in table["jobs"].values()}
     kinds = {module for world in job["screened"]["worlds"].values() for module in _kinds_of_workspace(world)}
@@ -420,7 +420,7 @@ def readings_params(studies: Studies, scale: str, study: str) -> dict:
         "job": job,
         "folder": definition.relative(studies[study].folder),
         "published": content_digest(*(studies[study].published_file(name) for name in choices.printed_tables(studies[study]))),
-        "code": _code("readings", *sorted(planners), *sorted(kinds)),
+        "code": _code("interpretations", *sorted(planners), *sorted(kinds)),
     }
 
 
@@ -547,10 +547,12 @@ def files_of_sensitivity(studies: Studies, scale: str) -> list[str]:
     return [f"{_folder(scale, key)}/sensitivity.csv" for key, study in studies.items() if alternatives.tried(study)]
 
 
-def files_of_readings(studies: Studies, scale: str) -> list[str]:
-    """The readings of each study that has published numbers and leaves choices open."""
+def files_of_interpretations(studies: Studies, scale: str) -> list[str]:
+    """The interpretations of each study that has published numbers and leaves choices open."""
     return [
-        f"{_folder(scale, key)}/readings.csv" for key, study in studies.items() if choices.printed_tables(study) and choices.choices(study)
+        f"{_folder(scale, key)}/interpretations.csv"
+        for key, study in studies.items()
+        if choices.printed_tables(study) and choices.choices(study)
     ]
 
 
