@@ -50,7 +50,7 @@ def claim(identity: str, verdict: str, **more) -> content.Claim:
         "decisive": 0,
         "variant": "metric=length",
     }
-    given |= {"readings": [content.Reading(variant="metric=objective", verdict="contradicted", holds="0 of 2")]}
+    given |= {"interpretations": [content.Interpretation(variant="metric=objective", verdict="contradicted", holds="0 of 2")]}
     given |= {
         "choices": [content.Choice(assumption="O1", alternative="8", claim=identity, verdict="undecided", changed=True)],
         "more": {"new_column": "text"},
@@ -84,9 +84,9 @@ def study(claims: list[content.Claim], numbers: list[content.Number]) -> content
         shown=[content.Shown(problem="p", best="one/first/p/a/0", worst="one/first/p/a/1", **shown), *drives()],
         worth=[worth("a", 1.25), worth("c", None)],
         worth_in_words=HOSTILE,
-        explanations=[explanation("O1=8", 3), explanation("in force", 1)],
-        readings_tried=7,
-        explained=[content.Explained(table="table1", numbers=3, in_force=1, best=3, never=0)],
+        explanations=[explanation("O1=8", 3), explanation("default", 1)],
+        interpretations_tried=7,
+        explained=[content.Explained(table="table1", numbers=3, default=1, best=3, never=0)],
         labels={"a": HOSTILE, "p": "the room"},
     )
 
@@ -96,8 +96,8 @@ def worth(method: str, curvature: float | None) -> content.Worth:
     return content.Worth(address=f"one/worth/{method}", method=method, curvature=curvature, cornered=curvature is None, **given)
 
 
-def explanation(reading: str, count: int) -> content.Explanation:
-    return content.Explanation(reading=reading, in_range=count, numbers=3, by_chance=1.2)
+def explanation(interpretation: str, count: int) -> content.Explanation:
+    return content.Explanation(interpretation=interpretation, in_range=count, numbers=3, by_chance=1.2)
 
 
 def drives() -> list[content.Shown]:

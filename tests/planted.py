@@ -1,11 +1,12 @@
-"""Does the search find a reading that was planted? Synthetic surfaces with the choices of the five studies, on which no planner runs.
+"""Does the search find an interpretation that was planted? Synthetic surfaces with the choices of the five studies, on which no planner
+runs.
 
-    python tests/planted.py [readings]    how often several searches find it, two surfaces a study, with so many readings, or as many as
-                                          the study tries
+    python tests/planted.py [interpretations]    how often several searches find it, two surfaces a study, with so many interpretations, or
+                                                 as many as the study tries
 
 A surface gives each part of a study some printed numbers, whose means depend on the choices of the part, one by one and in pairs, as in
-runs of few repeats. The numbers are drawn under a reading that is then forgotten. It is found if the score of the best reading tried is
-at most `NEAR` below its own.
+runs of few repeats. The numbers are drawn under an interpretation that is then forgotten. It is found if the score of the best
+interpretation tried is at most `NEAR` below its own.
 """
 
 import contextlib
@@ -17,7 +18,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bezierplan.analysis.explained import Evaluated, Reading, name_of
+from bezierplan.analysis.explained import Evaluated, Interpretation, name_of
 from bezierplan.analysis.search import Part, Task, search
 from bezierplan.study import choices, reading
 from bezierplan.workspaces.seeds import generator
@@ -28,8 +29,8 @@ NUMBERS, FREEDOM, ERROR = 14, 19, 0.2
 
 
 class Surface:
-    """A planted reading, and what a search is given to find it. noise: whether no reading is planted: the numbers are noise. most: how many
-    readings the study tries.
+    """A planted interpretation, and what a search is given to find it. noise: whether no interpretation is planted: the numbers are noise.
+    most: how many interpretations the study tries.
     """
 
     def __init__(self, name: str, given: list[dict], parts: list[Part], noise: bool = False, most: int = 60) -> None:
@@ -43,7 +44,7 @@ class Surface:
             pairs = [tuple(rng.choice(part.choices, 2, replace=False)) for _ in part.choices] if len(part.choices) > 1 else []
             shapes = {pair: rng.lognormal(-1.2, 1.0) * rng.normal(size=(levels[pair[0]], levels[pair[1]], 1)) for pair in pairs}
             self.pairs.append({pair: shape * rng.normal(size=NUMBERS) for pair, shape in shapes.items()})
-        self.truth: Reading = {}
+        self.truth: Interpretation = {}
         for choice in given:
             if rng.random() < 0.6 and (value := choice["values"][rng.integers(levels[choice["id"]])]) is not None:
                 self.truth[choice["id"]] = value
@@ -58,11 +59,11 @@ class Surface:
         along = np.concatenate([[0.0], rng.normal(size=levels - 1)])
         return rng.lognormal(-0.7, 1.3) * (along[:, None] * together + 0.3 * rng.normal(size=(levels, NUMBERS)))
 
-    def _place(self, choice: str, made: Reading) -> int:
+    def _place(self, choice: str, made: Interpretation) -> int:
         values = next(each["values"] for each in self.choices if each["id"] == choice)
         return values.index(made.get(choice))
 
-    def _means(self, part: int, made: Reading) -> np.ndarray:
+    def _means(self, part: int, made: Interpretation) -> np.ndarray:
         found = np.zeros(NUMBERS)
         for choice, effect in self.effects[part].items():
             found = found + effect[self._place(choice, made)]
@@ -71,10 +72,10 @@ class Surface:
         return found
 
     def evaluated(self, task: Task) -> Evaluated:
-        """A part of a reading."""
+        """A part of an interpretation."""
         self.asked += 1
-        error = generator(f"{self.name}/{task.part}/{name_of(task.reading)}").normal(0.0, ERROR, NUMBERS)
-        away = self.printed[task.part] - self._means(task.part, task.reading) - error
+        error = generator(f"{self.name}/{task.part}/{name_of(task.interpretation)}").normal(0.0, ERROR, NUMBERS)
+        away = self.printed[task.part] - self._means(task.part, task.interpretation) - error
         score = -0.5 * (FREEDOM + NUMBERS) * math.log1p(float(away @ away) / FREEDOM)
         frame = {
             "method": self.parts[task.part].methods[0],
@@ -84,13 +85,13 @@ class Surface:
         }
         bounds = {"low": self.printed[task.part] - away - 2, "high": self.printed[task.part] - away + 2}
         numbers = pd.DataFrame(frame | bounds | {"in_range": np.abs(away) < 2, "possible": True, "table": "table1"})
-        return Evaluated(task.reading, numbers, {"table1": score})
+        return Evaluated(task.interpretation, numbers, {"table1": score})
 
     def evaluate(self, tasks: list[Task]) -> list[Evaluated | None]:
         return [self.evaluated(task) for task in tasks]
 
-    def score(self, made: Reading) -> float:
-        """The score of a reading, whose parts count as asked for, once each, if they were not before."""
+    def score(self, made: Interpretation) -> float:
+        """The score of an interpretation, whose parts count as asked for, once each, if they were not before."""
         own = [{choice: value for choice, value in made.items() if choice in part.choices} for part in self.parts]
         return sum(self.evaluated(Task(number, each)).score for number, each in enumerate(own))
 
@@ -109,7 +110,7 @@ class Spent(Exception):
 
 
 class Paid:
-    """Scores of readings as rows of levels, each part paid for once."""
+    """Scores of interpretations as rows of levels, each part paid for once."""
 
     def __init__(self, surface: Surface, most: int) -> None:
         self.surface, self.left, self.best = surface, most * len(surface.parts), -math.inf
@@ -136,14 +137,16 @@ class Paid:
         return [len(choice["values"]) for choice in self.surface.choices]
 
 
-def random_readings(paid: Paid, name: str) -> None:
+def random_interpretations(paid: Paid, name: str) -> None:
     rng = generator(name)
     while True:
         paid([rng.integers(levels) for levels in paid.levels])
 
 
 def ascent(paid: Paid, name: str) -> None:
-    """Coordinate ascent in the order of the choices, each whole reading paid in full: from the one in force, then from two random ones."""
+    """Coordinate ascent in the order of the choices, each whole interpretation paid in full: from the default, then from two random
+    ones.
+    """
     paid.left = paid.left // len(paid.surface.parts)
     rng, once, tried = generator(name), Paid.__call__, set()
 
@@ -177,10 +180,10 @@ def evolution(paid: Paid, name: str) -> None:
 
 
 def found_by(surface: Surface, most: int, how: Any = None) -> float:
-    """The score of the best reading that a search finds, less that of the planted one."""
+    """The score of the best interpretation that a search finds, less that of the planted one."""
     if how is None:
         found = search(surface.choices, surface.parts, surface.evaluate, surface.name, most)
-        best = max(each.score for each in found.readings)
+        best = max(each.score for each in found.interpretations)
     else:
         paid = Paid(surface, most)
         with contextlib.suppress(Spent):
@@ -191,7 +194,7 @@ def found_by(surface: Surface, most: int, how: Any = None) -> float:
 
 def main(most: int | None) -> None:
     keys = ["song2016", "elhoseny2017", "ma2020", "tharwat2018", "meledje"]
-    for how in (None, ascent, evolution, random_readings):
+    for how in (None, ascent, evolution, random_interpretations):
         surfaces = {f"{key}/{number}": of_study(key, number) for key, number in itertools.product(keys, range(2))}
         away = {name: found_by(surface, most or surface.most, how) for name, surface in surfaces.items()}
         hits = sum(each >= -NEAR for each in away.values())

@@ -732,7 +732,7 @@ def test_axes_have_units(tmp_path):
     assert all(label.endswith(("(unit)", "(1/unit)", "(m)")) or label in ("generation", "curve parameter t") for label in labels)
 
 
-def test_panels_have_letters_and_the_reading_of_the_curve(tmp_path):
+def test_panels_have_letters_and_the_interpretation_of_the_curve(tmp_path):
     figure = drawn(results(), panels(), 2, tmp_path)
     assert "(a) 0 to 15, smooth (quadratic pieces)" in [axes.get_title(loc="left") for axes in figure.axes]
     assert "(e) circles" in words(figure)

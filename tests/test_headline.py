@@ -56,7 +56,7 @@ def test_a_shorter_path_of_a_method_as_reliable_as_the_baseline_is_said():
 
 
 def test_verdicts_that_hold_under_every_interpretation_are_counted():
-    judged = claims(one=["supported", "partly"]).assign(readings=["3 of 3", "1 of 2"])
+    judged = claims(one=["supported", "partly"]).assign(interpretations=["3 of 3", "1 of 2"])
     found = headline.headline(numbers(("one", "agrees", 1.0, 1.0, {})), judged, measured(), {"one": "One"})
     assert found.table.loc["one", "robust"] == "1 of 2"
 

@@ -237,8 +237,11 @@ FAULTS = {
         "metrics: [length], where: {tries: 4}",
         "beside: where: tries: unknown; known: method",
     ),
-    "a paper's reading by no column": (*table(f"{LENGTHS}, primary: {{tries: 4}}"), "lengths: primary: tries: unknown; known: method"),
-    "a paper's reading of no value": (*table(f"{LENGTHS}, primary: {{method: zzz}}"), "lengths: primary: method: zzz: unknown"),
+    "a paper's interpretation by no column": (
+        *table(f"{LENGTHS}, primary: {{tries: 4}}"),
+        "lengths: primary: tries: unknown; known: method",
+    ),
+    "a paper's interpretation of no value": (*table(f"{LENGTHS}, primary: {{method: zzz}}"), "lengths: primary: method: zzz: unknown"),
     # Panels of one run
     "one run of two methods": (A, "where: {method: mine}, pick", "pick", "panels: 0: where: selects 2 values of method (line, mine, ...)"),
     "one run of two problems": (*panel("{kind: paths, experiment: both, pick: {lowest: length}}"), "selects 2 values of problem (across"),
@@ -611,11 +614,11 @@ FAULTS = {
         "alternatives: 1000 entries; expected at most 100",
     ),
     # Published numbers
-    "readings of an unknown metric": (
+    "interpretations of an unknown metric": (
         *table(f"reads: {{lenght: length}}, {LENGTHS}"),
         "lengths: reads: lenght: unknown; did you mean length?",
     ),
-    "readings of no numbers": (
+    "interpretations of no numbers": (
         A,
         "published: lengths.csv, values",
         "reads: {length: length}, values",

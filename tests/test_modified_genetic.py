@@ -486,7 +486,7 @@ def test_mutation_changes_each_gene_with_its_probability(rate):
     assert np.abs(share - rate).max() <= 5 * np.sqrt(rate * (1 - rate) / 2000) + 1e-12
 
 
-def test_other_readings_of_the_mutation_rate_change_one_gene():
+def test_other_interpretations_of_the_mutation_rate_change_one_gene():
     found = field(100)
     rng = np.random.default_rng(9)
     for name, rate in (("one_flip", 0.006), ("chromosome", 1.0), ("chromosome", 0.0)):

@@ -33,7 +33,7 @@ def comparison(values, ours, methods=("plain", "other")):
     return pd.DataFrame(frame | {"statistic": "mean", "n_published": 10, "in_range": in_range, "verdict": verdict, "possible": True})
 
 
-def test_readings_that_do_not_decide_are_not_counted():
+def test_interpretations_that_do_not_decide_are_not_counted():
     numbers = summary.numbers({("one", "table1"): comparison([1.0, 9.0], [1.2, 1.2]).assign(primary=[True, False])})
     claims = pd.DataFrame(
         {"study": "one", "id": ["C1", "C1", "C2"], "primary": [True, False, True], "verdict": ["supported", "partly", "no effect"]}
@@ -90,12 +90,12 @@ def test_outcome_counts_verdicts_of_numbers():
     assert found[["numbers", "agrees", "disagrees", "inconclusive"]].to_list() == [4, 1, 1, 2]
 
 
-def test_readings_that_agree_stand_next_to_the_verdict():
+def test_interpretations_that_agree_stand_next_to_the_verdict():
     claims = pd.DataFrame({"study": "one", "id": ["C1", "C1", "C2", "C3"], "variant": ["", "other", "", ""]})
     claims = claims.assign(primary=[True, False, True, True], finding=False, verdict=["supported", "partly", "no effect", "undecided"])
     tried = pd.DataFrame({"study": "one", "claim": ["C1", "C1", "C2"], "changed": [False, False, True]})
-    found = summary.with_readings(claims, tried)
-    assert found["readings"].to_list() == ["3 of 3", "", "1 of 2", ""]
+    found = summary.with_interpretations(claims, tried)
+    assert found["interpretations"].to_list() == ["3 of 3", "", "1 of 2", ""]
     assert found["verdict"].equals(claims["verdict"])
     numbers = summary.numbers({("one", "table1"): comparison([1.0], [1.2], ["plain"])})
     assert headline.outcome(numbers, found).loc["one", "stable"] == "1 of 2"

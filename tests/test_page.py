@@ -105,7 +105,7 @@ def test_scripts_never_insert_markup():
 # Addresses
 
 
-def test_cell_is_named_by_what_tells_it_from_the_primary_reading():
+def test_cell_is_named_by_what_tells_it_from_the_primary_interpretation():
     cells = [
         {"method": method, "workspace": room, "profile": "default", "metric": "objective", "statistic": "mean"}
         for method in ("singer", "gauss")
@@ -252,7 +252,7 @@ def test_figure_in_the_page_keeps_its_words_and_its_shape(tmp_path):
 # Tables
 
 
-def test_row_holds_all_columns_of_its_keys_and_other_readings_come_last():
+def test_row_holds_all_columns_of_its_keys_and_other_interpretations_come_last():
     table = page().studies["one"].tables[0]
     laid = build.grid(table, {})
     assert (laid.keys, laid.columns, laid.decimals) == (["method"], ["length", "objective"], [2, 2])
@@ -322,14 +322,14 @@ def test_column_that_the_page_does_not_know_is_kept_with_the_claim():
     assert found.shown_in == ["one/table1"]
 
 
-def test_best_readings_and_the_one_in_force_are_shown_with_what_they_explain():
-    tried = pd.DataFrame({"reading": [*(f"O1={n}" for n in range(20)), "in force"], "in_range": range(21, 0, -1), "numbers": 30})
+def test_best_interpretations_and_the_one_in_force_are_shown_with_what_they_explain():
+    tried = pd.DataFrame({"interpretation": [*(f"O1={n}" for n in range(20)), "default"], "in_range": range(21, 0, -1), "numbers": 30})
     explained = pd.DataFrame(
-        {"table": ["a", "a", "b"], "in_force": [True, False, False], "best": [True, True, False], "readings": [9, 2, 0]}
+        {"table": ["a", "a", "b"], "default": [True, False, False], "best": [True, True, False], "interpretations": [9, 2, 0]}
     )
-    found = other.of_readings(tried.assign(by_chance=np.nan), explained)
-    assert [each.reading for each in found["explanations"]] == [*(f"O1={n}" for n in range(10)), "in force"]
-    assert found["readings_tried"] == 21
+    found = other.of_interpretations(tried.assign(by_chance=np.nan), explained)
+    assert [each.interpretation for each in found["explanations"]] == [*(f"O1={n}" for n in range(10)), "default"]
+    assert found["interpretations_tried"] == 21
     assert [tuple(each.model_dump().values()) for each in found["explained"]] == [("a", 2, 1, 2, 0), ("b", 1, 0, 0, 1)]
 
 
@@ -455,9 +455,11 @@ def test_the_answer_counts_claims_that_would_show_again_and_keep_their_verdict()
     claims = [claim(f"C{n}", "supported", replication=share) for n, share in enumerate([0.9, 0.8, 0.79, 0.1, None])]
     told = "".join(part.text for part in answer._replication(claims))
     assert told.startswith("2 of 4 supported claims that can be resampled would show again")
-    one, other = (content.Reading(variant="a", verdict=verdict, holds="1 of 1") for verdict in ("supported", "contradicted"))
-    read = [claim(f"C{n}", "supported", readings=readings) for n, readings in enumerate([[one], [one, other], [other], []])]
-    told = "".join(part.text for part in answer._readings(read))
+    one, other = (content.Interpretation(variant="a", verdict=verdict, holds="1 of 1") for verdict in ("supported", "contradicted"))
+    read = [
+        claim(f"C{n}", "supported", interpretations=interpretations) for n, interpretations in enumerate([[one], [one, other], [other], []])
+    ]
+    told = "".join(part.text for part in answer._interpretations(read))
     assert told.startswith("1 of 3 claims that can be interpreted in more than one way keeps its verdict in every interpretation")
 
 

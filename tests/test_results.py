@@ -50,7 +50,7 @@ def test_of_equal_runs_the_first_repeat_is_picked():
 
 
 def test_published_length_is_audited_against_the_bound_of_its_problem():
-    """A row names its problem or workspace, the table's reading does, or the experiment has only one; spreads are no lengths."""
+    """A row names its problem or workspace, the table's interpretation does, or the experiment has only one; spreads are no lengths."""
     rows = [("a", "length", "min", 8.9), ("a", "length", "mean", 9.1), ("a", "length", "std", 0.5), ("a", "cpu_s", "mean", 0.1)]
     table = pd.DataFrame(rows, columns=["method", "metric", "statistic", "value"]).assign(printed=["8.9", "9.1", "0.5", "0.1"])
     one, two = (pd.DataFrame({"bound": [9.0, 5.0][:n]}, index=["disc", "other"][:n]) for n in (1, 2))

@@ -432,8 +432,8 @@ def test_printed_ranks_that_no_runs_have_are_impossible():
     }
 
 
-def test_rows_of_the_papers_reading_are_primary():
-    """A variant of a method is another reading, and so is another value of what the table's `primary` names."""
+def test_rows_of_the_papers_interpretation_are_primary():
+    """A variant of a method is another interpretation, and so is another value of what the table's `primary` names."""
     found = compare(results(), spec=SPEC | {"primary": {"problem": "long"}})
     expected = (found["problem"] == "long") & (found["method"] != "faster")
     assert found["primary"].tolist() == expected.tolist()

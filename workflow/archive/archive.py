@@ -16,8 +16,9 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 PROFILE = "https://w3id.org/ro/wfrun/{}/0.5"
-# Logs name places of the machine, and runs of alternatives and readings are many files that `snakemake alternatives readings` makes again.
-LEFT_OUT = ("logs", "sensitivity", "readings")
+# Logs name places of the machine, and runs of alternatives and interpretations are many files that `snakemake alternatives interpretations`
+# makes again.
+LEFT_OUT = ("logs", "sensitivity", "interpretations")
 MEDIA = {".html": "text/html", ".csv": "text/csv", ".md": "text/markdown", ".txt": "text/plain", ".yaml": "application/yaml"}
 
 

@@ -3,7 +3,8 @@
 
 try:
     reading.check_names(
-        STUDIES, [*(rule.name for rule in workflow.rules), "all", "smoke", "extended", "alternatives", "readings", "narrow", "default"]
+        STUDIES,
+        [*(rule.name for rule in workflow.rules), "all", "smoke", "extended", "alternatives", "interpretations", "narrow", "default"],
     )
 except checked.Fault as fault:
     sys.exit(str(fault))
@@ -37,9 +38,9 @@ rule alternatives:
         targets.files_of_sensitivity(STUDIES, "full"),
 
 
-rule readings:
+rule interpretations:
     input:
-        lambda wildcards: targets.files_of_readings(STUDIES, "full"),
+        lambda wildcards: targets.files_of_interpretations(STUDIES, "full"),
 
 
 for study in STUDIES:

@@ -29,7 +29,7 @@ One row for each group of runs, metric and statistic; an empty cell means that t
 | share_feasible | share of all runs whose path the certified checker accepts |
 | bound | least length of the problem, of the metric's kind (`metrics.Metric`); for several problems, the median over the runs |
 | gap | median over the feasible runs of that kind of length / bound - 1 |
-| primary | whether the row is the paper's reading: no variant of a method, and what the table's `primary` names |
+| primary | whether the row is the paper's interpretation: no variant of a method, and what the table's `primary` names |
 """
 
 import math
@@ -115,7 +115,7 @@ def compare(
 
 
 def _is_primary(table: pd.DataFrame, primary: dict[str, Any], variant_of: dict[str, str]) -> np.ndarray:
-    """Which rows (n,) are the paper's reading. primary: column -> the value that it has there."""
+    """Which rows (n,) are the paper's interpretation. primary: column -> the value that it has there."""
     read = [table[column].to_numpy() == value for column, value in primary.items()]
     named = [~table["method"].isin(variant_of).to_numpy()] if "method" in table else []
     return np.logical_and.reduce([np.ones(len(table), dtype=bool), *read, *named])

@@ -1,29 +1,29 @@
-"""What the search for a reading found (`analysis.search`): three tables and a section of the summary.
+"""What the search for an interpretation found (`analysis.search`): three tables and a section of the summary.
 
-Columns of readings.csv, one row per reading, the best first:
+Columns of interpretations.csv, one row per interpretation, the best first:
 
 | column | meaning |
 | --- | --- |
-| study, reading | its changes, such as `O2=0.9, O7=clamp`; `in force` without any |
+| study, interpretation | its changes, such as `O2=0.9, O7=clamp`; `default` without any |
 | in_words | what the paper's experiment would have been: each choice made, in words |
 | confirmed | whether it was one of the best, which are judged by more runs; only these are compared in what follows |
-| one column per choice | its value, empty for the one in force |
+| one column per choice | its value, empty for the default |
 | in_range, numbers | how many of the published numbers lie in range, and of how many |
 | by_chance | how many would if each printed number were exchanged with another of its kind in the same table (expected value) |
-| impossible | printed means and extremes below the exact bound of their map under this reading; with one, it is ruled out |
-| score | sum of the logarithms of the tables' likelihoods, by which readings that are not ruled out are compared |
+| impossible | printed means and extremes below the exact bound of their map under this interpretation; with one, it is ruled out |
+| score | sum of the logarithms of the tables' likelihoods, by which interpretations that are not ruled out are compared |
 | in_range_<table> | in_range by table |
-| fresh_in_range, fresh_score | those of the best reading by runs of its own, with other seeds, that the search did not see |
+| fresh_in_range, fresh_score | those of the best interpretation by runs of its own, with other seeds, that the search did not see |
 
-Columns of explained.csv, one row per published number, those that no reading gives first: study, table, the table's keys, metric,
-statistic, value_published; in_force and best, whether it lies in range under the reading in force and under the best one; tried, how many
-readings of the choices that concern it were tried, and readings, in how many of these it is in range; settings, how many different settings
-of its methods alone were among them.
+Columns of explained.csv, one row per published number, those that no interpretation gives first: study, table, the table's keys, metric,
+statistic, value_published; default and best, whether it lies in range under the default interpretation and under the best one; tried, how
+many interpretations of the choices that concern it were tried, and interpretations, in how many of these it is in range; settings, how many
+different settings of its methods alone were among them.
 
-Columns of held_out.csv, one row per table: the reading that is best on all other tables, and how many of this table's numbers lie in range
-under that reading (`chosen`), under the one in force (`in_force`) and at most (`most`), of how many (`numbers`); the logarithm of the
-likelihood of the table under the best reading (`score_best`) and under the one in force (`score_in_force`); and, where the paper says that
-its numbers rise or fall along a column, that of a straight line there (`score_line`, along `line_along`; see `yardstick`).
+Columns of held_out.csv, one row per table: the interpretation that is best on all other tables, and how many of this table's numbers lie in
+range under that interpretation (`chosen`), under the default (`default`) and at most (`most`), of how many (`numbers`); the logarithm of
+the likelihood of the table under the best interpretation (`score_best`) and under the default (`score_default`); and, where the paper says
+that its numbers rise or fall along a column, that of a straight line there (`score_line`, along `line_along`; see `yardstick`).
 """
 
 import itertools
@@ -33,15 +33,15 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
-Reading = dict[str, Any]
+Interpretation = dict[str, Any]
 
-IN_FORCE = "in force"
+DEFAULT = "default"
 
 
 class Evaluated(NamedTuple):
-    """A reading with its numbers, one row each, as from `numbers_of`, and the logarithm of the likelihood of each table."""
+    """An interpretation with its numbers, one row each, as from `numbers_of`, and the logarithm of the likelihood of each table."""
 
-    reading: Reading
+    interpretation: Interpretation
     numbers: pd.DataFrame
     likelihoods: dict[str, float]
 
@@ -57,46 +57,46 @@ class Evaluated(NamedTuple):
 
     @property
     def rank(self) -> tuple[bool, float]:
-        """By which readings are compared, the higher, the better: whether it is not ruled out, and its score."""
+        """By which interpretations are compared, the higher, the better: whether it is not ruled out, and its score."""
         return not self.impossible, self.score
 
 
-def name_of(reading: Reading) -> str:
-    """A reading in words."""
-    return ", ".join(f"{choice}={value}" for choice, value in sorted(reading.items())) or IN_FORCE
+def name_of(interpretation: Interpretation) -> str:
+    """An interpretation in words."""
+    return ", ".join(f"{choice}={value}" for choice, value in sorted(interpretation.items())) or DEFAULT
 
 
-def together(reading: Reading, parts: list[Evaluated]) -> Evaluated:
-    """A reading from what is known of its parts, whose numbers follow each other."""
+def together(interpretation: Interpretation, parts: list[Evaluated]) -> Evaluated:
+    """An interpretation from what is known of its parts, whose numbers follow each other."""
     likelihoods: dict[str, float] = {}
     for each in parts:
         for table, likelihood in each.likelihoods.items():
             likelihoods[table] = likelihoods.get(table, 0.0) + likelihood
-    return Evaluated(reading, pd.concat([each.numbers for each in parts], ignore_index=True), likelihoods)
+    return Evaluated(interpretation, pd.concat([each.numbers for each in parts], ignore_index=True), likelihoods)
 
 
-def in_words(reading: Reading, choices: list[dict]) -> str:
-    """The choices that a reading makes, each with what the paper leaves open."""
-    made = [f"{choice['detail']}: {reading[choice['id']]}" for choice in choices if choice["id"] in reading]
+def in_words(interpretation: Interpretation, choices: list[dict]) -> str:
+    """The choices that an interpretation makes, each with what the paper leaves open."""
+    made = [f"{choice['detail']}: {interpretation[choice['id']]}" for choice in choices if choice["id"] in interpretation]
     return "; ".join(made)
 
 
-def readings_table(
+def interpretations_table(
     study: str, confirmed: list[Evaluated], screened: list[Evaluated], fresh: Evaluated, choices: list[dict]
 ) -> pd.DataFrame:
-    """readings.csv. confirmed: the best, judged by more runs. screened: all, of which those confirmed are left out. fresh: the very best,
-    judged by runs with other seeds.
+    """interpretations.csv. confirmed: the best, judged by more runs. screened: all, of which those confirmed are left out. fresh: the very
+    best, judged by runs with other seeds.
     """
-    rows, again = [], {name_of(each.reading) for each in confirmed}
-    rest = [each for each in screened if name_of(each.reading) not in again]
+    rows, again = [], {name_of(each.interpretation) for each in confirmed}
+    rest = [each for each in screened if name_of(each.interpretation) not in again]
     ordered = [sorted(given, key=lambda each: each.rank, reverse=True) for given in (confirmed, rest)]
     for each in itertools.chain(*ordered):
         numbers = each.numbers
         by_table = numbers.groupby("table")["in_range"].sum()
         rows.append(
-            {"study": study, "reading": name_of(each.reading), "in_words": in_words(each.reading, choices)}
-            | {"confirmed": name_of(each.reading) in again}
-            | {choice["id"]: each.reading.get(choice["id"], "") for choice in choices}
+            {"study": study, "interpretation": name_of(each.interpretation), "in_words": in_words(each.interpretation, choices)}
+            | {"confirmed": name_of(each.interpretation) in again}
+            | {choice["id"]: each.interpretation.get(choice["id"], "") for choice in choices}
             | {"in_range": int(numbers["in_range"].sum()), "numbers": len(numbers), "by_chance": by_chance(numbers)}
             | {"impossible": each.impossible, "score": each.score}
             | {f"in_range_{table}": int(count) for table, count in by_table.items()}
@@ -117,25 +117,25 @@ def by_chance(numbers: pd.DataFrame) -> float:
 
 
 def explained_table(study: str, confirmed: list[Evaluated], of_parts: list[list[Evaluated]], shared: set[str]) -> pd.DataFrame:
-    """explained.csv. confirmed: that in force first. of_parts: as from the search, in whose order the numbers stand. shared: ids of the
+    """explained.csv. confirmed: the default first. of_parts: as from the search, in whose order the numbers stand. shared: ids of the
     choices that concern several parts.
     """
-    best, in_force = max(confirmed, key=lambda each: each.rank), confirmed[0]
-    described = in_force.numbers.drop(columns=["low", "high", "in_range", "possible"])
-    found = {"in_force": in_force.numbers["in_range"].to_numpy(), "best": best.numbers["in_range"].to_numpy()}
-    counts: dict[str, list[int]] = {"readings": [], "tried": [], "settings": []}
+    best, default = max(confirmed, key=lambda each: each.rank), confirmed[0]
+    described = default.numbers.drop(columns=["low", "high", "in_range", "possible"])
+    found = {"default": default.numbers["in_range"].to_numpy(), "best": best.numbers["in_range"].to_numpy()}
+    counts: dict[str, list[int]] = {"interpretations": [], "tried": [], "settings": []}
     for tried in of_parts:
         inside = np.sum([each.numbers["in_range"].to_numpy(dtype=int) for each in tried], axis=0)
-        own = {name_of({choice: value for choice, value in each.reading.items() if choice not in shared}) for each in tried}
-        counts["readings"] += inside.tolist()
+        own = {name_of({choice: value for choice, value in each.interpretation.items() if choice not in shared}) for each in tried}
+        counts["interpretations"] += inside.tolist()
         counts["tried"] += [len(tried)] * len(inside)
         counts["settings"] += [len(own)] * len(inside)
     table = described.assign(study=study, **found, **counts)[["study", *described.columns, *found, *counts]]
-    return table.sort_values("readings", kind="stable")
+    return table.sort_values("interpretations", kind="stable")
 
 
 def held_out_table(study: str, confirmed: list[Evaluated], lines: dict[str, tuple[str, float]]) -> pd.DataFrame:
-    """held_out.csv. confirmed: that in force first. lines: of some tables, along which column a line is laid, and how likely it makes them
+    """held_out.csv. confirmed: the default first. lines: of some tables, along which column a line is laid, and how likely it makes them
     (`yardstick`).
     """
     rows, best = [], max(confirmed, key=lambda each: each.rank)
@@ -144,10 +144,10 @@ def held_out_table(study: str, confirmed: list[Evaluated], lines: dict[str, tupl
         others = [(each.rank[0], each.score - each.likelihoods[table]) for each in confirmed]
         chosen = max(range(len(confirmed)), key=lambda n: others[n])
         numbers = int((confirmed[0].numbers["table"] == table).sum())
-        row = {"study": study, "table": table, "reading": name_of(confirmed[chosen].reading), "chosen": own[chosen]}
-        scores = {"score_best": best.likelihoods[table], "score_in_force": confirmed[0].likelihoods[table]}
+        row = {"study": study, "table": table, "interpretation": name_of(confirmed[chosen].interpretation), "chosen": own[chosen]}
+        scores = {"score_best": best.likelihoods[table], "score_default": confirmed[0].likelihoods[table]}
         along, score = lines.get(table, ("", math.nan))
-        rows.append(row | {"in_force": own[0], "most": max(own), "numbers": numbers} | scores | {"score_line": score, "line_along": along})
+        rows.append(row | {"default": own[0], "most": max(own), "numbers": numbers} | scores | {"score_line": score, "line_along": along})
     return pd.DataFrame(rows)
 
 
@@ -178,65 +178,68 @@ def yardstick(published: pd.DataFrame, along: str) -> float:
     return total
 
 
-def section(readings: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFrame, titles: dict[str, str]) -> list[str]:
+def section(interpretations: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFrame, titles: dict[str, str]) -> list[str]:
     """Paragraphs of the summary: a heading, what is compared, and a few sentences for each study; none without rows.
 
-    readings, explained, held_out: the three tables, of all studies. titles: of the studies, by name.
+    interpretations, explained, held_out: the three tables, of all studies. titles: of the studies, by name.
     """
-    if readings.empty:
+    if interpretations.empty:
         return []
     parts = [
-        "## Readings that explain the printed numbers",
-        "What a paper leaves open is varied together, and each such reading is scored by the joint likelihood of the printed numbers among "
+        "## Interpretations that explain the printed numbers",
+        "What a paper leaves open is varied together, and each such interpretation is scored by the joint likelihood of the printed "
+        "numbers among "
         "what experiments of the paper's size would print, by a search that judges the best ones by more runs. A number is in range if it "
-        "lies in the central 95 % of these; but a reading whose runs vary widely refuses nothing, so beside the count stands how many "
+        "lies in the central 95 % of these; but an interpretation whose runs vary widely refuses nothing, so beside the count stands how "
+        "many "
         "would be in range if printed numbers were exchanged. Numbers of a quantity that the paper does not define have no vote. "
-        "`<study>_readings.csv` has a row for each reading, `<study>_explained.csv` for each printed "
+        "`<study>_interpretations.csv` has a row for each interpretation, `<study>_explained.csv` for each printed "
         "number, `<study>_held_out.csv` for each table.",
     ]
-    for study, own in readings.groupby("study", sort=False):
+    for study, own in interpretations.groupby("study", sort=False):
         parts.append(f"**{titles[study]}.** {sentences(own, *(each[each['study'] == study] for each in (explained, held_out)))}")
     return parts
 
 
-def sentences(readings: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFrame) -> str:
+def sentences(interpretations: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFrame) -> str:
     """The verdict, from the tables of one study."""
-    best, in_force = readings.iloc[0], readings[readings["reading"] == IN_FORCE].iloc[0]
+    best, default = interpretations.iloc[0], interpretations[interpretations["interpretation"] == DEFAULT].iloc[0]
     return " ".join(
         filter(
             None,
             [
-                _most_likely(best, in_force, len(readings)),
+                _most_likely(best, default, len(interpretations)),
                 _judged_anew(best),
                 _beside_a_line(held_out),
                 _never(explained),
                 _searched(explained),
-                _ruled_out(readings),
+                _ruled_out(interpretations),
                 _held_out(held_out),
             ],
         )
     )
 
 
-def _most_likely(best: pd.Series, in_force: pd.Series, tried: int) -> str:
-    """Which experiment the numbers are most likely from, and how much more likely than from the one in force."""
+def _most_likely(best: pd.Series, default: pd.Series, tried: int) -> str:
+    """Which experiment the numbers are most likely from, and how much more likely than from the default."""
     if best["impossible"]:
-        return f"Under each of {tried} readings some printed number is impossible."
-    if best["reading"] == IN_FORCE:
+        return f"Under each of {tried} interpretations some printed number is impossible."
+    if best["interpretation"] == DEFAULT:
         return (
-            f"The printed numbers are most likely from the experiment as it is in force: none of {tried} readings is more likely. It has "
-            f"{_counted(in_force)}."
+            f"The printed numbers are most likely from the experiment of the default interpretation: none of {tried} interpretations is "
+            f"more likely. It has "
+            f"{_counted(default)}."
         )
     level = ": it explains their level, not how they differ" if best["in_range"] <= best["by_chance"] + 0.5 else ""
-    against = "under the one in force, some printed number is impossible" if in_force["impossible"] else _ratio(best, in_force)
+    against = "under the default, some printed number is impossible" if default["impossible"] else _ratio(best, default)
     return (
-        f"Of {tried} readings, the printed numbers are most likely from an experiment in which these choices differ from ours: "
-        f"{best['in_words']} ({best['reading']}); {against}. It has {_counted(best)}{level}; that in force has {_counted(in_force)}."
+        f"Of {tried} interpretations, the printed numbers are most likely from an experiment in which these choices differ from ours: "
+        f"{best['in_words']} ({best['interpretation']}); {against}. It has {_counted(best)}{level}; the default has {_counted(default)}."
     )
 
 
 def _judged_anew(best: pd.Series) -> str:
-    """Whether the best reading keeps its score by runs that did not choose it."""
+    """Whether the best interpretation keeps its score by runs that did not choose it."""
     if best["impossible"]:
         return ""
     return (
@@ -245,46 +248,46 @@ def _judged_anew(best: pd.Series) -> str:
     )
 
 
-def _ratio(best: pd.Series, in_force: pd.Series) -> str:
-    """How much more likely than under the reading in force the numbers are."""
-    difference = best["score"] - in_force["score"]
-    return f"log-likelihood ratio against the one in force {difference:+.1f} ({_times(difference)} as likely)"
+def _ratio(best: pd.Series, default: pd.Series) -> str:
+    """How much more likely than under the default interpretation the numbers are."""
+    difference = best["score"] - default["score"]
+    return f"log-likelihood ratio against the default {difference:+.1f} ({_times(difference)} as likely)"
 
 
 def _counted(row: pd.Series) -> str:
-    """How many numbers are in range under a reading."""
+    """How many numbers are in range under an interpretation."""
     return (
         f"{row['in_range']} of {row['numbers']} numbers in range ({row['by_chance']:.0f} if those of one kind in one table were exchanged)"
     )
 
 
 def _beside_a_line(held_out: pd.DataFrame) -> str:
-    """The best reading beside a description that explains nothing."""
+    """The best interpretation beside a description that explains nothing."""
     told = held_out[held_out["score_line"].notna()]
     if told.empty:
         return ""
     along = " and ".join(dict.fromkeys(told["line_along"]))
     difference = told["score_best"].sum() - told["score_line"].sum()
     verdict = (
-        "so the reading describes them worse than a line that explains nothing"
+        "so the interpretation describes them worse than a line that explains nothing"
         if difference < 0
-        else "so the reading describes them better than such a line"
+        else "so the interpretation describes them better than such a line"
     )
     return (
         f"A straight line in the column {along}, which predicts each number from the others of its row, has a log-likelihood "
-        f"{abs(difference):.1f} {'above' if difference < 0 else 'below'} that of the most likely reading: {verdict}."
+        f"{abs(difference):.1f} {'above' if difference < 0 else 'below'} that of the most likely interpretation: {verdict}."
     )
 
 
 def _never(explained: pd.DataFrame) -> str:
-    """Which numbers no reading explains, by table and method."""
-    never = explained[(explained["readings"] == 0) & ~explained[["in_force", "best"]].any(axis=1)]
+    """Which numbers no interpretation explains, by table and method."""
+    never = explained[(explained["interpretations"] == 0) & ~explained[["default", "best"]].any(axis=1)]
     if never.empty:
-        return "Each number is in range under some reading."
+        return "Each number is in range under some interpretation."
     keys = ["table", "method"] if "method" in never else ["table"]
     counts = never.groupby(keys, sort=False).size()
     named = ", ".join(f"{count} of {' for '.join(map(str, key if isinstance(key, tuple) else (key,)))}" for key, count in counts.items())
-    return f"No reading explains {len(never)} of the numbers: {named}."
+    return f"No interpretation explains {len(never)} of the numbers: {named}."
 
 
 def _searched(explained: pd.DataFrame) -> str:
@@ -297,24 +300,24 @@ def _searched(explained: pd.DataFrame) -> str:
     return f"Different settings tried of each method alone: {', '.join(f'{method} {count}' for method, count in settings.items())}."
 
 
-def _ruled_out(readings: pd.DataFrame) -> str:
-    """How many readings are impossible."""
-    ruled_out = int((readings["impossible"] > 0).sum())
+def _ruled_out(interpretations: pd.DataFrame) -> str:
+    """How many interpretations are impossible."""
+    ruled_out = int((interpretations["impossible"] > 0).sum())
     if not ruled_out:
         return ""
     return (
-        f"{ruled_out} of {len(readings)} readings {'is' if ruled_out == 1 else 'are'} ruled out: under "
+        f"{ruled_out} of {len(interpretations)} interpretations {'is' if ruled_out == 1 else 'are'} ruled out: under "
         f"{'it' if ruled_out == 1 else 'them'} a printed mean or extreme lies below the exact bound of its map."
     )
 
 
 def _held_out(held_out: pd.DataFrame) -> str:
-    """Whether the tables that a reading was not chosen on agree with it."""
+    """Whether the tables that an interpretation was not chosen on agree with it."""
     if len(held_out) < 2:
         return ""
     return (
-        f"Chosen for each table on the others alone, readings bring {held_out['chosen'].sum()} into range, that in force "
-        f"{held_out['in_force'].sum()}: {_advice(held_out)}."
+        f"Chosen for each table on the others alone, interpretations bring {held_out['chosen'].sum()} into range, the default "
+        f"{held_out['default'].sum()}: {_advice(held_out)}."
     )
 
 
@@ -325,10 +328,10 @@ def _times(difference: float) -> str:
 
 
 def _advice(held_out: pd.DataFrame) -> str:
-    """Whether the tables that a reading was not chosen on speak for a change of what is in force."""
-    worse = held_out[held_out["chosen"] < held_out["in_force"]]
-    against = ", ".join(f"{row.table} ({row.chosen} instead of {row.in_force})" for row in worse.itertuples())
+    """Whether the tables that an interpretation was not chosen on speak for a change of the default."""
+    worse = held_out[held_out["chosen"] < held_out["default"]]
+    against = ", ".join(f"{row.table} ({row.chosen} instead of {row.default})" for row in worse.itertuples())
     if len(worse):
         return f"held out, {against} {'speaks' if len(worse) == 1 else 'speak'} against a change"
-    better = (held_out["chosen"] > held_out["in_force"]).any()
+    better = (held_out["chosen"] > held_out["default"]).any()
     return f"the tables held out {'agree with a change' if better else 'do not tell them apart'}"

@@ -55,7 +55,7 @@ class Headline(NamedTuple):
 def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
     """One row per study: the published numbers that count, in total and by verdict of the test (`comparison`), and claims by verdict.
 
-    numbers: as from `numbers`. claims: as from `claims.judge`. Only primary readings and variants count.
+    numbers: as from `numbers`. claims: as from `claims.judge`. Only primary interpretations and variants count.
     """
     judged = numbers[numbers["counted"]]
     deciding = claims[claims["primary"] & ~claims["finding"].astype(bool)]
@@ -63,7 +63,7 @@ def outcome(numbers: pd.DataFrame, claims: pd.DataFrame) -> pd.DataFrame:
     counts = pd.crosstab(judged["study"], judged["verdict"]).reindex(columns=comparison.VERDICTS, fill_value=0)
     counts.insert(0, "numbers", counts.sum(axis=1))
     table = counts.join(verdicts, how="outer").fillna(0).astype(int)
-    return table.join(_stable(deciding)) if "readings" in deciding else table
+    return table.join(_stable(deciding)) if "interpretations" in deciding else table
 
 
 def headline(numbers: pd.DataFrame, claims: pd.DataFrame, measured: pd.DataFrame, titles: dict[str, str]) -> Headline:
@@ -128,9 +128,11 @@ def beside_baseline(measured: pd.DataFrame) -> str:
 
 
 def _stable(claims: pd.DataFrame) -> pd.Series:
-    """How many of a study's claims have the same verdict under all readings, out of those on which alternatives were tried, as text."""
-    tried = claims[claims["readings"].fillna("") != ""]
-    agree = tried["readings"].str.split(" of ")
+    """How many of a study's claims have the same verdict under all interpretations, out of those on which alternatives were tried, as
+    text.
+    """
+    tried = claims[claims["interpretations"].fillna("") != ""]
+    agree = tried["interpretations"].str.split(" of ")
     stable = (agree.str[0] == agree.str[1]).groupby(tried["study"]).agg(["sum", "size"])
     return pd.Series({study: f"{same} of {total}" for study, same, total in stable.itertuples()}, name="stable", dtype=object)
 

@@ -60,22 +60,22 @@ def _same_place(one: pd.Series, other: pd.Series, keys: list[str]) -> bool:
     return all(one[key] == other[key] for key in keys if not (pd.isna(one[key]) or pd.isna(other[key])))
 
 
-def with_readings(claims: pd.DataFrame, tried: pd.DataFrame) -> pd.DataFrame:
-    """Claims with one more column after the verdict: `readings`, how many readings agree with it, such as `9 of 12`: the one in force and
-    each alternative that was tried and under which the claim is decided; empty for a claim on which none was, and for one that is undecided
-    as read here.
+def with_interpretations(claims: pd.DataFrame, tried: pd.DataFrame) -> pd.DataFrame:
+    """Claims with one more column after the verdict: `interpretations`, how many interpretations agree with it, such as `9 of 12`: the
+    default and each alternative that was tried and under which the claim is decided; empty for a claim on which none was, and for one that
+    is undecided as read here.
 
     tried: as from `sensitivity.sensitivity`, of all studies.
     """
     tried = tried[tried["changed"].notna()]
     unchanged = (tried["changed"].astype(str) == "False").groupby([tried["study"], tried["claim"]]).agg(["sum", "size"]) + 1
     words = {key: f"{agree} of {total}" for key, agree, total in unchanged.itertuples()}
-    readings = [
+    interpretations = [
         words.get((study, identity), "") if primary else "" for study, identity, primary in claims[["study", "id", "primary"]].to_numpy()
     ]
     columns = list(claims)
-    columns.insert(columns.index("verdict") + 1, "readings")
-    return claims.assign(readings=readings)[columns]
+    columns.insert(columns.index("verdict") + 1, "interpretations")
+    return claims.assign(interpretations=interpretations)[columns]
 
 
 def with_papers_size(claims: pd.DataFrame, full: pd.DataFrame) -> pd.DataFrame:
@@ -94,12 +94,13 @@ def report(
     measured: pd.DataFrame,
     titles: dict[str, str],
     scale: str,
-    readings: tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame] | None = None,
+    interpretations: tuple[pd.DataFrame, pd.DataFrame, pd.DataFrame] | None = None,
 ) -> str:
     """The summary of a scale as markdown: the headline, the methods beside the baseline, then the claims of each study with their
     verdicts.
 
-    measured: rows with the columns `worth.COLUMNS`. readings: the tables of `explained`, if the search for readings has been made.
+    measured: rows with the columns `worth.COLUMNS`. interpretations: the tables of `explained`, if the search for interpretations has been
+    made.
     """
     parts = [
         f"{HEADING}{scale}",
@@ -110,7 +111,7 @@ def report(
         "made; `replication_probability`: how often an experiment of that size shows what the claim says. Interpretations that do not "
         "decide are left out here; `numbers.csv` and `claims.csv` have them.",
         *worth.section(measured, titles),
-        *(explained.section(*readings, titles) if readings else []),
+        *(explained.section(*interpretations, titles) if interpretations else []),
     ]
     for study, title in titles.items():
         own = claims[(claims["study"] == study) & claims["primary"]].set_index("id")
@@ -124,7 +125,7 @@ def report(
 
 def _listed(claims: pd.DataFrame) -> str:
     """Claims with their verdicts, as markdown."""
-    columns = ["statement", "verdict", "verdict_papers_size", "replication_probability", "readings", "holds", "where_it_holds"]
+    columns = ["statement", "verdict", "verdict_papers_size", "replication_probability", "interpretations", "holds", "where_it_holds"]
     columns += ["units_to_decide", "published", "effect", "size", "n"]
     shown = claims[[name for name in columns if name in claims]].astype(object).fillna("")
     for column in shown.columns.intersection(["effect", "replication_probability"]):

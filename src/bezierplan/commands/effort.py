@@ -25,7 +25,7 @@ WORK = {
     "summary": "tables, claims, statistics",
     "sensitivity": "tables, claims, statistics",
     "alternative": "alternatives: their runs and claims",
-    "readings_of": "readings: their runs and comparisons",
+    "interpretations_of": "interpretations: their runs and comparisons",
     "figure": "drawing figures",
     "narrow_figure": "drawing figures",
     "verified": "judging stored runs again",

@@ -53,7 +53,7 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
 def files(studies: dict[str, Study], target: str, scale: str) -> list[str]:
     """What snakemake is asked for: the files of a study or artefact at a scale; other targets as they are. Raises Fault."""
     known = {"all": {"smoke": "smoke", "full": "all", "extended": "extended"}[scale]}
-    known |= {name: name for name in ("smoke", "extended", "alternatives", "readings")}
+    known |= {name: name for name in ("smoke", "extended", "alternatives", "interpretations")}
     if target in known or "/" in target:
         return [known.get(target, target)]
     if target in studies:

@@ -1,4 +1,4 @@
-"""The specification curve of a study: readings in the order of what they explain, and which choices each of them makes.
+"""The specification curve of a study: interpretations in the order of what they explain, and which choices each of them makes.
 
 After Simonsohn, Simmons and Nelson (2020), "Specification curve analysis", Nature Human Behaviour 4, 1208.
 """
@@ -20,10 +20,12 @@ if TYPE_CHECKING:
 _ROW, _ABOVE = 0.115, 1.7  # height of a row of choices, and of the curve with its labels, in inches
 
 
-def draw(readings: pd.DataFrame, choices: list[str]) -> Figure:
-    """readings: as readings.csv, the best first. choices: the columns that hold choices; those that no reading changes are left out."""
+def draw(interpretations: pd.DataFrame, choices: list[str]) -> Figure:
+    """interpretations: as interpretations.csv, the best first. choices: the columns that hold choices; those that no interpretation changes
+    are left out.
+    """
     with mpl.rc_context(style.SETTINGS):
-        ordered = readings.iloc[::-1].reset_index(drop=True)
+        ordered = interpretations.iloc[::-1].reset_index(drop=True)
         rows = [
             (choice, value)
             for choice in choices
@@ -43,8 +45,8 @@ def _draw_curve(axes: Axes, ordered: pd.DataFrame) -> None:
     axes.plot(place, ordered["in_range"], label="in range", marker="o", markersize=2.5, **style.OURS)
     axes.plot(place, ordered["by_chance"], label="expected with the printed numbers permuted", **style.REFERENCE)
     axes.axhline(ordered["numbers"].iloc[0], label="all", **style.BOUND)
-    in_force = ordered.index[ordered["reading"] == "in force"]
-    axes.plot(in_force, ordered["in_range"][in_force], label="the reading in force", **style.PUBLISHED_MARK)
+    default = ordered.index[ordered["interpretation"] == "default"]
+    axes.plot(default, ordered["in_range"][default], label="the default interpretation", **style.PUBLISHED_MARK)
     axes.set_ylim(bottom=0)
     axes.set_ylabel("published numbers")
     axes.legend(loc="lower right", ncols=2)
@@ -56,4 +58,4 @@ def _draw_choices(axes: Axes, ordered: pd.DataFrame, rows: list[tuple[str, str]]
         axes.plot(made, np.full(len(made), row), linestyle="", marker="|", markersize=5, color=style.BLACK)
     axes.set_yticks(range(len(rows)), [f"{choice} = {value}" for choice, value in rows])
     axes.set_ylim(len(rows) - 0.5, -0.5)
-    axes.set_xlabel("reading, ordered by how many published numbers it explains")
+    axes.set_xlabel("interpretation, ordered by how many published numbers it explains")

@@ -155,9 +155,9 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings, start: 
     -------
     Plan
         `claimed_feasible`: V at most `FEASIBLE`. Extra columns: violation, the path's V; zeta_collapsed_at and zeta_clipped as in `Swarm`;
-        and six readings of the paper's undefined number of collisions: particles per iteration (a), samples per evaluated path (b), samples
-        of the best path, summed over the iterations (c), iterations whose best path collides (d), final paths, 0 or 1 (e), evaluated paths
-        in the run (f).
+        and six interpretations of the paper's undefined number of collisions: particles per iteration (a), samples per evaluated path (b),
+        samples of the best path, summed over the iterations (c), iterations whose best path collides (d), final paths, 0 or 1 (e),
+        evaluated paths in the run (f).
 
     References
     ----------

@@ -70,7 +70,7 @@ class TableValue(Model):
     defined: Flag = Field(
         True,
         description="whether the paper says what it counts here; if not, its numbers are shown beside ours, but are all inconclusive, and "
-        "`snakemake readings` leaves them out; left out: true",
+        "`snakemake interpretations` leaves them out; left out: true",
     )
     label: Label = Field(description="how the value is printed, at most 80 characters, 30 a word")
     decimals: Decimals = Field(description="how many decimals are printed, a whole number from 0 to 15")
@@ -141,7 +141,9 @@ class Pivot(Table):
         description="published lengths on grids that may be, to the last digit, those of free polylines through cell centres from start to "
         "target, which the audit enumerates: {metric, where, edges, because}, and perhaps `counts`",
     )
-    primary: Where = Field({}, description="column → the value whose rows count as the paper's reading in the summary; left out: all rows")
+    primary: Where = Field(
+        {}, description="column → the value whose rows count as the paper's interpretation in the summary; left out: all rows"
+    )
 
     @model_validator(mode="after")
     def _check_places(self) -> "Pivot":

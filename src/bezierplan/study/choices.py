@@ -1,6 +1,6 @@
-"""The grid of readings of a paper: every choice that it leaves open and that governs its published numbers.
+"""The grid of interpretations of a paper: every choice that it leaves open and that governs its published numbers.
 
-A choice is a mapping of plain values: id; detail; values, the one in force first (None, as methods may differ in it); and what it governs:
+A choice is a mapping of plain values: id; detail; values, the default first (None, as methods may differ in it); and what it governs:
 
     setting, methods, along   a setting of some methods, and further settings that go with it, method -> settings; with `problems`, on these
                               problems alone
@@ -25,15 +25,18 @@ from bezierplan.study.definition import Study, relative
 from bezierplan.workspaces.kinds import file_keys
 
 SCREENED = 4
-"""The search judges readings by one of so many of the runs by which the best are judged."""
+"""The search judges interpretations by one of so many of the runs by which the best are judged."""
 
 FRESH = 1000
-"""With so many runs of each method on each problem, or on all fields drawn together, and other seeds, the best reading is judged anew."""
+"""With so many runs of each method on each problem, or on all fields drawn together, and other seeds, the best interpretation is judged
+anew.
+"""
 
 
 def printed_tables(study: Study) -> dict[str, Pivot]:
-    """The tables of runs that have published numbers, except those of nothing but seconds, which no reading explains, or of nothing that
-    the paper defines."""
+    """The tables of runs that have published numbers, except those of nothing but seconds, which no interpretation explains, or of nothing
+    that the paper defines.
+    """
     printed = {name: table for name, table in study.compared().items() if table.published and any(entry.defined for entry in table.values)}
     return {name: table for name, table in printed.items() if {row["unit"] for row in _published(study, name)} != {"s"}}
 
@@ -79,7 +82,7 @@ def choices(study: Study) -> list[dict[str, Any]]:
 
 
 def _world(study: Study, column: str, values: list, settings: list[dict[str, Any]]) -> dict[str, Any]:
-    """The choice between worlds, the one in force first. settings: the choices of settings."""
+    """The choice between worlds, the default first. settings: the choices of settings."""
     made = {str(value): study.presets.get(column, {}).get(str(value).lower(), {}) for value in values[1:]}
     overrules = {value: [choice["id"] for choice in settings if choice.get("setting") in own] for value, own in made.items()}
     detail = f"Which {column} the tables show"
@@ -101,34 +104,34 @@ def _apart(table: Pivot, rows: list[dict[str, str]]) -> bool:
 
 
 def search_job(study: Study) -> dict[str, Any]:
-    """What the search for a reading depends on, in addition to the files of maps and published numbers.
+    """What the search for an interpretation depends on, in addition to the files of maps and published numbers.
 
-    screened, confirmed, fresh: `readings_job` for the search, for the best that it finds, and for the very best. parts: as
+    screened, confirmed, fresh: `interpretations_job` for the search, for the best that it finds, and for the very best. parts: as
     `analysis.search.Part`. along: of some tables, the column along which the paper says that its numbers rise or fall.
     """
     tables = printed_tables(study)
     along = {name: table.monotone[0].along for name, table in tables.items() if table.monotone}
-    found = {"study": study.key, "most": study.readings_tried, "parts": _parts(study), "along": along}
+    found = {"study": study.key, "most": study.interpretations_tried, "parts": _parts(study), "along": along}
     return found | {
-        "screened": readings_job(study, SCREENED),
-        "confirmed": readings_job(study, 1),
-        "fresh": readings_job(study, fresh=True),
+        "screened": interpretations_job(study, SCREENED),
+        "confirmed": interpretations_job(study, 1),
+        "fresh": interpretations_job(study, fresh=True),
     }
 
 
-def readings_job(study: Study, share: int = 1, fresh: bool = False) -> dict[str, Any]:
-    """What readings are judged by: the jobs of their runs, and the problems of these.
+def interpretations_job(study: Study, share: int = 1, fresh: bool = False) -> dict[str, Any]:
+    """What interpretations are judged by: the jobs of their runs, and the problems of these.
 
-    share: a share of 1 / share of the runs that judge a reading, though at least as many as are judged at all. Where there is one run in
-    each layout, it is a share of the layouts, of which twice those of scale full judge a reading. fresh: `FRESH` runs instead, whose
-    repeats, and layouts where there are more, come after all those.
+    share: a share of 1 / share of the runs that judge an interpretation, though at least as many as are judged at all. Where there is one
+    run in each layout, it is a share of the layouts, of which twice those of scale full judge an interpretation. fresh: `FRESH` runs
+    instead, whose repeats, and layouts where there are more, come after all those.
     """
     tables, worlds = {}, {}
     for name, table in printed_tables(study).items():
         content = study.experiments[table.experiment]
         drawn = next((study.problems[each].layouts for each in content.problems if study.problems[each].layouts), None)
-        by_layout = drawn is not None and content.readings is None
-        repeats = content.readings or content.repeats["full"]
+        by_layout = drawn is not None and content.interpretations is None
+        repeats = content.interpretations or content.repeats["full"]
         scale = "extended" if by_layout else "full"
         layouts = _layouts(drawn, share, fresh) if by_layout else None
         methods = _methods(study, name, table)
@@ -152,7 +155,9 @@ def readings_job(study: Study, share: int = 1, fresh: bool = False) -> dict[str,
 
 
 def _layouts(drawn: dict[str, int], share: int, fresh: bool) -> range:
-    """Numbers of the fields on which readings are judged; the fresh ones are those that no other reading met, if there are such."""
+    """Numbers of the fields on which interpretations are judged; the fresh ones are those that no other interpretation met, if there are
+    such.
+    """
     judged, most = min(2 * drawn["full"], drawn["extended"]), drawn["extended"]
     return range(judged if judged < most else 0, most) if fresh else range(_share(judged, share, LEAST_RUNS))
 
@@ -162,7 +167,7 @@ def _share(whole: int, share: int, least: int) -> int:
 
 
 def maps(study: Study) -> list[str]:
-    """Map files of the problems on which readings are judged, under any of them."""
+    """Map files of the problems on which interpretations are judged, under any of them."""
     experiments = {table.experiment for table in printed_tables(study).values()}
     names = {problem["workspace"] for name in sorted(experiments) for problem in study.problems_of(name, "full").values()}
     other = [

@@ -55,7 +55,7 @@ class Assumption(Model):
     problems: listed(ProblemName) = Field([], description="the problems on which alone the alternatives of a setting are tried")
     workspace: dict[Name, Name] = Field(
         {},
-        description="workspace → its key that it governs, instead of a setting: `snakemake readings` draws the workspace anew",
+        description="workspace → its key that it governs, instead of a setting: `snakemake interpretations` draws the workspace anew",
         min_length=1,
     )
     table: Literal["within"] = Field(
@@ -69,7 +69,9 @@ class Assumption(Model):
         [], description="ids of the claims on which `snakemake alternatives` tries each alternative, one at a time (`sensitivity.csv`)"
     )
 
-    not_searched: listed(Setting) = Field([], description="alternatives that `snakemake readings` leaves out because they take too long")
+    not_searched: listed(Setting) = Field(
+        [], description="alternatives that `snakemake interpretations` leaves out because they take too long"
+    )
 
     @model_validator(mode="after")
     def _check_setting(self) -> "Assumption":

@@ -38,7 +38,7 @@ class Study:
     problems: dict[str, Problem]
     experiments: dict[str, Experiment]
     worth: Worth | None
-    readings_tried: int
+    interpretations_tried: int
     labels: dict[str, str]
     looks: dict[str, str]
     tables: dict[str, Table]

@@ -170,7 +170,9 @@ class Experiment(Model):
     )
     repeats: Scales = Field(description="runs of each method under each condition, for smoke, full and extended")
     chunk: Scales = Field(description="how many repeats one job runs, for smoke, full and extended, at most all of them")
-    readings: Count = Field(None, description="repeats from which `snakemake readings` judges a reading; by default those of full")
+    interpretations: Count = Field(
+        None, description="repeats from which `snakemake interpretations` judges an interpretation; by default those of full"
+    )
 
     @model_validator(mode="after")
     def _check_size(self) -> "Experiment":
@@ -232,4 +234,4 @@ class ExperimentsFile(Model):
         description="name → problems × varied settings × methods × repeats", min_length=1
     )
     worth: Worth = Field(None, description="what the summary measures the study's methods against: a row of `worth.csv` for each method")
-    readings_tried: Count = Field(60, description="how many readings `snakemake readings` tries at most")
+    interpretations_tried: Count = Field(60, description="how many interpretations `snakemake interpretations` tries at most")

@@ -66,7 +66,7 @@ def _verified(given: Studies, scale: str) -> Iterator[tuple[str, str, list[str],
 
 
 def params(given: Studies, scale: str, root: str = "") -> dict[str, Any]:
-    """Params of the page. Alternatives and readings are shown if they have been tried: the page does not ask for them.
+    """Params of the page. Alternatives and interpretations are shown if they have been tried: the page does not ask for them.
 
     root: what stands before the paths of results, with the slash at its end, in a workflow of which this one is a module.
     """
@@ -81,10 +81,12 @@ def params(given: Studies, scale: str, root: str = "") -> dict[str, Any]:
 
 
 def _tried(folder: str) -> dict[str, str]:
-    """Tables in the folder of a study that are made only if asked for; those of readings are made together."""
-    files = {name: f"{folder}/{name}.csv" for name in ("sensitivity", "readings", "explained")}
+    """Tables in the folder of a study that are made only if asked for; those of interpretations are made together."""
+    files = {name: f"{folder}/{name}.csv" for name in ("sensitivity", "interpretations", "explained")}
     there = {name: file for name, file in files.items() if Path(file).is_file()}
-    return there if {"readings", "explained"} <= there.keys() else {name: file for name, file in there.items() if name == "sensitivity"}
+    return (
+        there if {"interpretations", "explained"} <= there.keys() else {name: file for name, file in there.items() if name == "sensitivity"}
+    )
 
 
 def _artefacts(given: Studies, scale: str) -> dict[str, list[str]]:

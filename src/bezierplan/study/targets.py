@@ -400,14 +400,14 @@ def sensitivity_params(given: Studies, scale: str, study: str) -> dict:
     return {"described": alternatives.alternatives_described(given[study]), "code": _code("sensitivity")}
 
 
-def readings_inputs(given: Studies, scale: str, study: str) -> dict[str, list[str]]:
-    """Input files of the search for a reading, which makes problems and runs of its own."""
+def interpretations_inputs(given: Studies, scale: str, study: str) -> dict[str, list[str]]:
+    """Input files of the search for an interpretation, which makes problems and runs of its own."""
     own = given[study]
     return {"maps": choices.maps(own), "published": [own.published_file(name) for name in choices.printed_tables(own)]}
 
 
-def readings_params(given: Studies, scale: str, study: str) -> dict:
-    """Params of the search for a reading."""
+def interpretations_params(given: Studies, scale: str, study: str) -> dict:
+    """Params of the search for an interpretation."""
     job = choices.search_job(given[study])
     planners = {_planner(each["planner"]) for table in job["screened"]["tables"].values() for each in table["jobs"].values()}
     kinds = {module for world in job["screened"]["worlds"].values() for module in _kinds_of_workspace(world)}
@@ -415,7 +415,7 @@ def readings_params(given: Studies, scale: str, study: str) -> dict:
         "job": job,
         "folder": definition.relative(given[study].folder),
         "published": content_digest(*(given[study].published_file(name) for name in choices.printed_tables(given[study]))),
-        "code": _code("readings", *sorted(planners), *sorted(kinds)),
+        "code": _code("interpretations", *sorted(planners), *sorted(kinds)),
     }
 
 
@@ -538,10 +538,12 @@ def files_of_sensitivity(given: Studies, scale: str) -> list[str]:
     return [f"{_folder(scale, key)}/sensitivity.csv" for key, study in given.items() if alternatives.tried(study)]
 
 
-def files_of_readings(given: Studies, scale: str) -> list[str]:
-    """The readings of each study that has published numbers and leaves choices open."""
+def files_of_interpretations(given: Studies, scale: str) -> list[str]:
+    """The interpretations of each study that has published numbers and leaves choices open."""
     return [
-        f"{_folder(scale, key)}/readings.csv" for key, study in given.items() if choices.printed_tables(study) and choices.choices(study)
+        f"{_folder(scale, key)}/interpretations.csv"
+        for key, study in given.items()
+        if choices.printed_tables(study) and choices.choices(study)
     ]
 
 

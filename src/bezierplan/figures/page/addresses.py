@@ -14,8 +14,8 @@ def address(*parts: Any) -> str:
 def of_cells(table: str, cells: Sequence[Mapping[str, Any]], primary: Mapping[str, Any]) -> list[str]:
     """Addresses of the cells of a table, each with its key columns, then `metric` and `statistic`.
 
-    A key is left out where it has the value of the primary reading, and for a column with one value only, unless two cells would then
-    have the same address: these name all their keys.
+    A key is left out where it has the value of the primary interpretation, and for a column with one value only, unless two cells would
+    then have the same address: these name all their keys.
 
     >>> of_cells("one/table1", [{"map": "a", "method": "x", "metric": "length", "statistic": "mean"},
     ...                         {"map": "b", "method": "x", "metric": "length", "statistic": "mean"}], {"map": "a"})

@@ -25,7 +25,7 @@ def answer(studies: dict[str, Study]) -> list[Sentence]:
         runs = sum(shown.count for study in studies.values() for shown in study.shown if not shown.problem) or "no"
         return [[Part(text=f"A subset that shows how the page works: {runs} runs, too few to judge numbers or claims.")]]
     of_studies = [_of_study(key, study) for key, study in studies.items() if study.claims or _counted(study)]
-    sentences = [*of_studies, _replication(claims), _readings(claims), _audit(studies)]
+    sentences = [*of_studies, _replication(claims), _interpretations(claims), _audit(studies)]
     return [sentence for sentence in sentences if sentence]
 
 
@@ -111,11 +111,11 @@ def _replication(claims: list[Claim]) -> Sentence:
     return [Part(text=f"{all_or_some} supported claims that can be resampled {again}.")]
 
 
-def _readings(claims: list[Claim]) -> Sentence:
-    several = [claim for claim in claims if claim.readings]
+def _interpretations(claims: list[Claim]) -> Sentence:
+    several = [claim for claim in claims if claim.interpretations]
     if not several:
         return []
-    same = sum(all(reading.verdict == claim.verdict for reading in claim.readings) for claim in several)
+    same = sum(all(interpretation.verdict == claim.verdict for interpretation in claim.interpretations) for claim in several)
     text = f"{same} of {_count(len(several), 'claim')} that can be interpreted in more than one way"
     return [Part(text=f"{text} {_verb(same, 'keeps its', 'keep their')} verdict in every interpretation.")]
 

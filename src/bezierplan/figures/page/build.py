@@ -97,7 +97,9 @@ def counts(verdicts: list[str]) -> list[tuple[str, int]]:
 
 
 class Row(NamedTuple):
-    """A row of a table of numbers: its keys as printed, its cells in the order of the columns, and whether it is the paper's reading."""
+    """A row of a table of numbers: its keys as printed, its cells in the order of the columns, and whether it is the paper's
+    interpretation.
+    """
 
     keys: list[str]
     cells: list[content.Number | None]
@@ -115,7 +117,9 @@ class Grid(NamedTuple):
 
 
 def grid(table: content.Table, labels: dict[str, str]) -> Grid:
-    """The numbers of a table: a row for each combination of keys, the paper's reading first, a column for each metric and statistic."""
+    """The numbers of a table: a row for each combination of keys, the paper's interpretation first, a column for each metric and
+    statistic.
+    """
     keys = list(table.numbers[0].keys) if table.numbers else []
     values = {key: {number.keys[key] for number in table.numbers} for key in keys}
     told = [key for key in keys if len(values[key]) > 1]

@@ -1,7 +1,7 @@
 """What the page holds, as frozen models: the page is drawn from them, and their JSON stands in it with the schema that describes it.
 
 An address names a place on the page, and is what follows `#` in a link to it. It reads like a path: study, table, the keys that tell the
-row from others of the table's primary reading, metric, statistic; study and claim; study and figure; the id of a run.
+row from others of the table's primary interpretation, metric, statistic; study and claim; study and figure; the id of a run.
 """
 
 from typing import Annotated, Any
@@ -50,7 +50,7 @@ class Number(Record):
     predicted: Interval = Field(description="95 % prediction interval of an experiment of the published size")
     verdict: str = Field(description="identified, agrees, disagrees or inconclusive; empty if not judged")
     why: str = Field("", description="why it is inconclusive")
-    primary: bool = Field(description="whether the row is the paper's reading")
+    primary: bool = Field(description="whether the row is the paper's interpretation")
     counted: bool = Field(description="whether it counts in the outcome")
     share_feasible: float | None = Field(description="share of all runs whose path the certified checker accepts")
     bound: float | None = Field(description="exact shortest length of the problem, in the unit of length")
@@ -109,7 +109,7 @@ class Comparison(Record):
     reason: str
 
 
-class Reading(Record):
+class Interpretation(Record):
     """A claim judged with other values than the primary ones."""
 
     variant: str
@@ -148,7 +148,7 @@ class Claim(Record):
     why: str = Field("", description="the decisive comparison in a plain sentence")
     decisive: int | None = Field(None, description="index in `comparisons` of the one that determines the verdict")
     variant: str = Field(description="the primary values")
-    readings: list[Reading]
+    interpretations: list[Interpretation]
     choices: list[Choice]
     more: dict[str, Cell] = Field(description="further columns of claims.csv")
 
@@ -196,22 +196,22 @@ class Worth(Record):
 
 
 class Explanation(Record):
-    """How many published numbers a reading of what the paper leaves open explains."""
+    """How many published numbers an interpretation of what the paper leaves open explains."""
 
-    reading: str = Field(description="its choices; `in force` without any")
+    interpretation: str = Field(description="its choices; `default` without any")
     in_range: int = Field(description="numbers in the central 95 % of what experiments of the paper's size would print")
     numbers: int = Field(description="of how many")
     by_chance: float | None = Field(description="how many would be on average if each were exchanged with another of its kind")
 
 
 class Explained(Record):
-    """Numbers of a table that readings explain."""
+    """Numbers of a table that interpretations explain."""
 
     table: str
     numbers: int
-    in_force: int = Field(description="explained under the reading in force")
-    best: int = Field(description="explained under the best reading")
-    never: int = Field(description="explained under no reading")
+    default: int = Field(description="explained under the default interpretation")
+    best: int = Field(description="explained under the best interpretation")
+    never: int = Field(description="explained under no interpretation")
 
 
 class Shown(Record):
@@ -252,8 +252,8 @@ class Study(Record):
     gap: float | None = Field(None, description="median gap of the numbers that count in the outcome")
     worth: list[Worth] = []
     worth_in_words: str = Field("", description="what follows from `worth`")
-    explanations: list[Explanation] = Field([], description="the best readings tried, the best first, and the one in force")
-    readings_tried: int = 0
+    explanations: list[Explanation] = Field([], description="the best interpretations tried, the best first, and the default")
+    interpretations_tried: int = 0
     explained: list[Explained] = []
     shown: list[Shown]
     labels: dict[str, str] = Field(description="name -> how it is printed")

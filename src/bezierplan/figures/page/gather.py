@@ -72,8 +72,8 @@ def studies(
     """All studies without the runs that the viewer shows, from the csv files in the folder of a scale.
 
     job: study -> `title`, `labels`, `tables` and `figures` (name -> `title`, `caption` and, of tables, `spec`), `assumptions`, `files` (its
-    claims, comparisons of claims, audit, alternatives and readings, as far as there are any). numbers, claims, measured: those of all
-    studies (`analysis.summary`, `analysis.worth`), if the scale has them.
+    claims, comparisons of claims, audit, alternatives and interpretations, as far as there are any). numbers, claims, measured: those of
+    all studies (`analysis.summary`, `analysis.worth`), if the scale has them.
     """
     outcome = headline.outcome(numbers, claims).to_dict("index") if numbers is not None and claims is not None else {}
     return {key: _study(key, own, folder, numbers, measured, outcome.get(key, {})) for key, own in job.items()}
@@ -103,7 +103,7 @@ def _study(
         shown=[],
         labels=job["labels"],
         **(other.of_worth(key, measured) if measured is not None else {}),
-        **(other.of_readings(files["readings"], files["explained"]) if "readings" in files else {}),
+        **(other.of_interpretations(files["interpretations"], files["explained"]) if "interpretations" in files else {}),
     )
 
 
@@ -213,7 +213,7 @@ def _claims(
                 decisive=decisive,
                 why=_why(own.iloc[decisive], written, labels, row) if decisive is not None else "",
                 variant=_labelled(variant, labels),
-                readings=[_reading(each, labels) for _, each in rows[~rows["primary"].astype(bool)].iterrows()],
+                interpretations=[_interpretation(each, labels) for _, each in rows[~rows["primary"].astype(bool)].iterrows()],
                 choices=[choice for choice in choices if choice.claim == identity],
                 more={name: cell(row[name]) for name in judged if name not in _CLAIM_COLUMNS},
             )
@@ -265,8 +265,10 @@ def _labelled(words: str, labels: dict[str, str]) -> str:
     return ", ".join(parts)
 
 
-def _reading(row: pd.Series, labels: dict[str, str]) -> content.Reading:
-    return content.Reading(variant=_labelled(_text(row, "variant"), labels), verdict=_text(row, "verdict"), holds=_text(row, "holds"))
+def _interpretation(row: pd.Series, labels: dict[str, str]) -> content.Interpretation:
+    return content.Interpretation(
+        variant=_labelled(_text(row, "variant"), labels), verdict=_text(row, "verdict"), holds=_text(row, "holds")
+    )
 
 
 def _choices(tried: pd.DataFrame | None, judged: pd.DataFrame) -> list[content.Choice]:

@@ -1,4 +1,4 @@
-"""Content of the page from tables beside those of the paper: what the methods are worth, and which readings explain its numbers."""
+"""Content of the page from tables beside those of the paper: what the methods are worth, and which interpretations explain its numbers."""
 
 from typing import Any
 
@@ -6,12 +6,12 @@ import numpy as np
 import pandas as pd
 
 from bezierplan.analysis import worth
-from bezierplan.analysis.explained import IN_FORCE
+from bezierplan.analysis.explained import DEFAULT
 from bezierplan.figures.page import content
 from bezierplan.figures.page.addresses import address
 
-# Readings shown of a study, beside the one in force.
-MOST_READINGS = 10
+# Interpretations shown of a study, beside the default.
+MOST_INTERPRETATIONS = 10
 
 
 def of_worth(study: str, measured: pd.DataFrame) -> dict[str, Any]:
@@ -33,23 +33,25 @@ def of_worth(study: str, measured: pd.DataFrame) -> dict[str, Any]:
     return {"worth": rows, "worth_in_words": worth.sentence(own)}
 
 
-def of_readings(tried: pd.DataFrame, explained: pd.DataFrame) -> dict[str, Any]:
-    """Fields `explanations`, `readings_tried` and `explained` of a study, from readings.csv, whose best row is first, and explained.csv."""
-    named = tried["reading"] == IN_FORCE
-    shown = pd.concat([tried[:MOST_READINGS], tried[MOST_READINGS:][named[MOST_READINGS:]]])
+def of_interpretations(tried: pd.DataFrame, explained: pd.DataFrame) -> dict[str, Any]:
+    """Fields `explanations`, `interpretations_tried` and `explained` of a study, from interpretations.csv, whose best row is first, and
+    explained.csv.
+    """
+    named = tried["interpretation"] == DEFAULT
+    shown = pd.concat([tried[:MOST_INTERPRETATIONS], tried[MOST_INTERPRETATIONS:][named[MOST_INTERPRETATIONS:]]])
     tables = [
         content.Explained(
             table=str(table),
             numbers=len(rows),
-            in_force=int(rows["in_force"].sum()),
+            default=int(rows["default"].sum()),
             best=int(rows["best"].sum()),
-            never=int((rows["readings"] == 0).sum()),
+            never=int((rows["interpretations"] == 0).sum()),
         )
         for table, rows in explained.groupby("table", sort=False)
     ]
-    columns = ["reading", "in_range", "numbers", "by_chance"]
+    columns = ["interpretation", "in_range", "numbers", "by_chance"]
     rows = [content.Explanation(**row | {"by_chance": _known(row["by_chance"])}) for row in shown[columns].to_dict("records")]
-    return {"explanations": rows, "readings_tried": len(tried), "explained": tables}
+    return {"explanations": rows, "interpretations_tried": len(tried), "explained": tables}
 
 
 def _known(value: float) -> float | None:

@@ -1,4 +1,4 @@
-"""The search for a reading that explains the published numbers: the grid, one reading, the search, and what is reported."""
+"""The search for an interpretation that explains the published numbers: the grid, one interpretation, the search, and what is reported."""
 
 import json
 import math
@@ -10,7 +10,7 @@ import pandas as pd
 import planted
 import pytest
 
-from bezierplan.analysis import explained, readings, statistics
+from bezierplan.analysis import explained, interpretations, statistics
 from bezierplan.analysis.explained import Evaluated
 from bezierplan.analysis.results import Results
 from bezierplan.analysis.search import Part, confirm, search
@@ -53,26 +53,26 @@ def test_grid_has_settings_worlds_and_metrics(studies):
 
 
 def test_what_the_paper_does_not_define_has_no_vote(studies):
-    job = choices.readings_job(studies["tharwat2018"], 1)
+    job = choices.interpretations_job(studies["tharwat2018"], 1)
     assert "O10" not in {choice["id"] for choice in job["choices"]}
     assert {value["metric"] for table in job["tables"].values() for value in table["spec"]["values"]} == {"rank", "objective"}
     # Its numbers stand in the same file as the others, and are passed over.
     both = printed(5.0, 6.0)
-    found, likelihood = readings.numbers_of(results(5.0), SPEC, pd.concat([both, both.assign(metric="length")]), "study/table")
+    found, likelihood = interpretations.numbers_of(results(5.0), SPEC, pd.concat([both, both.assign(metric="length")]), "study/table")
     assert found["metric"].to_list() == ["objective"] * 2
-    assert likelihood == readings.numbers_of(results(5.0), SPEC, both, "study/table")[1]
+    assert likelihood == interpretations.numbers_of(results(5.0), SPEC, both, "study/table")[1]
 
 
 @pytest.mark.parametrize("key", KEYS)
 def test_every_study_has_a_grid_of_plain_values(studies, key):
-    job = choices.readings_job(studies[key], 1)
+    job = choices.interpretations_job(studies[key], 1)
     assert json.loads(json.dumps(job)) == job
     assert job["tables"]
     assert job["choices"]
 
 
 @pytest.mark.parametrize("key", KEYS)
-def test_the_best_reading_is_judged_anew_by_a_thousand_runs_that_no_other_saw(studies, key):
+def test_the_best_interpretation_is_judged_anew_by_a_thousand_runs_that_no_other_saw(studies, key):
     job = choices.search_job(studies[key])
 
     def runs(part, table, method):
@@ -89,25 +89,25 @@ def test_the_best_reading_is_judged_anew_by_a_thousand_runs_that_no_other_saw(st
             assert min(counts.values()) >= choices.FRESH
 
 
-# One reading.
+# One interpretation.
 
 
-def test_a_reading_changes_the_settings_of_its_methods_and_nothing_else(studies):
-    job = choices.readings_job(studies["meledje"], 1)
+def test_an_interpretation_changes_the_settings_of_its_methods_and_nothing_else(studies):
+    job = choices.interpretations_job(studies["meledje"], 1)
     chunk = job["tables"]["table2"]["jobs"]["proposed"]
-    changed = readings.job_under(chunk, {"M5": 1, "M18": "path"}, job["choices"])
+    changed = interpretations.job_under(chunk, {"M5": 1, "M18": "path"}, job["choices"])
     assert changed["settings"] == chunk["settings"] | {"elitism": 1}
-    assert readings.job_under(chunk, {}, job["choices"]) == chunk
+    assert interpretations.job_under(chunk, {}, job["choices"]) == chunk
 
 
 @pytest.mark.parametrize("key", KEYS)
 def test_every_choice_can_be_made_in_every_job(studies, key):
-    job = choices.readings_job(studies[key], 1)
+    job = choices.interpretations_job(studies[key], 1)
     for choice in job["choices"]:
         for value in choice["values"][1:]:
             chosen = {choice["id"]: value}
             changes = [
-                readings.job_under(chunk, chosen, job["choices"]) != chunk
+                interpretations.job_under(chunk, chosen, job["choices"]) != chunk
                 for table in job["tables"].values()
                 for chunk in table["jobs"].values()
             ]
@@ -116,19 +116,19 @@ def test_every_choice_can_be_made_in_every_job(studies, key):
 
 
 def test_a_choice_wins_over_the_settings_of_a_problem(studies):
-    job = choices.readings_job(studies["ma2020"], 1)
+    job = choices.interpretations_job(studies["ma2020"], 1)
     chunk = job["tables"]["table2"]["jobs"]["aco"]
     assert chunk["problems"]["environment2"]["settings"]["iterations"] == 100
-    changed = readings.job_under(chunk, {"O12d": 200}, job["choices"])
+    changed = interpretations.job_under(chunk, {"O12d": 200}, job["choices"])
     assert changed["settings"]["iterations"] == 200
     assert "iterations" not in changed["problems"]["environment2"].get("settings", {})
 
 
-def test_only_the_world_of_the_reading_is_run(studies):
-    table = choices.readings_job(studies["tharwat2018"], 1)["tables"]["table3"]
+def test_only_the_world_of_the_interpretation_is_run(studies):
+    table = choices.interpretations_job(studies["tharwat2018"], 1)["tables"]["table3"]
     chunk = table["jobs"]["cpso1_gauss"]
     for chosen, world in (({}, ("equal", "default")), ({"workspace": "public", "profile": "tuned"}, ("public", "tuned"))):
-        spec, job = readings.in_world(table["spec"], chunk, chosen)
+        spec, job = interpretations.in_world(table["spec"], chunk, chosen)
         assert (list(job["problems"]), job["vary"]) == ([world[0]], {"profile": [world[1]]})
         assert (spec["where"]["workspace"], spec["where"]["profile"]) == world
 
@@ -160,7 +160,7 @@ def printed(a: float, b: float) -> pd.DataFrame:
 
 
 def test_numbers_lie_in_range_where_the_comparison_says_so():
-    near, _ = readings.numbers_of(results(5.0), SPEC, printed(5.1, 9.0), "study/table")
+    near, _ = interpretations.numbers_of(results(5.0), SPEC, printed(5.1, 9.0), "study/table")
     assert near["in_range"].to_list() == [True, False]
     ours = results(5.0).runs.query("method == 'a'")["objective"].to_numpy()
     *_, low, high = statistics.prediction("mean", np.sort(ours), 5.1, 10, None, generator("any"))
@@ -169,7 +169,7 @@ def test_numbers_lie_in_range_where_the_comparison_says_so():
 
 def test_likelihood_is_highest_at_the_truth_and_knows_that_runs_are_common():
     def likelihood(mean, a, b):
-        return readings.numbers_of(results(mean), SPEC, printed(a, b), "study/table")[1]
+        return interpretations.numbers_of(results(mean), SPEC, printed(a, b), "study/table")[1]
 
     assert likelihood(5.0, 5.0, 6.0) > likelihood(5.5, 5.0, 6.0) > likelihood(7.0, 5.0, 6.0)
     # Both lie equally far off, but together only where the same runs moved both.
@@ -183,25 +183,28 @@ def test_an_event_that_none_of_our_few_runs_had_may_be_in_print_once_or_twice():
 
     def likelihood(count):
         frame = printed(count, 0).assign(metric="feasible", statistic="count", n=100)
-        return readings.numbers_of(ours, spec, frame, "study/table")[1]
+        return interpretations.numbers_of(ours, spec, frame, "study/table")[1]
 
     assert likelihood(0) > likelihood(2) > likelihood(0) - 2
     assert likelihood(50) < likelihood(0) - 50
 
 
 def test_too_few_runs_explain_nothing():
-    found, likelihood = readings.numbers_of(results(5.0, runs=3), SPEC, printed(5.0, 6.0), "study/table")
+    found, likelihood = interpretations.numbers_of(results(5.0, runs=3), SPEC, printed(5.0, 6.0), "study/table")
     assert not found["in_range"].any()
     assert math.isfinite(likelihood)
 
 
 def test_a_metric_takes_the_place_of_the_printed_word():
-    spec, published = readings.under_metrics(SPEC, printed(5.0, 6.0), {"O1": "length"}, [{"id": "O1", "metric": "objective"}])
+    spec, published = interpretations.under_metrics(SPEC, printed(5.0, 6.0), {"O1": "length"}, [{"id": "O1", "metric": "objective"}])
     assert [value["metric"] for value in spec["values"]] == ["length"]
     assert set(published["metric"]) == {"length"}
     # A table that shows the metric already shows it once.
     both = SPEC | {"values": [*SPEC["values"], {"metric": "length", "statistic": "mean"}]}
-    assert len(readings.under_metrics(both, printed(5.0, 6.0), {"O1": "length"}, [{"id": "O1", "metric": "objective"}])[0]["values"]) == 1
+    assert (
+        len(interpretations.under_metrics(both, printed(5.0, 6.0), {"O1": "length"}, [{"id": "O1", "metric": "objective"}])[0]["values"])
+        == 1
+    )
 
 
 def test_the_search_leaves_out_what_takes_too_long(studies):
@@ -216,9 +219,9 @@ def test_the_length_that_a_fitness_uses_is_not_the_length_that_is_printed(studie
 
 
 def test_a_choice_for_some_problems_leaves_the_others_alone(studies):
-    job = choices.readings_job(studies["meledje"], 1)
+    job = choices.interpretations_job(studies["meledje"], 1)
     first, second = (job["tables"][name]["jobs"]["ref12"] for name in ("table2", "table4"))
-    changed = [readings.job_under(chunk, {"M15": 50, "M15b": 200}, job["choices"]) for chunk in (first, second)]
+    changed = [interpretations.job_under(chunk, {"M15": 50, "M15b": 200}, job["choices"]) for chunk in (first, second)]
     assert all(chunk["settings"]["generations"] == 50 for chunk in changed)
     found = {name: place["settings"].get("generations") for chunk in changed for name, place in chunk["problems"].items()}
     assert found["env1_initial"] is None
@@ -242,7 +245,7 @@ def test_every_rival_has_forty_settings_to_try(studies, method):
     assert math.prod(found.values()) >= 40
 
 
-def test_a_share_of_the_runs_screens_readings(studies):
+def test_a_share_of_the_runs_screens_interpretations(studies):
     job = choices.search_job(studies["elhoseny2017"])
     layouts = [{place["layout"] for place in job[name]["worlds"]["fields100"]["problems"].values()} for name in ("screened", "confirmed")]
     assert list(map(len, layouts)) == [statistics.LEAST_RUNS, 20]
@@ -256,25 +259,25 @@ ALONE = [Part(["a"], [choice["id"] for choice in CHOICES])]
 
 
 def evaluated(chosen: dict, planted: dict) -> Evaluated:
-    """As many numbers in range as choices agree with the planted reading."""
+    """As many numbers in range as choices agree with the planted interpretation."""
     agree = [chosen.get(choice["id"]) == planted.get(choice["id"]) for choice in CHOICES]
     return Evaluated(chosen, numbers(agree), {"table1": float(sum(agree))})
 
 
 def evaluating(planted: dict):
-    return lambda tasks: [evaluated(task.reading, planted) for task in tasks]
+    return lambda tasks: [evaluated(task.interpretation, planted) for task in tasks]
 
 
 def test_a_small_grid_is_searched_completely():
     found = search(CHOICES[:3], [Part(["a"], ["O0", "O1", "O2"])], evaluating({}), "study", most=27)
     assert len(found.of_parts[0]) == 27
-    assert found.readings[0].reading == {}
+    assert found.interpretations[0].interpretation == {}
 
 
-def test_a_large_grid_is_climbed_to_the_planted_reading():
+def test_a_large_grid_is_climbed_to_the_planted_interpretation():
     planted = {"O1": 2, "O3": 1, "O4": 2}
     found = search(CHOICES, ALONE, evaluating(planted), "study", most=60)
-    assert max(found.readings, key=lambda each: each.rank).reading == planted
+    assert max(found.interpretations, key=lambda each: each.rank).interpretation == planted
 
 
 def test_a_change_is_paid_only_by_the_parts_that_it_concerns():
@@ -282,60 +285,60 @@ def test_a_change_is_paid_only_by_the_parts_that_it_concerns():
 
     def evaluate(tasks):
         asked.extend(tasks)
-        return [evaluated(task.reading, {"O1": 2, "O5": 1}) for task in tasks]
+        return [evaluated(task.interpretation, {"O1": 2, "O5": 1}) for task in tasks]
 
     parts = [Part(["a"], ["O0", "O1", "O2"]), Part(["b"], ["O0", "O3", "O4", "O5"])]
     found = search(CHOICES, parts, evaluate, "study", most=200)
-    assert len({(task.part, explained.name_of(task.reading)) for task in asked}) == len(asked) <= 27 + 81
-    assert all(task.reading.keys() <= set(parts[task.part].choices) for task in asked)
-    assert max(found.readings, key=lambda each: each.rank).reading == {"O1": 2, "O5": 1}
+    assert len({(task.part, explained.name_of(task.interpretation)) for task in asked}) == len(asked) <= 27 + 81
+    assert all(task.interpretation.keys() <= set(parts[task.part].choices) for task in asked)
+    assert max(found.interpretations, key=lambda each: each.rank).interpretation == {"O1": 2, "O5": 1}
 
 
-def test_a_reading_names_no_choice_that_its_world_makes_itself():
+def test_an_interpretation_names_no_choice_that_its_world_makes_itself():
     """As a bundle of settings beats the single ones, `O1=2, world=other` would be the runs of `world=other` under another name."""
     world = {"id": "world", "detail": "", "values": [None, "other"], "column": "world", "overrules": {"other": ["O1"]}}
 
     def tried(grid):
         parts = [Part(["a"], [choice["id"] for choice in [*grid, world]])]
         return search(
-            [*grid, world], parts, lambda tasks: [evaluated(task.reading, {"O2": 1}) for task in tasks], "study", most=60
-        ).readings
+            [*grid, world], parts, lambda tasks: [evaluated(task.interpretation, {"O2": 1}) for task in tasks], "study", most=60
+        ).interpretations
 
     for grid in (CHOICES[:2], CHOICES):
-        made = [each.reading for each in tried(grid)]
-        assert any("world" in reading for reading in made)
-        assert not any({"world", "O1"} <= reading.keys() for reading in made)
+        made = [each.interpretation for each in tried(grid)]
+        assert any("world" in interpretation for interpretation in made)
+        assert not any({"world", "O1"} <= interpretation.keys() for interpretation in made)
     assert len(tried(CHOICES[:2])) == 9 + 3
 
 
-def test_readings_that_exclude_themselves_are_left_out_and_the_budget_is_kept():
+def test_interpretations_that_exclude_themselves_are_left_out_and_the_budget_is_kept():
     asked = []
 
     def evaluate(tasks):
-        asked.extend(explained.name_of(task.reading) for task in tasks)
-        return [None if task.reading.get("O2") == 1 else evaluated(task.reading, {}) for task in tasks]
+        asked.extend(explained.name_of(task.interpretation) for task in tasks)
+        return [None if task.interpretation.get("O2") == 1 else evaluated(task.interpretation, {}) for task in tasks]
 
     found = search(CHOICES, ALONE, evaluate, "study", most=20)
     assert len(asked) == len(set(asked))
     assert 20 <= len(asked) < 20 + 3  # a batch is finished
-    assert all(each.reading.get("O2") != 1 for each in found.readings)
+    assert all(each.interpretation.get("O2") != 1 for each in found.interpretations)
     again = search(CHOICES, ALONE, evaluate, "study", most=20)
-    assert [each.reading for each in again.readings] == [each.reading for each in found.readings]
+    assert [each.interpretation for each in again.interpretations] == [each.interpretation for each in found.interpretations]
 
 
 def test_the_best_are_judged_again():
     found = search(CHOICES, ALONE, evaluating({"O1": 2}), "study", most=60)
     confirmed = confirm(found, ALONE, evaluating({"O1": 1}), 5)
-    assert confirmed[0].reading == {}
-    assert len({explained.name_of(each.reading) for each in confirmed}) == 6
-    assert max(confirmed, key=lambda each: each.rank).reading.get("O1") != 2
+    assert confirmed[0].interpretation == {}
+    assert len({explained.name_of(each.interpretation) for each in confirmed}) == 6
+    assert max(confirmed, key=lambda each: each.rank).interpretation.get("O1") != 2
 
 
 PLANTED = [("song2016", 0), ("ma2020", 0), ("meledje", 0), ("meledje", 1), ("ma2020", 1)]
 
 
 @pytest.mark.parametrize(("key", "number"), PLANTED)
-def test_a_planted_reading_is_found(studies, key, number):
+def test_a_planted_interpretation_is_found(studies, key, number):
     job = choices.search_job(studies[key])
     surface = planted.Surface(f"{key}/{number}", job["screened"]["choices"], [Part(**part) for part in job["parts"]])
     assert planted.found_by(surface, 100) >= -planted.NEAR
@@ -345,7 +348,7 @@ def test_noise_is_not_explained(studies):
     job = choices.search_job(studies["ma2020"])
     surface = planted.Surface("ma2020/noise", job["screened"]["choices"], [Part(**part) for part in job["parts"]], noise=True)
     found = search(surface.choices, surface.parts, surface.evaluate, "study", most=60)
-    best = max(found.readings, key=lambda each: each.rank)
+    best = max(found.interpretations, key=lambda each: each.rank)
     assert best.numbers["in_range"].mean() < 0.5
 
 
@@ -359,19 +362,19 @@ def test_by_chance_exchanges_the_printed_numbers():
     assert explained.by_chance(numbers([True])) == 0.0
 
 
-def test_tables_of_readings_numbers_and_tables_left_out():
+def test_tables_of_interpretations_numbers_and_tables_left_out():
     tables = ["table1", "table1", "table2"]
-    in_force = Evaluated({}, numbers([True, False, True], tables), {"table1": -1.0, "table2": -1.0})
+    default = Evaluated({}, numbers([True, False, True], tables), {"table1": -1.0, "table2": -1.0})
     other = Evaluated({"O1": 2}, numbers([True, True, False], tables), {"table1": 0.0, "table2": -5.0})
-    found = explained.readings_table("study", [in_force, other], [in_force, other], other, CHOICES)
-    assert found["reading"].to_list() == ["in force", "O1=2"]
+    found = explained.interpretations_table("study", [default, other], [default, other], other, CHOICES)
+    assert found["interpretation"].to_list() == ["default", "O1=2"]
     assert found[["in_range", "in_range_table1", "in_range_table2"]].to_numpy().tolist() == [[2, 1, 1], [2, 2, 0]]
-    numbers_found = explained.explained_table("study", [in_force, other], [[in_force, other]], set())
-    assert numbers_found["readings"].to_list() == [1, 1, 2]
-    assert numbers_found["in_force"].to_list() == [False, True, True]
-    held_out = explained.held_out_table("study", [in_force, other], {}).set_index("table")
+    numbers_found = explained.explained_table("study", [default, other], [[default, other]], set())
+    assert numbers_found["interpretations"].to_list() == [1, 1, 2]
+    assert numbers_found["default"].to_list() == [False, True, True]
+    held_out = explained.held_out_table("study", [default, other], {}).set_index("table")
     # The other one is best on the first table, and is wrong on the second.
-    assert held_out.loc["table2", ["reading", "chosen", "in_force", "most"]].to_list() == ["O1=2", 0, 1, 1]
+    assert held_out.loc["table2", ["interpretation", "chosen", "default", "most"]].to_list() == ["O1=2", 0, 1, 1]
 
 
 def told(*tried, lines=None):
@@ -379,60 +382,60 @@ def told(*tried, lines=None):
     numbers_found = explained.explained_table("one", confirmed, [confirmed], set())
     held_out = explained.held_out_table("one", confirmed, lines or {})
     (*_, text) = explained.section(
-        explained.readings_table("one", confirmed, [], confirmed[-1], CHOICES), numbers_found, held_out, {"one": "The first"}
+        explained.interpretations_table("one", confirmed, [], confirmed[-1], CHOICES), numbers_found, held_out, {"one": "The first"}
     )
     return text
 
 
-def test_summary_says_what_no_reading_gives_and_what_the_best_one_does():
+def test_summary_says_what_no_interpretation_gives_and_what_the_best_one_does():
     tables = ["table1", "table1", "table2", "table2"]
-    in_force = Evaluated({}, numbers([True, False, False, False], tables), {"table1": -1.0, "table2": -5.0})
+    default = Evaluated({}, numbers([True, False, False, False], tables), {"table1": -1.0, "table2": -5.0})
     better = Evaluated({"O1": 2}, numbers([True, True, True, False], tables), {"table1": 0.0, "table2": -1.0})
-    text = told(in_force, better)
+    text = told(default, better)
     assert "are most likely from an experiment in which these choices differ from ours: : 2 (O1=2)" in text
-    assert "log-likelihood ratio against the one in force +5.0 (10^2 times as likely)" in text
+    assert "log-likelihood ratio against the default +5.0 (10^2 times as likely)" in text
     assert "Judged anew by runs with other seeds, it has 3 of 4 in range and a log-likelihood of -1.0 (by the runs" in text
-    assert "No reading explains 1 of the numbers: 1 of table2 for d." in text
-    assert text.endswith("readings bring 3 into range, that in force 1: the tables held out agree with a change.")
-    assert "none of 1 readings is more likely" in told(in_force)
+    assert "No interpretation explains 1 of the numbers: 1 of table2 for d." in text
+    assert text.endswith("interpretations bring 3 into range, the default 1: the tables held out agree with a change.")
+    assert "none of 1 interpretations is more likely" in told(default)
     assert "explains their level" not in text
     # Ranges so wide that each holds every printed number of its kind say nothing about how these differ.
     wide = Evaluated({"O1": 2}, better.numbers.assign(low=-10.0, high=10.0, in_range=True, method="a"), better.likelihoods)
-    assert "4 of 4 numbers in range (4 if those of one kind in one table were exchanged): it explains their level" in told(in_force, wide)
+    assert "4 of 4 numbers in range (4 if those of one kind in one table were exchanged): it explains their level" in told(default, wide)
 
 
-def test_summary_does_not_follow_a_reading_that_other_tables_refuse():
+def test_summary_does_not_follow_an_interpretation_that_other_tables_refuse():
     tables = ["table1", "table1", "table2"]
-    in_force = Evaluated({}, numbers([False, False, True], tables), {"table1": -9.0, "table2": -1.0})
+    default = Evaluated({}, numbers([False, False, True], tables), {"table1": -9.0, "table2": -1.0})
     fitted = Evaluated({"O1": 2}, numbers([True, True, False], tables), {"table1": 0.0, "table2": -9.0})
-    text = told(in_force, fitted)
-    assert "Each number is in range under some reading." in text
+    text = told(default, fitted)
+    assert "Each number is in range under some interpretation." in text
     assert text.endswith("held out, table2 (0 instead of 1) speaks against a change.")
     assert explained.section(pd.DataFrame(), pd.DataFrame(), pd.DataFrame(), {}) == []
 
 
-def test_a_reading_under_which_a_printed_number_is_impossible_is_ruled_out_whatever_its_score():
-    in_force = Evaluated({}, numbers([True, False]), {"table1": -9.0})
+def test_an_interpretation_under_which_a_printed_number_is_impossible_is_ruled_out_whatever_its_score():
+    default = Evaluated({}, numbers([True, False]), {"table1": -9.0})
     likely = Evaluated({"O1": 2}, numbers([True, True]).assign(possible=[True, False]), {"table1": 0.0})
-    assert max([in_force, likely], key=lambda each: each.rank) is in_force
-    found = explained.readings_table("study", [in_force, likely], [], likely, CHOICES)
-    assert found[["reading", "impossible"]].to_numpy().tolist() == [["in force", 0], ["O1=2", 1]]
-    text = told(in_force, likely)
-    assert "1 of 2 readings is ruled out: under it a printed mean or extreme lies below the exact bound of its map." in text
-    assert "none of 2 readings is more likely" in text
+    assert max([default, likely], key=lambda each: each.rank) is default
+    found = explained.interpretations_table("study", [default, likely], [], likely, CHOICES)
+    assert found[["interpretation", "impossible"]].to_numpy().tolist() == [["default", 0], ["O1=2", 1]]
+    text = told(default, likely)
+    assert "1 of 2 interpretations is ruled out: under it a printed mean or extreme lies below the exact bound of its map." in text
+    assert "none of 2 interpretations is more likely" in text
     # Ruled out, it is no place to climb from either.
-    found = search(CHOICES, ALONE, lambda tasks: [likely if task.reading else in_force for task in tasks], "study", most=30)
-    assert found.readings[0].reading == {}
+    found = search(CHOICES, ALONE, lambda tasks: [likely if task.interpretation else default for task in tasks], "study", most=30)
+    assert found.interpretations[0].interpretation == {}
 
 
 def test_a_line_that_describes_the_numbers_better_is_told():
     own = Evaluated({}, numbers([True, False]), {"table1": -9.0})
-    assert "below that of the most likely reading: so the reading describes them better" in told(
+    assert "below that of the most likely interpretation: so the interpretation describes them better" in told(
         own, lines={"table1": ("obstacles", -20.0)}
     )
     text = told(own, lines={"table1": ("obstacles", -2.0)})
     assert "A straight line in the column obstacles" in text
-    assert "has a log-likelihood 7.0 above that of the most likely reading: so the reading describes them worse" in text
+    assert "has a log-likelihood 7.0 above that of the most likely interpretation: so the interpretation describes them worse" in text
 
 
 def test_a_line_predicts_numbers_on_it_and_not_others():
@@ -443,9 +446,9 @@ def test_a_line_predicts_numbers_on_it_and_not_others():
     assert near > far
 
 
-def test_figure_shows_every_choice_that_some_reading_makes():
+def test_figure_shows_every_choice_that_some_interpretation_makes():
     judged = [evaluated(chosen, {}) for chosen in ({}, {"O1": 2}, {"O3": 1})]
-    table = explained.readings_table("study", judged, [], judged[0], CHOICES)
+    table = explained.interpretations_table("study", judged, [], judged[0], CHOICES)
     above, below = specification.draw(table, [choice["id"] for choice in CHOICES]).axes
     assert [label.get_text() for label in below.get_yticklabels()] == ["O1 = 2", "O3 = 1"]
     assert above.lines[0].get_ydata().tolist() == sorted(table["in_range"])
@@ -463,10 +466,10 @@ def test_a_search_goes_on_with_the_runs_that_it_kept_in_any_number_of_processes(
     files = {"table1": study.published_file("table1")}
 
     def found(processes):
-        return readings.found_by(job, files, study.folder, tmp_path, processes)
+        return interpretations.found_by(job, files, study.folder, tmp_path, processes)
 
     first = found(2)
     assert first["explained"]["tried"].min() >= 2
-    monkeypatch.setattr(readings.execution, "run_chunk", lambda *_, **__: pytest.fail("run again"))
+    monkeypatch.setattr(interpretations.execution, "run_chunk", lambda *_, **__: pytest.fail("run again"))
     for name, table in found(1).items():
         pd.testing.assert_frame_equal(table, first[name])

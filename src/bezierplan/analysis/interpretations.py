@@ -1,11 +1,11 @@
-"""How likely are a paper's published numbers under a reading of what it leaves open? `search` looks for the best reading.
+"""How likely are a paper's published numbers under an interpretation of what it leaves open? `search` looks for the best interpretation.
 
-A reading assigns a value to some choices (`study.choices`), by id; all others keep the value in force. It is scored by the joint likelihood
-of the numbers of each table and part: whole experiments are drawn from our runs, so that numbers from the same runs stay correlated, and
-the published numbers are placed in the multivariate t distribution of these draws. Numbers of different parts, which are methods that no
-metric compares with each other, count as independent given the reading. Beside the score stands how many published numbers lie in the
-central 95 % of what experiments of the paper's size would print (`statistics.prediction`). A reading under which a printed mean or extreme
-lies below the exact bound of its map is ruled out, whatever its score: no runs at all could have it.
+An interpretation assigns a value to some choices (`study.choices`), by id; all others keep the value in force. It is scored by the joint
+likelihood of the numbers of each table and part: whole experiments are drawn from our runs, so that numbers from the same runs stay
+correlated, and the published numbers are placed in the multivariate t distribution of these draws. Numbers of different parts, which are
+methods that no metric compares with each other, count as independent given the interpretation. Beside the score stands how many published
+numbers lie in the central 95 % of what experiments of the paper's size would print (`statistics.prediction`). An interpretation under which
+a printed mean or extreme lies below the exact bound of its map is ruled out, whatever its score: no runs at all could have it.
 """
 
 import hashlib
@@ -26,7 +26,7 @@ import pandas as pd
 import pyarrow.parquet as parquet
 
 from bezierplan.analysis import comparison, explained, metrics, statistics, tables
-from bezierplan.analysis.explained import Evaluated, Reading, name_of, together
+from bezierplan.analysis.explained import Evaluated, Interpretation, name_of, together
 from bezierplan.analysis.results import Results, joined, select
 from bezierplan.analysis.search import Evaluate, Part, Task, confirm, search, whole
 from bezierplan.planners import planner_module
@@ -42,20 +42,20 @@ logger = logging.getLogger(__name__)
 _BOUNDED, _ROUNDING = ("mean", "median", "min", "max"), 1e-9
 # Draws of whole experiments.
 EXPERIMENTS = 500
-# Readings that are judged by more runs.
+# Interpretations that are judged by more runs.
 FINALISTS = 10
 
 
-# One reading.
+# One interpretation.
 
 
-def job_under(job: dict, reading: Reading, choices: list[dict]) -> dict:
-    """A job of runs under a reading: with its settings, and only in the world that it names."""
+def job_under(job: dict, interpretation: Interpretation, choices: list[dict]) -> dict:
+    """A job of runs under an interpretation: with its settings, and only in the world that it names."""
     settings, problems = dict(job["settings"]), {name: dict(place.get("settings", {})) for name, place in job["problems"].items()}
     # Choices for some problems alone are stronger than those for all.
     for choice in sorted(choices, key=lambda choice: "problems" in choice):
-        if choice["id"] in reading and job["method"] in choice.get("methods", []):
-            made = {choice["setting"]: reading[choice["id"]]} | choice["along"].get(job["method"], {})
+        if choice["id"] in interpretation and job["method"] in choice.get("methods", []):
+            made = {choice["setting"]: interpretation[choice["id"]]} | choice["along"].get(job["method"], {})
             if "problems" in choice:
                 for name in problems.keys() & set(choice["problems"]):
                     problems[name] |= made
@@ -68,9 +68,9 @@ def job_under(job: dict, reading: Reading, choices: list[dict]) -> dict:
     return job | {"settings": settings, "problems": met}
 
 
-def in_world(spec: dict, job: dict, reading: Reading) -> tuple[dict, dict]:
-    """A table's description and one of its jobs, restricted to the paper's reading of the world."""
-    world = {column: reading.get(column, value) for column, value in spec.get("primary", {}).items()}
+def in_world(spec: dict, job: dict, interpretation: Interpretation) -> tuple[dict, dict]:
+    """A table's description and one of its jobs, restricted to the paper's interpretation of the world."""
+    world = {column: interpretation.get(column, value) for column, value in spec.get("primary", {}).items()}
     where = spec["where"] | world
 
     def wanted(column: str, value: Any) -> bool:
@@ -86,23 +86,23 @@ def in_world(spec: dict, job: dict, reading: Reading) -> tuple[dict, dict]:
     return spec | {"where": where}, job | {"problems": problems, "vary": vary}
 
 
-def under_metrics(spec: dict, published: pd.DataFrame, reading: Reading, choices: list[dict]) -> tuple[dict, pd.DataFrame]:
-    """A table's description and its published numbers, with the metrics that a reading assigns to printed words, and the keys that it
-    changes.
+def under_metrics(spec: dict, published: pd.DataFrame, interpretation: Interpretation, choices: list[dict]) -> tuple[dict, pd.DataFrame]:
+    """A table's description and its published numbers, with the metrics that an interpretation assigns to printed words, and the keys that
+    it changes.
 
     A metric that the table has in another entry already stays once.
     """
-    metric = {choice["metric"]: reading[choice["id"]] for choice in choices if "metric" in choice and choice["id"] in reading}
+    metric = {choice["metric"]: interpretation[choice["id"]] for choice in choices if "metric" in choice and choice["id"] in interpretation}
     renamed = [entry | {"metric": metric.get(entry["metric"], entry["metric"])} for entry in spec["values"]]
     entries = {(entry["metric"], str(entry["statistic"])): entry for entry in renamed}
-    keys = {choice["table"]: reading[choice["id"]] for choice in choices if "table" in choice and choice["id"] in reading}
+    keys = {choice["table"]: interpretation[choice["id"]] for choice in choices if "table" in choice and choice["id"] in interpretation}
     return spec | keys | {"values": [*entries.values()]}, published.assign(metric=published["metric"].replace(metric))
 
 
 def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str) -> tuple[pd.DataFrame, float]:
-    """The published numbers of a table under a reading, and the logarithm of their joint likelihood.
+    """The published numbers of a table under an interpretation, and the logarithm of their joint likelihood.
 
-    results: the runs of the table's methods. spec: its description, restricted to the reading's world. published: as from
+    results: the runs of the table's methods. spec: its description, restricted to the interpretation's world. published: as from
     `comparison.read_published`. name: seeds the draws. Columns: the table's keys, metric, statistic, value_published, low, high, in_range,
     possible (it does not lie below what every run has at least).
     Seconds are left out; with fewer than `statistics.LEAST_RUNS` runs no number is in range.
@@ -126,7 +126,7 @@ def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str)
         *_, low, high = statistics.prediction(
             row["statistic"], row["numbers"], value, size, None, generator(f"{name}/{number}"), single, row["groups"] or None
         )
-        # Without enough runs nothing is in range: a reading under which most runs fail explains nothing.
+        # Without enough runs nothing is in range: an interpretation under which most runs fail explains nothing.
         enough = len(row["numbers"]) >= statistics.LEAST_RUNS
         described = {key: row[key] for key in [*given, "metric", "statistic", "value_published"]}
         inside = bool(enough and low - half <= value <= high + half)
@@ -204,57 +204,59 @@ def _likelihood(published: np.ndarray, draws: np.ndarray, least: np.ndarray, res
 
 
 class Evaluator:
-    """Evaluates parts of readings on the runs that they need. Runs are kept in a folder under the digest of their job, so that an
-    interrupted search continues, and readings that agree on a method share its runs.
+    """Evaluates parts of interpretations on the runs that they need. Runs are kept in a folder under the digest of their job, so that an
+    interrupted search continues, and interpretations that agree on a method share its runs.
     """
 
     def __init__(self, job: dict, files: dict[str, str], maps: Path, folder: Path) -> None:
-        """job: as from `study.choices.readings_job`. files: published numbers, by table. maps: where map files are looked up."""
+        """job: as from `study.choices.interpretations_job`. files: published numbers, by table. maps: where map files are looked up."""
         self.job, self.maps, self.folder = job, maps, folder
         self.published = {name: comparison.read_published(files[name], table["spec"]) for name, table in job["tables"].items()}
         self.worlds: dict[str, tuple[dict, pd.DataFrame]] = {}
 
-    def __call__(self, methods: list[str], reading: Reading) -> Evaluated | None:
-        """The part of a reading that some methods' numbers decide; None if its settings exclude each other or no workspace is like that."""
+    def __call__(self, methods: list[str], interpretation: Interpretation) -> Evaluated | None:
+        """The part of an interpretation that some methods' numbers decide; None if its settings exclude each other or no workspace is like
+        that.
+        """
         found = []
         for name, table in self.job["tables"].items():
             jobs = [job for method, job in table["jobs"].items() if method in methods]
             if not jobs:
                 continue
-            placed = [in_world(table["spec"], job_under(job, reading, self.job["choices"]), reading) for job in jobs]
+            placed = [in_world(table["spec"], job_under(job, interpretation, self.job["choices"]), interpretation) for job in jobs]
             if any(_excluded(chunk) for _, chunk in placed):
                 return None
             try:
-                problems, bounds, changes = self._world(table["experiment"], [*placed[0][1]["problems"]], reading)
+                problems, bounds, changes = self._world(table["experiment"], [*placed[0][1]["problems"]], interpretation)
             except ValueError as error:  # no such workspace can be drawn
-                logger.info("%s: %s", name_of(reading), error)
+                logger.info("%s: %s", name_of(interpretation), error)
                 return None
             runs = pd.concat([self._runs(chunk, problems, changes) for _, chunk in placed], ignore_index=True)
-            spec, published = under_metrics(placed[0][0], self._printed(name, reading), reading, self.job["choices"])
+            spec, published = under_metrics(placed[0][0], self._printed(name, interpretation), interpretation, self.job["choices"])
             if len(jobs) < len(table["jobs"]):
                 spec = spec | {"where": spec["where"] | {"method": [job["method"] for job in jobs]}}
                 published = published[published["method"].isin(spec["where"]["method"])]
             numbers, likelihood = numbers_of(joined(runs, problems, bounds), spec, published, f"{self.job['study']}/{name}")
-            found.append(Evaluated(reading, numbers.assign(table=name), {name: likelihood}))
-        whole = together(reading, found)
-        logger.info("%s: %s: %.2f, %d of %d", ", ".join(methods), name_of(reading), whole.score, *_in_range(whole))
+            found.append(Evaluated(interpretation, numbers.assign(table=name), {name: likelihood}))
+        whole = together(interpretation, found)
+        logger.info("%s: %s: %.2f, %d of %d", ", ".join(methods), name_of(interpretation), whole.score, *_in_range(whole))
         return whole
 
-    def _printed(self, name: str, reading: Reading) -> pd.DataFrame:
-        """The published numbers of a table; a column that names the world in force names that of the reading."""
+    def _printed(self, name: str, interpretation: Interpretation) -> pd.DataFrame:
+        """The published numbers of a table; a column that names the default world names that of the interpretation."""
         published = self.published[name]
-        return published.assign(**{column: value for column, value in reading.items() if column in published})
+        return published.assign(**{column: value for column, value in interpretation.items() if column in published})
 
-    def _world(self, experiment: str, names: list[str], reading: Reading) -> tuple[dict, pd.DataFrame, list]:
-        """Some problems of an experiment under a reading, their bounds, and what the reading changes in their workspaces."""
+    def _world(self, experiment: str, names: list[str], interpretation: Interpretation) -> tuple[dict, pd.DataFrame, list]:
+        """Some problems of an experiment under an interpretation, their bounds, and what the interpretation changes in their workspaces."""
         described = self.job["worlds"][experiment]
         wanted = {name: described["problems"][name] for name in names}
         used = {problem["workspace"] for problem in wanted.values()}
         changes = [
-            (workspace, key, reading[choice["id"]])
+            (workspace, key, interpretation[choice["id"]])
             for choice in self.job["choices"]
             for workspace, key in choice.get("workspace", {}).items()
-            if choice["id"] in reading and workspace in used
+            if choice["id"] in interpretation and workspace in used
         ]
         place = json.dumps([experiment, names, changes])
         if place not in self.worlds:
@@ -288,7 +290,7 @@ def evaluating(evaluator: Evaluator, parts: list[Part], processes: int) -> Itera
     job's script anew.
     """
     if processes == 1 or sys.platform != "linux":
-        yield lambda tasks: [evaluator(parts[task.part].methods, task.reading) for task in tasks]
+        yield lambda tasks: [evaluator(parts[task.part].methods, task.interpretation) for task in tasks]
         return
     with ProcessPoolExecutor(processes, multiprocessing.get_context("fork"), _begin, (evaluator, parts)) as pool:
         yield lambda tasks: [*pool.map(_evaluated, tasks)]
@@ -304,11 +306,11 @@ def _begin(evaluator: Evaluator, parts: list[Part]) -> None:
 
 
 def _evaluated(task: Task) -> Evaluated | None:
-    return _of_process["evaluator"](_of_process["parts"][task.part].methods, task.reading)
+    return _of_process["evaluator"](_of_process["parts"][task.part].methods, task.interpretation)
 
 
 def found_by(job: dict, files: dict[str, str], maps: Path, folder: Path, processes: int) -> dict[str, pd.DataFrame]:
-    """The three tables of `explained`, by name, after the search for a study's best reading; the best are judged again by more
+    """The three tables of `explained`, by name, after the search for a study's best interpretation; the best are judged again by more
     runs, and the very best anew, by runs with other seeds.
 
     job: as from `study.choices.search_job`.
@@ -320,13 +322,13 @@ def found_by(job: dict, files: dict[str, str], maps: Path, folder: Path, process
     more = Evaluator(job["confirmed"], files, maps, folder)
     with evaluating(more, parts, processes) as evaluate:
         confirmed = confirm(found, parts, evaluate, FINALISTS)
-    best = max(confirmed, key=lambda each: each.rank).reading
+    best = max(confirmed, key=lambda each: each.rank).interpretation
     with evaluating(Evaluator(job["fresh"], files, maps, folder), parts, processes) as evaluate:
         fresh = whole(best, parts, evaluate)
     shared = {choice["id"] for choice in choices if sum(choice["id"] in part.choices for part in parts) > 1}
     lines = {name: (along, explained.yardstick(more.published[name], along)) for name, along in job["along"].items()}
     return {
-        "readings": explained.readings_table(study, confirmed, found.readings, fresh, choices),
+        "interpretations": explained.interpretations_table(study, confirmed, found.interpretations, fresh, choices),
         "explained": explained.explained_table(study, confirmed, found.of_parts, shared),
         "held_out": explained.held_out_table(study, confirmed, lines),
     }
