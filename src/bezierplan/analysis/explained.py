@@ -87,18 +87,18 @@ def interpretations_table(
     """interpretations.csv. confirmed: the best, judged by more runs. screened: all, of which those confirmed are left out. fresh: the very
     best, judged by runs with other seeds.
     """
-    rows, again = [], {name_of(each.interpretation) for each in confirmed}
-    rest = [each for each in screened if name_of(each.interpretation) not in again]
-    ordered = [sorted(given, key=lambda each: each.rank, reverse=True) for given in (confirmed, rest)]
-    for each in itertools.chain(*ordered):
-        numbers = each.numbers
+    rows, again = [], {name_of(evaluated.interpretation) for evaluated in confirmed}
+    rest = [evaluated for evaluated in screened if name_of(evaluated.interpretation) not in again]
+    ordered = [sorted(given, key=lambda evaluated: evaluated.rank, reverse=True) for given in (confirmed, rest)]
+    for evaluated in itertools.chain(*ordered):
+        numbers = evaluated.numbers
         by_table = numbers.groupby("table")["in_range"].sum()
         rows.append(
-            {"study": study, "interpretation": name_of(each.interpretation), "in_words": in_words(each.interpretation, choices)}
-            | {"confirmed": name_of(each.interpretation) in again}
-            | {choice["id"]: each.interpretation.get(choice["id"], "") for choice in choices}
+            {"study": study, "interpretation": name_of(evaluated.interpretation), "in_words": in_words(evaluated.interpretation, choices)}
+            | {"confirmed": name_of(evaluated.interpretation) in again}
+            | {choice["id"]: evaluated.interpretation.get(choice["id"], "") for choice in choices}
             | {"in_range": int(numbers["in_range"].sum()), "numbers": len(numbers), "by_chance": by_chance(numbers)}
-            | {"impossible": each.impossible, "score": each.score}
+            | {"impossible": evaluated.impossible, "score": evaluated.score}
             | {f"in_range_{table}": int(count) for table, count in by_table.items()}
         )
     rows[0] |= {"fresh_in_range": int(fresh.numbers["in_range"].sum()), "fresh_score": fresh.score}
@@ -122,7 +122,7 @@ def explained_table(study: str, confirmed: list[Evaluated], of_parts: list[list[
     """
     best, default = max(confirmed, key=lambda each: each.rank), confirmed[0]
     described = default.numbers.drop(columns=["low", "high", "in_range", "possible"])
-    found = {"default": default.numbers["in_range"].to_numpy(), "best": best.numbers["in_range"].to_numpy()}
+    explained_by = {"default": default.numbers["in_range"].to_numpy(), "best": best.numbers["in_range"].to_numpy()}
     counts: dict[str, list[int]] = {"interpretations": [], "tried": [], "settings": []}
     for tried in of_parts:
         inside = np.sum([each.numbers["in_range"].to_numpy(dtype=int) for each in tried], axis=0)
@@ -130,7 +130,7 @@ def explained_table(study: str, confirmed: list[Evaluated], of_parts: list[list[
         counts["interpretations"] += inside.tolist()
         counts["tried"] += [len(tried)] * len(inside)
         counts["settings"] += [len(own)] * len(inside)
-    table = described.assign(study=study, **found, **counts)[["study", *described.columns, *found, *counts]]
+    table = described.assign(study=study, **explained_by, **counts)[["study", *described.columns, *explained_by, *counts]]
     return table.sort_values("interpretations", kind="stable")
 
 
@@ -140,14 +140,16 @@ def held_out_table(study: str, confirmed: list[Evaluated], lines: dict[str, tupl
     """
     rows, best = [], max(confirmed, key=lambda each: each.rank)
     for table in confirmed[0].likelihoods:
-        own = [int(each.numbers.loc[each.numbers["table"] == table, "in_range"].sum()) for each in confirmed]
+        counts = [int(each.numbers.loc[each.numbers["table"] == table, "in_range"].sum()) for each in confirmed]
         others = [(each.rank[0], each.score - each.likelihoods[table]) for each in confirmed]
         chosen = max(range(len(confirmed)), key=lambda n: others[n])
         numbers = int((confirmed[0].numbers["table"] == table).sum())
-        row = {"study": study, "table": table, "interpretation": name_of(confirmed[chosen].interpretation), "chosen": own[chosen]}
+        row = {"study": study, "table": table, "interpretation": name_of(confirmed[chosen].interpretation), "chosen": counts[chosen]}
         scores = {"score_best": best.likelihoods[table], "score_default": confirmed[0].likelihoods[table]}
         along, score = lines.get(table, ("", math.nan))
-        rows.append(row | {"default": own[0], "most": max(own), "numbers": numbers} | scores | {"score_line": score, "line_along": along})
+        rows.append(
+            row | {"default": counts[0], "most": max(counts), "numbers": numbers} | scores | {"score_line": score, "line_along": along}
+        )
     return pd.DataFrame(rows)
 
 
@@ -166,15 +168,15 @@ def yardstick(published: pd.DataFrame, along: str) -> float:
         if len(row) < 4:
             continue
         x, y = row[along].to_numpy(dtype=float), row["value"].to_numpy(dtype=float)
-        for place in range(len(row)):
-            rest = np.arange(len(row)) != place
+        for left_out in range(len(row)):
+            rest = np.arange(len(row)) != left_out
             design = np.column_stack([np.ones(rest.sum()), x[rest]])
             line, *_ = np.linalg.lstsq(design, y[rest], rcond=None)
             freedom = rest.sum() - 2
             variance = ((y[rest] - design @ line) ** 2).sum() / freedom
-            at = np.array([1.0, x[place]])
-            spread = math.sqrt(max(variance * (1 + at @ np.linalg.solve(design.T @ design, at)), (1e-3 * y[place]) ** 2))
-            total += float(t.logpdf(y[place], freedom, at @ line, spread))
+            at = np.array([1.0, x[left_out]])
+            spread = math.sqrt(max(variance * (1 + at @ np.linalg.solve(design.T @ design, at)), (1e-3 * y[left_out]) ** 2))
+            total += float(t.logpdf(y[left_out], freedom, at @ line, spread))
     return total
 
 

@@ -15,13 +15,13 @@ def run(job: dict, runs: list[str], files: dict[str, list[str]], claims_file: st
     runs: chunk files, in folders named by experiment and method. files: problems and bounds, one file per experiment in the order of the
     job, and published numbers.
     """
-    found = results.read_all(runs, job["repeats"], files["problems"], files["bounds"])
+    runs_read = results.read_all(runs, job["repeats"], files["problems"], files["bounds"])
     published = {Path(file).stem: results.published_table(file) for file in files["published"]}
     functions = vars(importlib.import_module(job["module"])) if job["module"] else {}
     material = {"variant_of": job["variant_of"], "paired": job["paired"], "repeats": job["paper_repeats"], "labels": job["labels"]}
     claims = [parsed(Claim, each, "claims") for each in job["claims"]]
     if job["primary_alone"]:
         claims = [claim.in_primary_variant() for claim in claims]
-    judged, checks = judge.judge(claims, found, published, job["artefacts"], job["study"], functions, **material)
+    judged, checks = judge.judge(claims, runs_read, published, job["artefacts"], job["study"], functions, **material)
     for table, file in ((judged, claims_file), (checks, checks_file)):
         table.to_csv(file, index=False, float_format="%.10g", lineterminator="\n")
