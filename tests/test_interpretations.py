@@ -372,9 +372,19 @@ def test_tables_of_interpretations_numbers_and_tables_left_out():
     numbers_found = explained.explained_table("study", [default, other], [[default, other]], set())
     assert numbers_found["interpretations"].to_list() == [1, 1, 2]
     assert numbers_found["default"].to_list() == [False, True, True]
+    assert numbers_found["missed_by"].to_list() == [0.0, 0.0, 0.0]
     held_out = explained.held_out_table("study", [default, other], {}).set_index("table")
     # The other one is best on the first table, and is wrong on the second.
     assert held_out.loc["table2", ["interpretation", "chosen", "default", "most"]].to_list() == ["O1=2", 0, 1, 1]
+
+
+def test_a_number_that_nothing_explains_has_the_interpretation_that_comes_nearest():
+    far, near = numbers([False]).assign(low=4.0, high=5.0), numbers([False]).assign(low=-3.0, high=-1.5)
+    tried = [Evaluated({}, far, {"table1": -9.0}), Evaluated({"O1": 2}, near, {"table1": -5.0})]
+    (row,) = explained.explained_table("study", tried, [tried], set()).to_dict("records")
+    assert (row["value_published"], row["missed_by"], row["nearest"]) == (0.0, 1.5, "O1=2")
+    failed = [Evaluated({}, numbers([False]).assign(low=math.nan, high=math.nan), {"table1": -50.0})]
+    assert math.isnan(explained.explained_table("study", failed, [failed], set())["missed_by"].iloc[0])
 
 
 def told(*tried, lines=None):

@@ -18,7 +18,8 @@ Columns of interpretations.csv, one row per interpretation, the best first:
 Columns of explained.csv, one row per published number, those that no interpretation gives first: study, table, the table's keys, metric,
 statistic, value_published; default and best, whether it lies in range under the default interpretation and under the best one; tried, how
 many interpretations of the choices that concern it were tried, and interpretations, in how many of these it is in range; settings, how many
-different settings of its methods alone were among them.
+different settings of its methods alone were among them; missed_by, how far it lies out of range under the interpretation that comes
+nearest, which is named by nearest, and so what it would take to explain the number.
 
 Columns of held_out.csv, one row per table: the interpretation that is best on all other tables, and how many of this table's numbers lie in
 range under that interpretation (`chosen`), under the default (`default`) and at most (`most`), of how many (`numbers`); the logarithm of
@@ -123,15 +124,27 @@ def explained_table(study: str, confirmed: list[Evaluated], of_parts: list[list[
     best, default = max(confirmed, key=lambda each: each.rank), confirmed[0]
     described = default.numbers.drop(columns=["low", "high", "in_range", "possible"])
     explained_by = {"default": default.numbers["in_range"].to_numpy(), "best": best.numbers["in_range"].to_numpy()}
-    counts: dict[str, list[int]] = {"interpretations": [], "tried": [], "settings": []}
+    told: dict[str, list] = {"interpretations": [], "tried": [], "settings": [], "missed_by": [], "nearest": []}
     for tried in of_parts:
         inside = np.sum([each.numbers["in_range"].to_numpy(dtype=int) for each in tried], axis=0)
         own = {name_of({choice: value for choice, value in each.interpretation.items() if choice not in shared}) for each in tried}
-        counts["interpretations"] += inside.tolist()
-        counts["tried"] += [len(tried)] * len(inside)
-        counts["settings"] += [len(own)] * len(inside)
-    table = described.assign(study=study, **explained_by, **counts)[["study", *described.columns, *explained_by, *counts]]
+        missed = np.array([_missed(each.numbers) for each in tried])
+        nearest = missed.argmin(axis=0)
+        told["interpretations"] += inside.tolist()
+        told["tried"] += [len(tried)] * len(inside)
+        told["settings"] += [len(own)] * len(inside)
+        least = missed.min(axis=0)
+        told["missed_by"] += np.where(np.isinf(least), np.nan, least).tolist()
+        told["nearest"] += [name_of(tried[place].interpretation) for place in nearest]
+    table = described.assign(study=study, **explained_by, **told)[["study", *described.columns, *explained_by, *told]]
     return table.sort_values("interpretations", kind="stable")
+
+
+def _missed(numbers: pd.DataFrame) -> np.ndarray:
+    """By how much printed numbers (n,) miss the range of what would be printed, each in its unit; infinite where nothing would be."""
+    value = numbers["value_published"].to_numpy(dtype=float)
+    missed = np.maximum.reduce([numbers["low"].to_numpy() - value, value - numbers["high"].to_numpy(), np.zeros(len(value))])
+    return np.where(np.isnan(missed), np.inf, missed)
 
 
 def held_out_table(study: str, confirmed: list[Evaluated], lines: dict[str, tuple[str, float]]) -> pd.DataFrame:
@@ -289,7 +302,9 @@ def _never(explained: pd.DataFrame) -> str:
     keys = ["table", "method"] if "method" in never else ["table"]
     counts = never.groupby(keys, sort=False).size()
     named = ", ".join(f"{count} of {' for '.join(map(str, key if isinstance(key, tuple) else (key,)))}" for key, count in counts.items())
-    return f"No interpretation explains {len(never)} of the numbers: {named}."
+    share = (never["missed_by"] / never["value_published"].abs()).median()
+    nearest = "" if math.isnan(share) else f" The nearest misses them by {100 * share:.2g} % of their value (median)."
+    return f"No interpretation explains {len(never)} of the numbers: {named}.{nearest}"
 
 
 def _searched(explained: pd.DataFrame) -> str:
