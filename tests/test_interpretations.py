@@ -397,6 +397,25 @@ def told(*tried, lines=None):
     return text
 
 
+def test_a_row_for_each_study_says_which_interpretation_is_most_likely(tmp_path):
+    default = Evaluated({}, numbers([True, False]), {"table1": -9.0})
+    better = Evaluated({"O1": 2}, numbers([True, True]), {"table1": 0.0})
+    found = explained.interpretations_table("one", [default, better], [], better, CHOICES)
+    found.to_csv(tmp_path / "found.csv", index=False)
+    (row,) = explained.brief(pd.read_csv(tmp_path / "found.csv")).reset_index().to_dict("records")
+    assert row == {
+        "study": "one",
+        "most likely interpretation": "O1=2",
+        "numbers in range": "2 of 2",
+        "by other runs": "2",
+        "by exchange": "0",
+        "default in range": "1",
+        "likelihood over the default's": "10^4 times",
+    }
+    (row,) = explained.brief(explained.interpretations_table("one", [default], [], default, CHOICES)).to_dict("records")
+    assert row["most likely interpretation"] == "the default"
+
+
 def test_summary_says_what_no_interpretation_gives_and_what_the_best_one_does():
     tables = ["table1", "table1", "table2", "table2"]
     default = Evaluated({}, numbers([True, False, False, False], tables), {"table1": -1.0, "table2": -5.0})

@@ -216,6 +216,27 @@ def section(interpretations: pd.DataFrame, explained: pd.DataFrame, held_out: pd
     return parts
 
 
+def brief(interpretations: pd.DataFrame) -> pd.DataFrame:
+    """One row for each study, in a few words: the most likely interpretation, and what it explains beside the default.
+
+    interpretations: the tables of all studies.
+    """
+    rows = {}
+    for study, own in interpretations.groupby("study", sort=False):
+        best, default = own.iloc[0], own[own["interpretation"] == DEFAULT].iloc[0]
+        named = "none is possible" if best["impossible"] else best["interpretation"]
+        ratio = "impossible" if default["impossible"] else _times(best["score"] - default["score"])
+        rows[study] = {
+            "most likely interpretation": "the default" if named == DEFAULT else named,
+            "numbers in range": f"{best['in_range']} of {best['numbers']}",
+            "by other runs": f"{best['fresh_in_range']:.0f}",
+            "by exchange": f"{best['by_chance']:.0f}",
+            "default in range": f"{default['in_range']}",
+            "likelihood over the default's": "1" if named == DEFAULT else ratio,
+        }
+    return pd.DataFrame.from_dict(rows, orient="index").rename_axis("study")
+
+
 def sentences(interpretations: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFrame) -> str:
     """The verdict, from the tables of one study."""
     best, default = interpretations.iloc[0], interpretations[interpretations["interpretation"] == DEFAULT].iloc[0]
@@ -258,7 +279,7 @@ def _judged_anew(best: pd.Series) -> str:
     if best["impossible"]:
         return ""
     return (
-        f"Judged anew by runs with other seeds, it has {best['fresh_in_range']} of {best['numbers']} in range and a log-likelihood of "
+        f"Judged anew by runs with other seeds, it has {best['fresh_in_range']:.0f} of {best['numbers']} in range and a log-likelihood of "
         f"{best['fresh_score']:.1f} (by the runs that chose it, {best['score']:.1f})."
     )
 
