@@ -18,7 +18,7 @@ UNLOCK = if [ -n "$$(ls .snakemake/locks 2>/dev/null)" ]; then $(SNAKEMAKE) --un
 # Byte code is kept, whatever the environment says: many containers say no, and then each of many processes compiles all modules anew.
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: help reproduce smoke extended test lint docs wheel benchmark mutants compare archive cluster outcome verify-outcome lock newest clean distclean anew
+.PHONY: help reproduce smoke extended test lint docs wheel image benchmark mutants compare archive cluster outcome verify-outcome lock newest clean distclean anew
 
 help: ## list these targets
 	@sed -n 's/^\([a-z-]*\):.*## \(.*\)/make \1|\2/p' Makefile | awk -F '|' '{ printf "%-15s %s\n", $$1, $$2 }'
@@ -55,6 +55,9 @@ docs: .venv/ready ## the documentation as a site, into .cache/docs/html; every e
 
 wheel: .venv/ready ## a wheel for pip, into dist
 	$(RUN) -m hatchling build --target wheel
+
+image: ## an image for Docker with the workflow and its environment, named bezierplan
+	docker build --tag bezierplan .
 
 benchmark: .venv/ready ## speed of the inner loops, beside the bare minimum
 	$(RUN) tests/benchmark/run.py $(ARGS)

@@ -372,9 +372,19 @@ def test_tables_of_interpretations_numbers_and_tables_left_out():
     numbers_found = explained.explained_table("study", [default, other], [[default, other]], set())
     assert numbers_found["interpretations"].to_list() == [1, 1, 2]
     assert numbers_found["default"].to_list() == [False, True, True]
+    assert numbers_found["missed_by"].to_list() == [0.0, 0.0, 0.0]
     held_out = explained.held_out_table("study", [default, other], {}).set_index("table")
     # The other one is best on the first table, and is wrong on the second.
     assert held_out.loc["table2", ["interpretation", "chosen", "default", "most"]].to_list() == ["O1=2", 0, 1, 1]
+
+
+def test_a_number_that_nothing_explains_has_the_interpretation_that_comes_nearest():
+    far, near = numbers([False]).assign(low=4.0, high=5.0), numbers([False]).assign(low=-3.0, high=-1.5)
+    tried = [Evaluated({}, far, {"table1": -9.0}), Evaluated({"O1": 2}, near, {"table1": -5.0})]
+    (row,) = explained.explained_table("study", tried, [tried], set()).to_dict("records")
+    assert (row["value_published"], row["missed_by"], row["nearest"]) == (0.0, 1.5, "O1=2")
+    failed = [Evaluated({}, numbers([False]).assign(low=math.nan, high=math.nan), {"table1": -50.0})]
+    assert math.isnan(explained.explained_table("study", failed, [failed], set())["missed_by"].iloc[0])
 
 
 def told(*tried, lines=None):
@@ -385,6 +395,25 @@ def told(*tried, lines=None):
         explained.interpretations_table("one", confirmed, [], confirmed[-1], CHOICES), numbers_found, held_out, {"one": "The first"}
     )
     return text
+
+
+def test_a_row_for_each_study_says_which_interpretation_is_most_likely(tmp_path):
+    default = Evaluated({}, numbers([True, False]), {"table1": -9.0})
+    better = Evaluated({"O1": 2}, numbers([True, True]), {"table1": 0.0})
+    found = explained.interpretations_table("one", [default, better], [], better, CHOICES)
+    found.to_csv(tmp_path / "found.csv", index=False)
+    (row,) = explained.brief(pd.read_csv(tmp_path / "found.csv")).reset_index().to_dict("records")
+    assert row == {
+        "study": "one",
+        "most likely interpretation": "O1=2",
+        "numbers in range": "2 of 2",
+        "by other runs": "2",
+        "by exchange": "0",
+        "default in range": "1",
+        "likelihood over the default's": "10^4 times",
+    }
+    (row,) = explained.brief(explained.interpretations_table("one", [default], [], default, CHOICES)).to_dict("records")
+    assert row["most likely interpretation"] == "the default"
 
 
 def test_summary_says_what_no_interpretation_gives_and_what_the_best_one_does():

@@ -27,6 +27,7 @@ COMMANDS = {
     "effort": "where the CPU time of the last start of the workflow went, by what it was for",
     "new": "a study of your own, which runs at once",
     "run": "targets of the workflow, from any folder",
+    "completion": "what a shell evaluates to complete these words",
     "verify-outcome": "numbers made here beside those of docs/outcome: is this installation sound?",
     "outcome": "copy the outcome of results/extended and results/full to docs/outcome and into the README",
 }
@@ -74,6 +75,10 @@ def main(words: list[str]) -> None:
 
 def start() -> None:
     """Do what the words of this process say, in a child: a command may execute planners, which can end a process in silence."""
+    if "_ARGCOMPLETE" in os.environ:
+        from bezierplan.commands import completion
+
+        completion.answer(COMMANDS)
     watchdog.supervise(words.plain(f"{PROGRAM} {' '.join(sys.argv[1:])}", words.LONGEST), partial(print, file=sys.stderr, flush=True))
     try:
         main(sys.argv[1:])

@@ -18,7 +18,8 @@ Columns of interpretations.csv, one row per interpretation, the best first:
 Columns of explained.csv, one row per published number, those that no interpretation gives first: study, table, the table's keys, metric,
 statistic, value_published; default and best, whether it lies in range under the default interpretation and under the best one; tried, how
 many interpretations of the choices that concern it were tried, and interpretations, in how many of these it is in range; settings, how many
-different settings of its methods alone were among them.
+different settings of its methods alone were among them; missed_by, how far it lies out of range under the interpretation that comes
+nearest, which is named by nearest, and so what it would take to explain the number.
 
 Columns of held_out.csv, one row per table: the interpretation that is best on all other tables, and how many of this table's numbers lie in
 range under that interpretation (`chosen`), under the default (`default`) and at most (`most`), of how many (`numbers`); the logarithm of
@@ -87,18 +88,18 @@ def interpretations_table(
     """interpretations.csv. confirmed: the best, judged by more runs. screened: all, of which those confirmed are left out. fresh: the very
     best, judged by runs with other seeds.
     """
-    rows, again = [], {name_of(each.interpretation) for each in confirmed}
-    rest = [each for each in screened if name_of(each.interpretation) not in again]
-    ordered = [sorted(given, key=lambda each: each.rank, reverse=True) for given in (confirmed, rest)]
-    for each in itertools.chain(*ordered):
-        numbers = each.numbers
+    rows, again = [], {name_of(evaluated.interpretation) for evaluated in confirmed}
+    rest = [evaluated for evaluated in screened if name_of(evaluated.interpretation) not in again]
+    ordered = [sorted(given, key=lambda evaluated: evaluated.rank, reverse=True) for given in (confirmed, rest)]
+    for evaluated in itertools.chain(*ordered):
+        numbers = evaluated.numbers
         by_table = numbers.groupby("table")["in_range"].sum()
         rows.append(
-            {"study": study, "interpretation": name_of(each.interpretation), "in_words": in_words(each.interpretation, choices)}
-            | {"confirmed": name_of(each.interpretation) in again}
-            | {choice["id"]: each.interpretation.get(choice["id"], "") for choice in choices}
+            {"study": study, "interpretation": name_of(evaluated.interpretation), "in_words": in_words(evaluated.interpretation, choices)}
+            | {"confirmed": name_of(evaluated.interpretation) in again}
+            | {choice["id"]: evaluated.interpretation.get(choice["id"], "") for choice in choices}
             | {"in_range": int(numbers["in_range"].sum()), "numbers": len(numbers), "by_chance": by_chance(numbers)}
-            | {"impossible": each.impossible, "score": each.score}
+            | {"impossible": evaluated.impossible, "score": evaluated.score}
             | {f"in_range_{table}": int(count) for table, count in by_table.items()}
         )
     rows[0] |= {"fresh_in_range": int(fresh.numbers["in_range"].sum()), "fresh_score": fresh.score}
@@ -122,16 +123,28 @@ def explained_table(study: str, confirmed: list[Evaluated], of_parts: list[list[
     """
     best, default = max(confirmed, key=lambda each: each.rank), confirmed[0]
     described = default.numbers.drop(columns=["low", "high", "in_range", "possible"])
-    found = {"default": default.numbers["in_range"].to_numpy(), "best": best.numbers["in_range"].to_numpy()}
-    counts: dict[str, list[int]] = {"interpretations": [], "tried": [], "settings": []}
+    explained_by = {"default": default.numbers["in_range"].to_numpy(), "best": best.numbers["in_range"].to_numpy()}
+    told: dict[str, list] = {"interpretations": [], "tried": [], "settings": [], "missed_by": [], "nearest": []}
     for tried in of_parts:
         inside = np.sum([each.numbers["in_range"].to_numpy(dtype=int) for each in tried], axis=0)
         own = {name_of({choice: value for choice, value in each.interpretation.items() if choice not in shared}) for each in tried}
-        counts["interpretations"] += inside.tolist()
-        counts["tried"] += [len(tried)] * len(inside)
-        counts["settings"] += [len(own)] * len(inside)
-    table = described.assign(study=study, **found, **counts)[["study", *described.columns, *found, *counts]]
+        missed = np.array([_missed(each.numbers) for each in tried])
+        nearest = missed.argmin(axis=0)
+        told["interpretations"] += inside.tolist()
+        told["tried"] += [len(tried)] * len(inside)
+        told["settings"] += [len(own)] * len(inside)
+        least = missed.min(axis=0)
+        told["missed_by"] += np.where(np.isinf(least), np.nan, least).tolist()
+        told["nearest"] += [name_of(tried[place].interpretation) for place in nearest]
+    table = described.assign(study=study, **explained_by, **told)[["study", *described.columns, *explained_by, *told]]
     return table.sort_values("interpretations", kind="stable")
+
+
+def _missed(numbers: pd.DataFrame) -> np.ndarray:
+    """By how much printed numbers (n,) miss the range of what would be printed, each in its unit; infinite where nothing would be."""
+    value = numbers["value_published"].to_numpy(dtype=float)
+    missed = np.maximum.reduce([numbers["low"].to_numpy() - value, value - numbers["high"].to_numpy(), np.zeros(len(value))])
+    return np.where(np.isnan(missed), np.inf, missed)
 
 
 def held_out_table(study: str, confirmed: list[Evaluated], lines: dict[str, tuple[str, float]]) -> pd.DataFrame:
@@ -140,14 +153,16 @@ def held_out_table(study: str, confirmed: list[Evaluated], lines: dict[str, tupl
     """
     rows, best = [], max(confirmed, key=lambda each: each.rank)
     for table in confirmed[0].likelihoods:
-        own = [int(each.numbers.loc[each.numbers["table"] == table, "in_range"].sum()) for each in confirmed]
+        counts = [int(each.numbers.loc[each.numbers["table"] == table, "in_range"].sum()) for each in confirmed]
         others = [(each.rank[0], each.score - each.likelihoods[table]) for each in confirmed]
         chosen = max(range(len(confirmed)), key=lambda n: others[n])
         numbers = int((confirmed[0].numbers["table"] == table).sum())
-        row = {"study": study, "table": table, "interpretation": name_of(confirmed[chosen].interpretation), "chosen": own[chosen]}
+        row = {"study": study, "table": table, "interpretation": name_of(confirmed[chosen].interpretation), "chosen": counts[chosen]}
         scores = {"score_best": best.likelihoods[table], "score_default": confirmed[0].likelihoods[table]}
         along, score = lines.get(table, ("", math.nan))
-        rows.append(row | {"default": own[0], "most": max(own), "numbers": numbers} | scores | {"score_line": score, "line_along": along})
+        rows.append(
+            row | {"default": counts[0], "most": max(counts), "numbers": numbers} | scores | {"score_line": score, "line_along": along}
+        )
     return pd.DataFrame(rows)
 
 
@@ -166,15 +181,15 @@ def yardstick(published: pd.DataFrame, along: str) -> float:
         if len(row) < 4:
             continue
         x, y = row[along].to_numpy(dtype=float), row["value"].to_numpy(dtype=float)
-        for place in range(len(row)):
-            rest = np.arange(len(row)) != place
+        for left_out in range(len(row)):
+            rest = np.arange(len(row)) != left_out
             design = np.column_stack([np.ones(rest.sum()), x[rest]])
             line, *_ = np.linalg.lstsq(design, y[rest], rcond=None)
             freedom = rest.sum() - 2
             variance = ((y[rest] - design @ line) ** 2).sum() / freedom
-            at = np.array([1.0, x[place]])
-            spread = math.sqrt(max(variance * (1 + at @ np.linalg.solve(design.T @ design, at)), (1e-3 * y[place]) ** 2))
-            total += float(t.logpdf(y[place], freedom, at @ line, spread))
+            at = np.array([1.0, x[left_out]])
+            spread = math.sqrt(max(variance * (1 + at @ np.linalg.solve(design.T @ design, at)), (1e-3 * y[left_out]) ** 2))
+            total += float(t.logpdf(y[left_out], freedom, at @ line, spread))
     return total
 
 
@@ -199,6 +214,27 @@ def section(interpretations: pd.DataFrame, explained: pd.DataFrame, held_out: pd
     for study, own in interpretations.groupby("study", sort=False):
         parts.append(f"**{titles[study]}.** {sentences(own, *(each[each['study'] == study] for each in (explained, held_out)))}")
     return parts
+
+
+def brief(interpretations: pd.DataFrame) -> pd.DataFrame:
+    """One row for each study, in a few words: the most likely interpretation, and what it explains beside the default.
+
+    interpretations: the tables of all studies.
+    """
+    rows = {}
+    for study, own in interpretations.groupby("study", sort=False):
+        best, default = own.iloc[0], own[own["interpretation"] == DEFAULT].iloc[0]
+        named = "none is possible" if best["impossible"] else best["interpretation"]
+        ratio = "impossible" if default["impossible"] else _times(best["score"] - default["score"])
+        rows[study] = {
+            "most likely interpretation": "the default" if named == DEFAULT else named,
+            "numbers in range": f"{best['in_range']} of {best['numbers']}",
+            "by other runs": f"{best['fresh_in_range']:.0f}",
+            "by exchange": f"{best['by_chance']:.0f}",
+            "default in range": f"{default['in_range']}",
+            "likelihood over the default's": "1" if named == DEFAULT else ratio,
+        }
+    return pd.DataFrame.from_dict(rows, orient="index").rename_axis("study")
 
 
 def sentences(interpretations: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFrame) -> str:
@@ -243,7 +279,7 @@ def _judged_anew(best: pd.Series) -> str:
     if best["impossible"]:
         return ""
     return (
-        f"Judged anew by runs with other seeds, it has {best['fresh_in_range']} of {best['numbers']} in range and a log-likelihood of "
+        f"Judged anew by runs with other seeds, it has {best['fresh_in_range']:.0f} of {best['numbers']} in range and a log-likelihood of "
         f"{best['fresh_score']:.1f} (by the runs that chose it, {best['score']:.1f})."
     )
 
@@ -287,7 +323,9 @@ def _never(explained: pd.DataFrame) -> str:
     keys = ["table", "method"] if "method" in never else ["table"]
     counts = never.groupby(keys, sort=False).size()
     named = ", ".join(f"{count} of {' for '.join(map(str, key if isinstance(key, tuple) else (key,)))}" for key, count in counts.items())
-    return f"No interpretation explains {len(never)} of the numbers: {named}."
+    share = (never["missed_by"] / never["value_published"].abs()).median()
+    nearest = "" if math.isnan(share) else f" The nearest misses them by {100 * share:.2g} % of their value (median)."
+    return f"No interpretation explains {len(never)} of the numbers: {named}.{nearest}"
 
 
 def _searched(explained: pd.DataFrame) -> str:

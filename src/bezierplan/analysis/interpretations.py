@@ -107,13 +107,13 @@ def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str)
     possible (it does not lie below what every run has at least).
     Seconds are left out; with fewer than `statistics.LEAST_RUNS` runs no number is in range.
     """
-    given = published.columns[: published.columns.get_loc("metric")].to_list()
-    keys = given + [key for key in tables.keys(spec) if key not in given]
+    keys_printed = published.columns[: published.columns.get_loc("metric")].to_list()
+    keys = keys_printed + [key for key in tables.keys(spec) if key not in keys_printed]
     ours = tables.cells(results, spec, keys).assign(printed=lambda table: table["statistic"])
     ours["statistic"] = ours["statistic"].replace("unstated", "median")
     theirs = published.assign(statistic=published["statistic"].replace("unstated", "median"))
-    theirs = theirs.astype({key: ours[key].dtype for key in given}).rename(columns={"value": "value_published"})
-    both = theirs.merge(ours.drop(columns="value"), on=[*given, "metric", "statistic"], how="left")
+    theirs = theirs.astype({key: ours[key].dtype for key in keys_printed}).rename(columns={"value": "value_published"})
+    both = theirs.merge(ours.drop(columns="value"), on=[*keys_printed, "metric", "statistic"], how="left")
     runs = select(results.runs, spec["where"])
     measured = {metric: metrics.values(runs, metric, results.problems) for metric in both["metric"].unique()}
     rows, draws, least = [], [], []
@@ -128,14 +128,14 @@ def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str)
         )
         # Without enough runs nothing is in range: an interpretation under which most runs fail explains nothing.
         enough = len(row["numbers"]) >= statistics.LEAST_RUNS
-        described = {key: row[key] for key in [*given, "metric", "statistic", "value_published"]}
+        described = {key: row[key] for key in [*keys_printed, "metric", "statistic", "value_published"]}
         inside = bool(enough and low - half <= value <= high + half)
         below = row["statistic"] in _BOUNDED and value + half < row["least"] * (1 - _ROUNDING)
         rows.append(described | {"low": low - half, "high": high + half, "in_range": inside, "possible": not below})
-        own = runs[np.logical_and.reduce([runs[key] == row[key] for key in given])].assign(value=measured[row["metric"]])
+        own = runs[np.logical_and.reduce([runs[key] == row[key] for key in keys_printed])].assign(value=measured[row["metric"]])
         draws.append(_experiments(own, row, name) if enough else np.full(EXPERIMENTS, np.nan))
         least.append(max(half / math.sqrt(3), _least_of_count(row, size)))
-    frame = pd.DataFrame(rows, columns=[*given, "metric", "statistic", "value_published", "low", "high", "in_range", "possible"])
+    frame = pd.DataFrame(rows, columns=[*keys_printed, "metric", "statistic", "value_published", "low", "high", "in_range", "possible"])
     return frame, _likelihood(frame["value_published"].to_numpy(dtype=float), np.array(draws), np.array(least), results)
 
 
@@ -218,7 +218,7 @@ class Evaluator:
         """The part of an interpretation that some methods' numbers decide; None if its settings exclude each other or no workspace is like
         that.
         """
-        found = []
+        evaluated = []
         for name, table in self.job["tables"].items():
             jobs = [job for method, job in table["jobs"].items() if method in methods]
             if not jobs:
@@ -237,8 +237,8 @@ class Evaluator:
                 spec = spec | {"where": spec["where"] | {"method": [job["method"] for job in jobs]}}
                 published = published[published["method"].isin(spec["where"]["method"])]
             numbers, likelihood = numbers_of(joined(runs, problems, bounds), spec, published, f"{self.job['study']}/{name}")
-            found.append(Evaluated(interpretation, numbers.assign(table=name), {name: likelihood}))
-        whole = together(interpretation, found)
+            evaluated.append(Evaluated(interpretation, numbers.assign(table=name), {name: likelihood}))
+        whole = together(interpretation, evaluated)
         logger.info("%s: %s: %.2f, %d of %d", ", ".join(methods), name_of(interpretation), whole.score, *_in_range(whole))
         return whole
 
@@ -318,18 +318,18 @@ def found_by(job: dict, files: dict[str, str], maps: Path, folder: Path, process
     parts = [Part(**part) for part in job["parts"]]
     choices, study = job["screened"]["choices"], job["study"]
     with evaluating(Evaluator(job["screened"], files, maps, folder), parts, processes) as evaluate:
-        found = search(choices, parts, evaluate, study, job["most"])
+        tried = search(choices, parts, evaluate, study, job["most"])
     more = Evaluator(job["confirmed"], files, maps, folder)
     with evaluating(more, parts, processes) as evaluate:
-        confirmed = confirm(found, parts, evaluate, FINALISTS)
+        confirmed = confirm(tried, parts, evaluate, FINALISTS)
     best = max(confirmed, key=lambda each: each.rank).interpretation
     with evaluating(Evaluator(job["fresh"], files, maps, folder), parts, processes) as evaluate:
         fresh = whole(best, parts, evaluate)
     shared = {choice["id"] for choice in choices if sum(choice["id"] in part.choices for part in parts) > 1}
     lines = {name: (along, explained.yardstick(more.published[name], along)) for name, along in job["along"].items()}
     return {
-        "interpretations": explained.interpretations_table(study, confirmed, found.interpretations, fresh, choices),
-        "explained": explained.explained_table(study, confirmed, found.of_parts, shared),
+        "interpretations": explained.interpretations_table(study, confirmed, tried.interpretations, fresh, choices),
+        "explained": explained.explained_table(study, confirmed, tried.of_parts, shared),
         "held_out": explained.held_out_table(study, confirmed, lines),
     }
 

@@ -161,13 +161,13 @@ def _climb_on(choices: list[dict], book: _Book, name: str) -> None:
         anew = group is not shared and number // len(groups) % 2 == 0
         count = len(group) if anew else min(KICKED, len(group))
         kicked = {choice["id"] for choice in np.array(group, dtype=object)[rng.permutation(len(group))[:count]]}
-        other = interpretation
+        kicked_interpretation = interpretation
         for choice in kicked:
-            other = book.changed(other, choice, drawn[choice])
+            kicked_interpretation = book.changed(kicked_interpretation, choice, drawn[choice])
         before = book.left
-        other = _climb(other, choices if group is shared else group, book, rng)
-        if book.value(other) >= book.value(interpretation):
-            interpretation = other
+        kicked_interpretation = _climb(kicked_interpretation, choices if group is shared else group, book, rng)
+        if book.value(kicked_interpretation) >= book.value(interpretation):
+            interpretation = kicked_interpretation
         stale = stale + 1 if book.left == before else 0
         if stale == STALE:
             return

@@ -4,6 +4,8 @@ import sys
 from argparse import ArgumentParser
 from typing import Any
 
+from bezierplan.commands.completion import named
+from bezierplan.planners import known_planners
 from bezierplan.running import contract
 from bezierplan.schema import checked
 from bezierplan.study import reading
@@ -11,7 +13,8 @@ from bezierplan.study import reading
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
     """Print the findings of a planner's contract tests; exit with status 1 if a test failed. Raises Fault."""
-    parser.add_argument("planner", help="its name, or the path of its file; with --study the name of a method")
+    planner = parser.add_argument("planner", help="its name, or the path of its file; with --study the name of a method")
+    named(planner, known_planners)
     given = parser.add_mutually_exclusive_group()
     given.add_argument("--settings", default="{}", metavar="'{NAME: VALUE, ...}'", help="a value for each of its settings, as in a study")
     given.add_argument("--study", metavar="STUDY", help="a name in config/studies, or a path: planner and settings are those of its method")

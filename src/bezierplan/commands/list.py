@@ -1,9 +1,14 @@
 """List the contents of studies, or what the settings of their planners mean."""
 
+import inspect
 from argparse import ArgumentParser
+from collections.abc import Callable, Iterator
 
 from bezierplan.commands import add_studies
+from bezierplan.commands.completion import named
+from bezierplan.places import STUDIES
 from bezierplan.planners import planner_module, planner_settings
+from bezierplan.schema.checked import Fault, closest
 from bezierplan.study import reading
 from bezierplan.study.artefacts import in_printed_order
 from bezierplan.study.definition import Study
@@ -11,12 +16,23 @@ from bezierplan.study.experiments import SCALES
 
 
 def main(parser: ArgumentParser, words: list[str]) -> None:
-    """Print the contents of the configured studies, or of those named."""
+    """Print the contents of the configured studies, or of those named. Raises Fault for a word that is neither a kind nor a study."""
+    described = f"kinds ({', '.join(KINDS)}) and studies; without any, all of them"
+    named(
+        parser.add_argument("words", nargs="*", metavar="KIND_OR_STUDY", help=described),
+        lambda: [*KINDS, *(folder.name for folder in STUDIES.iterdir())],
+    )
     add_studies(parser)
     parser.add_argument("--settings", action="store_true", help="each planner's settings: accepted values, meaning, unit, source")
-    words = parser.parse_args(words)
-    for study in reading.load(reading.read_config({"studies": words.studies} if words.studies else {})).values():
-        print("\n".join(settings(study) if words.settings else lines(study)))
+    asked = parser.parse_args(words)
+    studies = reading.load(reading.read_config({"studies": asked.studies} if asked.studies else {}))
+    for word in asked.words:
+        if word not in KINDS and word not in studies:
+            raise Fault(f"list: {word}: neither a kind nor a study{closest(word, [*KINDS, *studies])}")
+    kinds = [word for word in asked.words if word in KINDS] or list(KINDS)
+    for key, study in studies.items():
+        if key in asked.words or not studies.keys() & set(asked.words):
+            print("\n".join(settings(study) if asked.settings else lines(study, kinds)))
 
 
 def settings(study: Study) -> list[str]:
@@ -29,17 +45,51 @@ def settings(study: Study) -> list[str]:
     ]
 
 
-def lines(study: Study) -> list[str]:
-    """A study's title, artefacts, methods, workspaces and experiments, one per line."""
-    text = [f"{study.key}: {study.title}"]
-    for kind, artefacts in (("table", study.tables), ("figure", study.figures)):
-        text += [f"  {kind:12}{study.key}_{name:12} {artefacts[name].title}" for name in in_printed_order(artefacts)]
+def lines(study: Study, kinds: list[str]) -> list[str]:
+    """A study's title and what it has of some kinds of `KINDS`, one per line."""
+    return [f"{study.key}: {study.title}", *(f"  {kind.removesuffix('s'):12}{line}" for kind in kinds for line in KINDS[kind](study))]
+
+
+def _tables(study: Study) -> Iterator[str]:
+    for name in in_printed_order(study.tables):
+        yield f"{study.key}_{name:12} {study.tables[name].title}"
+
+
+def _figures(study: Study) -> Iterator[str]:
+    for name in in_printed_order(study.figures):
+        yield f"{study.key}_{name:12} {study.figures[name].title}"
+
+
+def _methods(study: Study) -> Iterator[str]:
     for name, method in study.methods.items():
         variant = f", a variant of {method.variant_of}" if method.variant_of else ""
-        text.append(f"  {'method':12}{name:20} {study.planner(name)}{variant}")
-    text += [f"  {'workspace':12}{name:20} {workspace.kind}" for name, workspace in study.workspaces.items()]
+        planner = study.planner(name)
+        says = (inspect.getdoc(planner_module(planner)) or "").split("\n\n")[0].replace("\n", " ").rstrip(".")
+        yield f"{name:20} {planner}{variant}" + (f": {says}" if says else "")
+
+
+def _workspaces(study: Study) -> Iterator[str]:
+    for name, workspace in study.workspaces.items():
+        yield f"{name:20} {workspace.kind}"
+
+
+def _experiments(study: Study) -> Iterator[str]:
     for name, experiment in study.experiments.items():
-        size = f"{len(experiment.problems)} problems, {len(experiment.methods)} methods"
         repeats = ", ".join(f"{experiment.repeats[scale]} ({scale})" for scale in SCALES)
-        text.append(f"  {'experiment':12}{name:20} {size}, repeats {repeats}")
-    return text
+        yield f"{name:20} {len(experiment.problems)} problems, {len(experiment.methods)} methods, repeats {repeats}"
+
+
+def _claims(study: Study) -> Iterator[str]:
+    for claim in study.claims:
+        yield f"{claim.id:20} {claim.statement}"
+
+
+KINDS: dict[str, Callable[[Study], Iterator[str]]] = {
+    "tables": _tables,
+    "figures": _figures,
+    "methods": _methods,
+    "workspaces": _workspaces,
+    "experiments": _experiments,
+    "claims": _claims,
+}
+"""What a study has, by kind, and how it is listed."""

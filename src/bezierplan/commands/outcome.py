@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from bezierplan.analysis import headline, summary
+from bezierplan.analysis import explained, headline, summary
+from bezierplan.analysis.markdown import table_text
 from bezierplan.commands import forecast, replay
 from bezierplan.schema.checked import Fault
 from bezierplan.study import reading
@@ -24,6 +25,11 @@ DRIVE, ANIMATION = "elhoseny2017/moving/moving_fast_0_15/mga_evades/0", "elhosen
 BLOCK = "outcome"
 # Tables of each study at scale full.
 SENSITIVITY, INTERPRETATIONS = "sensitivity.csv", ("interpretations.csv", "explained.csv", "held_out.csv")
+LIKELY = (
+    "Which experiment was it? What each paper leaves open was varied together; these interpretations make its printed numbers most likely. "
+    "The paper's page of the documentation says what each choice means, and which numbers no interpretation explains. *by exchange*: how "
+    "many would be in range if printed numbers of one kind were exchanged with each other."
+)
 WORTH = "worth.csv"
 NUMBERS_FULL = "numbers_papers_size.csv"
 SCALES = {
@@ -78,4 +84,10 @@ def table(kept: Path) -> str:
     found = headline.headline(*(pd.read_csv(kept / name) for name in ("numbers.csv", "claims.csv", WORTH)), titles)
     heading = (kept / "summary.md").read_text(encoding="utf-8").splitlines()[0]
     scale = heading.removeprefix(summary.HEADING)
-    return f"{headline.markdown(found)}\n\nScale `{scale}`: {SCALES[scale]}"
+    return f"{headline.markdown(found)}\n\nScale `{scale}`: {SCALES[scale]}{_most_likely(kept, list(titles))}"
+
+
+def _most_likely(kept: Path, studies: list[str]) -> str:
+    """The interpretations under which the papers' numbers are most likely, as far as they were searched."""
+    files = [file for key in studies if (file := kept / f"{key}_{INTERPRETATIONS[0]}").is_file()]
+    return f"\n\n{LIKELY}\n\n{table_text(explained.brief(pd.concat(map(pd.read_csv, files))))}" if files else ""

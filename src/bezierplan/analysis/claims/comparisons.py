@@ -87,10 +87,10 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
     # Published numbers are found by the places of the runs, each once.
     places = dict(_split(runs[keys].drop_duplicates(), every))
     typical = _typical(check, claim, material)
-    found = []
-    for place, rows in _split(runs, every):
+    made = []
+    for condition, rows in _split(runs, every):
         unit_tables = {name: _unit_table(part, unit, column) for name, part in _split(rows, pool)}
-        conditions = [part.to_dict("records") for _, part in _split(places[place], pool)]
+        conditions = [part.to_dict("records") for _, part in _split(places[condition], pool)]
         compared = list(kind_of(check).cells(check, rows))
         printed_rows = {
             cell: [
@@ -102,9 +102,9 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
         for name, cells in compared:
             strata = {key: effects.event(check, table.reindex(columns=cells).to_numpy()) for key, table in unit_tables.items()}
             numbers, number_of_runs = printed(check, list(zip(*(printed_rows[cell] for cell in cells))))
-            found.append(
+            made.append(
                 Comparison(
-                    place=place,
+                    place=condition,
                     name=name,
                     cells=tuple(cells),
                     strata=strata,
@@ -114,10 +114,10 @@ def comparisons(check: OfRuns, claim: Claim, material: Material) -> list[Compari
                     paired=_shares_draws(check, material) if check.pairs_units is None else check.pairs_units,
                     note=_note(check, rows, column, cells),
                     factors=tuple((key, rows[key].iloc[0]) for key in every),
-                    typical=typical.get((place, name), math.nan),
+                    typical=typical.get((condition, name), math.nan),
                 )
             )
-    return found
+    return made
 
 
 def _typical(check: OfRuns, claim: Claim, material: Material) -> dict[tuple[str, str], float]:

@@ -240,16 +240,16 @@ def drawn_effects(check: OfRuns, comparison: Comparison, name: str) -> np.ndarra
     return statistics.normal_draws(float(effect(check, ours, comparison.cells)), math.sqrt(variance) / len(comparison.strata))
 
 
-def _adjusted_difference(group: np.ndarray, other: np.ndarray, paired: bool) -> tuple[float, float]:
+def _adjusted_difference(group: np.ndarray, reference: np.ndarray, paired: bool) -> tuple[float, float]:
     """Difference of the shares of two boolean groups, and its variance, with two units added to each; NaN for an empty group."""
-    if not len(group) or not len(other):
+    if not len(group) or not len(reference):
         return math.nan, math.nan
     if paired:
         n = len(group) + 2
-        more, fewer = (np.sum(group > other) + 0.5) / n, (np.sum(group < other) + 0.5) / n
+        more, fewer = (np.sum(group > reference) + 0.5) / n, (np.sum(group < reference) + 0.5) / n
         return more - fewer, (more + fewer - (more - fewer) ** 2) / n
-    shares = [(values.sum() + 1) / (len(values) + 2) for values in (group, other)]
-    return shares[0] - shares[1], sum(share * (1 - share) / (len(values) + 2) for share, values in zip(shares, (group, other)))
+    shares = [(values.sum() + 1) / (len(values) + 2) for values in (group, reference)]
+    return shares[0] - shares[1], sum(share * (1 - share) / (len(values) + 2) for share, values in zip(shares, (group, reference)))
 
 
 def by_draws(check: OfRuns, comparison: Comparison, name: str) -> Finding:

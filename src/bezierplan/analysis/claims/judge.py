@@ -299,20 +299,20 @@ def _marked(judged: list[_Judged]) -> list[_Judged]:
     return marked
 
 
-def _in_words(each: _Judged, deciding: list[_Judged]) -> verdicts.Marked:
+def _in_words(judged: _Judged, deciding: list[_Judged]) -> verdicts.Marked:
     """A comparison with the factors that distinguish it from the others of its claim."""
     metrics_differ = len({(other.check.measured, other.check.statistic_written) for other in deciding}) > 1
     factors: dict[str, Any] = {}
-    if each.comparison is not None:
-        if each.check.against and not each.parts:
-            group, other = (_group_in_words(each.check, cell) for cell in each.comparison.cells)
+    if judged.comparison is not None:
+        if judged.check.against and not judged.parts:
+            group, other = (_group_in_words(judged.check, cell) for cell in judged.comparison.cells)
             factors |= {"against": other, "group": group}
-        factors |= dict(each.comparison.factors)
-    elif each.condition:
-        factors["in"] = each.condition
+        factors |= dict(judged.comparison.factors)
+    elif judged.condition:
+        factors["in"] = judged.condition
     if metrics_differ:
-        factors["what"] = f"{each.check.statistic_written} {each.check.measured or each.check.test}".strip().replace("_", " ")
-    return verdicts.Marked(factors, each.mark_family)
+        factors["what"] = f"{judged.check.statistic_written} {judged.check.measured or judged.check.test}".strip().replace("_", " ")
+    return verdicts.Marked(factors, judged.mark_family)
 
 
 def _group_in_words(check: Check, group: Any) -> Any:
@@ -355,16 +355,16 @@ def _shown(deciding: list[_Judged], holds: str) -> _Judged:
 # The printed numbers, and experiments of the paper's size.
 
 
-def _printed(each: _Judged) -> tuple[float, bool | None]:
+def _printed(judged: _Judged) -> tuple[float, bool | None]:
     """The effect in the printed numbers, and whether the sentence holds in them; None if they are not printed."""
-    if each.check.of_printed:
-        return each.finding.effect, each.mark == "+"
-    parts = each.parts or (each.comparison,)
+    if judged.check.of_printed:
+        return judged.finding.effect, judged.mark == "+"
+    parts = judged.parts or (judged.comparison,)
     if None in parts or any(np.isnan(part.printed).any() for part in parts):
         return math.nan, None
-    printed = [effects.effect(each.check, part.printed, part.cells) for part in parts]
-    held = all(bool(effects.claimed(each.check, effect, each.finding.margin)) for effect in printed)
-    return float(effects.effect(each.check, each.comparison.printed, each.comparison.cells)), held
+    printed = [effects.effect(judged.check, part.printed, part.cells) for part in parts]
+    held = all(bool(effects.claimed(judged.check, effect, judged.finding.margin)) for effect in printed)
+    return float(effects.effect(judged.check, judged.comparison.printed, judged.comparison.cells)), held
 
 
 def _published(deciding: list[_Judged]) -> str:
@@ -378,22 +378,22 @@ def _replication_probability(deciding: list[_Judged], holds: str, name: str) -> 
     If runs are picked, the chance that runs drawn at random among those that count, one of each condition, do in their place. NaN if a cell
     is empty, or if the paper's size is unknown.
     """
-    picked = [isinstance(each.check, OfRuns) and each.check.picks is not None for each in deciding]
+    picked = [isinstance(judged.check, OfRuns) and judged.check.picks is not None for judged in deciding]
     if any(picked):
-        return math.prod(each.comparison.typical if of_one else math.nan for each, of_one in zip(deciding, picked))
+        return math.prod(judged.comparison.typical if of_one else math.nan for judged, of_one in zip(deciding, picked))
     held = []
-    for each in deciding:
-        every = each.parts or (each.comparison,)
+    for judged in deciding:
+        every = judged.parts or (judged.comparison,)
         if None in every or any(part.paper_units is None for part in every):
             return math.nan
-        own = []
+        claimed = []
         for part in every:
-            points = effects.drawn_points(part, effects.point_statistic(each.check), name, part.paper_units)
-            drawn = effects.effect(each.check, points, part.cells)
+            points = effects.drawn_points(part, effects.point_statistic(judged.check), name, part.paper_units)
+            drawn = effects.effect(judged.check, points, part.cells)
             if np.isnan(drawn).any():
                 return math.nan
-            own.append(effects.claimed(each.check, drawn, each.finding.margin))
-        held.append(np.all(own, axis=0))
+            claimed.append(effects.claimed(judged.check, drawn, judged.finding.margin))
+        held.append(np.all(claimed, axis=0))
     together = np.any(held, axis=0) if holds == "any" else np.all(held, axis=0)
     return float(together.mean())
 
@@ -407,13 +407,13 @@ def _units_to_decide(deciding: list[_Judged]) -> int | Any:
     from scipy.special import ndtri
 
     needed = [0.0]
-    for each in deciding:
-        f = each.finding
-        if each.mark_family != "?":
+    for judged in deciding:
+        f = judged.finding
+        if judged.mark_family != "?":
             continue
         with np.errstate(divide="ignore", invalid="ignore"):
             if f.toward:
-                ratio = np.divide(ndtri(1 - ALPHA / 2), ndtri(1 - each.p_family / 2))
+                ratio = np.divide(ndtri(1 - ALPHA / 2), ndtri(1 - judged.p_family / 2))
             else:
                 ratio = np.divide(max(f.high - f.effect, f.effect - f.low), f.margin - abs(f.effect))
             needed.append(max(f.n * ratio**2, f.n + 1))
@@ -447,30 +447,30 @@ def _reason(each: _Judged) -> str:
     return "; ".join(filter(None, [each.finding.reason or unexplained, note]))
 
 
-def _check_row(each: _Judged, material: Material) -> dict:
-    check, finding = each.check, each.finding
-    effect_published, held = _printed(each)
+def _check_row(judged: _Judged, material: Material) -> dict:
+    check, finding = judged.check, judged.finding
+    effect_published, held = _printed(judged)
     fields = ("effect", "effect_size_name", "effect_size", "n", "p", "margin", "least_detectable", "rho", "r_squared")
     return {
-        "check": each.number,
-        "primary": each.primary,
+        "check": judged.number,
+        "primary": judged.primary,
         "test": check.test,
         "metric": check.measured,
         "statistic": check.statistic_shown,
         "unit": _unit(check, material),
-        "condition": each.condition,
-        "comparison": each.name,
-        "mark": each.mark,
-        "mark_family": each.mark_family,
-        "counted": each.comparison.counted if each.comparison else "",
+        "condition": judged.condition,
+        "comparison": judged.name,
+        "mark": judged.mark,
+        "mark_family": judged.mark_family,
+        "counted": judged.comparison.counted if judged.comparison else "",
         **{key: getattr(finding, key) for key in fields},
         "low95": finding.low,
         "high95": finding.high,
-        "p_family": each.p_family,
+        "p_family": judged.p_family,
         "effect_published": effect_published,
         "published": {True: "holds", False: "fails", None: "not printed"}[held],
         "timed": _is_timed(check),
-        "reason": _reason(each),
+        "reason": _reason(judged),
     }
 
 

@@ -22,26 +22,26 @@ class Printed(NamedTuple):
     statistics: dict[str, tuple[int, float, float]]
 
 
-def printed(check: OfRuns, found: Sequence[Sequence[Printed | None]]) -> tuple[np.ndarray, int | None]:
+def printed(check: OfRuns, rows_of_conditions: Sequence[Sequence[Printed | None]]) -> tuple[np.ndarray, int | None]:
     """Printed numbers of cells (k,), averaged over conditions, and their number of runs, None if that is not printed.
 
-    found: of each condition, of each cell, its rows as from `rows_of_cell`.
+    rows_of_conditions: of each condition, of each cell, its rows as from `rows_of_cell`.
 
     All use one statistic: the check's own or an unstated one, for a median of seconds also another; if it names none, the first of
     `_ANY_STATISTIC` that is printed for every cell. NaN where a cell is not printed, or where two cells share a row (the paper does not
     distinguish them).
     """
-    cells = len(found[0])
+    cells = len(rows_of_conditions[0])
     nothing = np.full(cells, np.nan), None
-    found = list(itertools.chain.from_iterable(found))
-    if None in found:
+    rows_of_conditions = list(itertools.chain.from_iterable(rows_of_conditions))
+    if None in rows_of_conditions:
         return nothing
-    rows = [(each.table, row) for each in found for row, _, _ in each.statistics.values()]
+    rows = [(each.table, row) for each in rows_of_conditions for row, _, _ in each.statistics.values()]
     if len(set(rows)) < len(rows):
         return nothing
     for statistic in _wanted(check):
-        if all(statistic in each.statistics for each in found):
-            values, runs = np.array([each.statistics[statistic][1:] for each in found]).T
+        if all(statistic in each.statistics for each in rows_of_conditions):
+            values, runs = np.array([each.statistics[statistic][1:] for each in rows_of_conditions]).T
             numbers = (values / runs if statistic == "count" else values).reshape(-1, cells).mean(axis=0)
             return effects.event(check, numbers), None if np.isnan(runs).all() else int(np.nanmin(runs))
     return nothing

@@ -6,19 +6,19 @@ import numpy as np
 MOST_EXACT = 50
 
 
-def rank_test(group: np.ndarray, other: np.ndarray, paired: bool) -> tuple[float, int]:
+def rank_test(group: np.ndarray, reference: np.ndarray, paired: bool) -> tuple[float, int]:
     """p of two groups' ranks, and the side (1: higher) on which the first group's lie."""
     from scipy import stats
 
     if paired:
-        difference = group - other
+        difference = group - reference
         if not difference.any():
             return 1.0, 0
         ranks = np.sign(difference) * stats.rankdata(np.abs(difference))
         return signed_rank_test(difference), int(np.sign(ranks.sum()))
-    if np.ptp(np.concatenate([group, other])) == 0:
+    if np.ptp(np.concatenate([group, reference])) == 0:
         return 1.0, 0
-    return float(stats.mannwhitneyu(group, other).pvalue), int(np.sign(wins(group, other) - 0.5))
+    return float(stats.mannwhitneyu(group, reference).pvalue), int(np.sign(wins(group, reference) - 0.5))
 
 
 def signed_rank_test(difference: np.ndarray) -> float:

@@ -84,18 +84,18 @@ def verdict(alone: Sequence[str], together: Sequence[str], holds: str) -> str:
     """The verdict on a claim that holds if `all` or `any` comparisons do, or all `together`, from their marks alone and in the family (at
     least one).
     """
-    found = set(together)
+    marks = set(together)
     if holds == "together":
-        return _as_one(set(alone), found)
-    if set(alone) == {"+"} or (holds == "any" and "+" in found):
+        return _as_one(set(alone), marks)
+    if set(alone) == {"+"} or (holds == "any" and "+" in marks):
         return "supported"
     if holds == "any":
-        return "contradicted" if set(alone) == {"-"} else "undecided" if "?" in found else "no effect"
-    if "+" in found:
+        return "contradicted" if set(alone) == {"-"} else "undecided" if "?" in marks else "no effect"
+    if "+" in marks:
         return _partly(together)
-    if "-" in found:
+    if "-" in marks:
         return "contradicted"
-    return "undecided" if "?" in found else "no effect"
+    return "undecided" if "?" in marks else "no effect"
 
 
 def _as_one(alone: set[str], together: set[str]) -> str:

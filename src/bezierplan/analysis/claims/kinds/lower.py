@@ -113,8 +113,8 @@ def find(check: OfRuns, comparison: Comparison, name: str) -> Finding:
     if reason:
         return Finding(effect=ours, n=n, mark="?", reason=reason)
     if point_statistic(check) in WITHOUT_INTERVAL:
-        found = by_draws(check, comparison, name)
-        return found if abs(ours) >= found.margin else found._replace(mark="?")
+        finding = by_draws(check, comparison, name)
+        return finding if abs(ours) >= finding.margin else finding._replace(mark="?")
     side, least = SIDES[check.side], check.least_claimed
     margin = margin_of(check, comparison)
     draws = drawn_effects(check, comparison, name)
@@ -123,56 +123,56 @@ def find(check: OfRuns, comparison: Comparison, name: str) -> Finding:
     if not least and abs(ours) < margin:
         toward = 0
     (stratum, *others) = comparison.strata.values()
-    group, other = counted(stratum, comparison.paired)
+    group, reference = counted(stratum, comparison.paired)
     named = check.statistic_named
     if others or named not in (None, "rank", "mean") or (comparison.boolean and least):
         p = two_sided(side * draws - least)
     elif comparison.boolean:
-        p = _boolean_test(group, other, comparison.paired)
+        p = _boolean_test(group, reference, comparison.paired)
     elif named == "mean":
         p = _t_test(*_shifted(check, *finite(stratum, comparison.paired)), comparison.paired)
     else:
-        p, ranked = rank_test(*_shifted(check, group, other), comparison.paired)
+        p, ranked = rank_test(*_shifted(check, group, reference), comparison.paired)
         # The means must differ in the direction of the ranks, unless some values have no mean.
         toward = side * ranked if np.isinf(stratum).any() or toward == side * ranked else 0
     infinite = any(np.isinf(each).any() for each in comparison.strata.values())
     if not (math.isfinite(ours) or infinite):
         p = math.nan
     size_name, size = _effect_size(check, comparison, side, ours)
-    found = Finding(ours, size_name, size, low, high, n, p, int(np.nan_to_num(toward)), margin)
+    finding = Finding(ours, size_name, size, low, high, n, p, int(np.nan_to_num(toward)), margin)
     reason = why_none(p) or ("" if toward else no_difference(low, high, n))
     negligible = not infinite and is_negligible(low, high, margin, n, side * least)
-    return found._replace(negligible=negligible, least_detectable=least_detectable(low, high, n), reason=reason)
+    return finding._replace(negligible=negligible, least_detectable=least_detectable(low, high, n), reason=reason)
 
 
-def _t_test(group: np.ndarray, other: np.ndarray, paired: bool) -> float:
+def _t_test(group: np.ndarray, reference: np.ndarray, paired: bool) -> float:
     """p of two means; of the ranks if values without spread leave t undefined."""
     from scipy import stats
 
-    spread = (group - other).std() if paired else group.std() + other.std()
-    if spread <= 1e-12 * max(np.abs(group).max(), np.abs(other).max(), 1e-300):
-        return rank_test(group, other, paired)[0]
-    test = stats.ttest_rel(group, other) if paired else stats.ttest_ind(group, other, equal_var=False)
+    spread = (group - reference).std() if paired else group.std() + reference.std()
+    if spread <= 1e-12 * max(np.abs(group).max(), np.abs(reference).max(), 1e-300):
+        return rank_test(group, reference, paired)[0]
+    test = stats.ttest_rel(group, reference) if paired else stats.ttest_ind(group, reference, equal_var=False)
     return float(test.pvalue)
 
 
-def _shifted(check: OfRuns, group: np.ndarray, other: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _shifted(check: OfRuns, group: np.ndarray, reference: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Values of both groups, the other's shifted by the claimed least effect; infinite ones replaced by a value beyond any difference."""
-    finite = np.concatenate([values[np.isfinite(values)] for values in (group, other)])
+    finite = np.concatenate([values[np.isfinite(values)] for values in (group, reference)])
     worst = finite.max() + 2 * np.ptp(finite) + 1
-    group, other = (np.where(np.isinf(values), worst, values) for values in (group, other))
+    group, reference = (np.where(np.isinf(values), worst, values) for values in (group, reference))
     move = SIDES[check.side] * check.least_claimed
-    return group, other * (1 + move) if check.relative else other + move
+    return group, reference * (1 + move) if check.relative else reference + move
 
 
-def _boolean_test(group: np.ndarray, other: np.ndarray, paired: bool) -> float:
+def _boolean_test(group: np.ndarray, reference: np.ndarray, paired: bool) -> float:
     """McNemar's exact p for pairs of booleans, Fisher's for two groups."""
     from scipy import stats
 
     if paired:
-        more, fewer = int(np.sum(group > other)), int(np.sum(group < other))
+        more, fewer = int(np.sum(group > reference)), int(np.sum(group < reference))
         return float(stats.binomtest(more, more + fewer).pvalue) if more + fewer else 1.0
-    return float(stats.fisher_exact(_contingency(group, other)).pvalue)
+    return float(stats.fisher_exact(_contingency(group, reference)).pvalue)
 
 
 def _contingency(group: np.ndarray, other: np.ndarray) -> list[list[int]]:

@@ -111,28 +111,28 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
         return Finding(mark="?", reason="no run counts")
     if not np.isin(happened, (0.0, 1.0)).all():
         raise ValueError(f"{name}: {check['metric']} has values other than true and false; its check needs an event")
-    found = Finding(k / n, "share", k / n, n=n)
+    finding = Finding(k / n, "share", k / n, n=n)
     holds = bool(claimed(check, np.array(k / n), math.nan))
     if check.pick:
-        return found._replace(mark="+" if holds else "-")
+        return finding._replace(mark="+" if holds else "-")
     exact = stats.binomtest(k, n).proportion_ci(method="exact")
-    found = found._replace(low=float(exact.low), high=float(exact.high))
+    finding = finding._replace(low=float(exact.low), high=float(exact.high))
     if isinstance(check.threshold, str):
         # For `some`, one example decides and many misses are needed to refute it; for `all` and `none` it is the other way round.
         decided = holds == (check.threshold == "some") or n >= LEAST_WITHOUT_EXAMPLE
         mark = ("+" if holds else "-") if decided else "?"
-        return found._replace(mark=mark, reason="" if decided else f"fewer than {LEAST_WITHOUT_EXAMPLE} runs")
+        return finding._replace(mark=mark, reason="" if decided else f"fewer than {LEAST_WITHOUT_EXAMPLE} runs")
     if n < LEAST_RUNS:
-        return found._replace(mark="?", reason=f"fewer than {LEAST_RUNS} units")
+        return finding._replace(mark="?", reason=f"fewer than {LEAST_RUNS} units")
     threshold = check.threshold
     if len(comparison.strata) >= LEAST_RUNS:
-        return _share_of_conditions(found, comparison, threshold, SIDES[check.direction])
+        return _share_of_conditions(finding, comparison, threshold, SIDES[check.direction])
     # Twice the smaller tail, the test that corresponds to the Clopper-Pearson interval.
     p = min(1.0, 2 * float(min(stats.binom.cdf(k, n, threshold), stats.binom.sf(k - 1, n, threshold))))
-    return found._replace(p=p, toward=int(np.sign(SIDES[check.direction] * (k / n - threshold))))
+    return finding._replace(p=p, toward=int(np.sign(SIDES[check.direction] * (k / n - threshold))))
 
 
-def _share_of_conditions(found: Finding, comparison: Comparison, threshold: float, side: int) -> Finding:
+def _share_of_conditions(finding: Finding, comparison: Comparison, threshold: float, side: int) -> Finding:
     """Random conditions, such as layouts, are the units, because runs of one are alike. Student's t over their shares."""
     from scipy import stats
 
@@ -140,7 +140,7 @@ def _share_of_conditions(found: Finding, comparison: Comparison, threshold: floa
     mean = float(shares.mean())
     toward = int(np.sign(side * (mean - threshold)))
     if not np.ptp(shares):
-        return found._replace(effect=mean, effect_size=mean, low=mean, high=mean, n=len(shares), p=0.0 if toward else 1.0, toward=toward)
+        return finding._replace(effect=mean, effect_size=mean, low=mean, high=mean, n=len(shares), p=0.0 if toward else 1.0, toward=toward)
     test = stats.ttest_1samp(shares, threshold)
     low, high = (float(np.clip(end, 0, 1)) for end in test.confidence_interval(0.95))
-    return found._replace(effect=mean, effect_size=mean, low=low, high=high, n=len(shares), p=float(test.pvalue), toward=toward)
+    return finding._replace(effect=mean, effect_size=mean, low=low, high=high, n=len(shares), p=float(test.pvalue), toward=toward)

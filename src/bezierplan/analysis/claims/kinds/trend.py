@@ -96,8 +96,8 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
     if n < LEAST_RUNS:
         return Finding(n=n, mark="?", reason=f"fewer than {LEAST_RUNS} units with at least 3 values of {check.x}")
     # A unit counts wherever it has a value, even if not at every x.
-    each = comparison._replace(paired=False)
-    ours = points(each, statistic)
+    unpaired = comparison._replace(paired=False)
+    ours = points(unpaired, statistic)
     if statistic == "mean":
         slope = float(slopes.mean())
         changes = slopes * np.ptp(x)
@@ -115,7 +115,7 @@ def find(check: Options, comparison: Comparison, name: str) -> Finding:
         draws = drawn_effects(check, comparison, name)
         p = two_sided(draws)
     low, high = interval(draws)
-    margin = margin_of(check, each)
+    margin = margin_of(check, unpaired)
     known = np.isfinite(ours)
     linear = known.sum() >= 3 and np.ptp(ours[known]) > 0
     return Finding(

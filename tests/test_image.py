@@ -1,0 +1,38 @@
+"""The Dockerfile is sound as far as a linter sees: nothing here builds an image."""
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+HADOLINT = shutil.which("hadolint", path=str(Path(sys.executable).parent))
+needs_hadolint = pytest.mark.skipif(HADOLINT is None, reason="hadolint has wheels for Linux on x86-64 alone")
+
+
+def linted(file: Path) -> subprocess.CompletedProcess:
+    return subprocess.run([HADOLINT, str(file)], capture_output=True, text=True, check=False, timeout=60)
+
+
+@needs_hadolint
+def test_a_linter_finds_nothing_in_the_dockerfile():
+    found = linted(ROOT / "Dockerfile")
+    assert found.returncode == 0, found.stdout
+
+
+@needs_hadolint
+def test_the_linter_finds_a_broken_line(tmp_path):
+    broken = tmp_path / "Dockerfile"
+    broken.write_text(
+        (ROOT / "Dockerfile").read_text(encoding="utf-8").replace("WORKDIR /bezierplan", "WORKDIRR /bezierplan"), encoding="utf-8"
+    )
+    assert linted(broken).returncode != 0
+
+
+def test_what_the_dockerfile_copies_is_there():
+    lines = (ROOT / "Dockerfile").read_text(encoding="utf-8").splitlines()
+    copied = [name for line in lines if line.startswith("COPY ") for name in line.split()[1:-1]]
+    assert "environment.txt" in copied
+    assert [name for name in copied if not (ROOT / name).exists()] == []
