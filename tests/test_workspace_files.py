@@ -11,11 +11,13 @@ import pytest
 from fields import BENCHMARK_MAPS
 from hypothesis import example, given
 from hypothesis import strategies as st
+from pydantic import Field as model_field
 
 from bezierplan.geometry.checker import check
 from bezierplan.geometry.region import blocks, region
 from bezierplan.running import problems, worlds
-from bezierplan.workspaces import files, random_circles
+from bezierplan.schema import model
+from bezierplan.workspaces import files, kinds, random_circles
 from bezierplan.workspaces.geojson import polygons_from_geojson
 
 MAPS = Path(__file__).parent / "data" / "maps"
@@ -368,3 +370,17 @@ def test_problems_in_random_circles_have_free_ends():
 def test_layout_that_cannot_be_drawn_is_given_up():
     with pytest.raises(ValueError, match="no circle leaves start and target free"):
         random_circles.layout(RANDOM | {"radius": 40.0}, "study/random", 0, [(0, 0), (4, 6)])
+
+
+def test_files_that_a_description_may_leave_out_are_files_of_the_study():
+    assert kinds.file_keys(kinds.kinds()["grid"]) == ["file", "heights"]
+    assert kinds.file_keys(kinds.kinds()["moving_ai"]) == ["file", "scenarios"]
+
+
+def test_a_name_is_looked_up_whether_its_key_may_be_left_out_or_not():
+    class Drawn(model.Model):
+        metric: model.Metric | None = model_field(None, description="the name of a metric")
+        columns: list[model.Column] | None = model_field(None, description="columns")
+
+    named = list(model.named(Drawn(metric="length", columns=["problem"])))
+    assert named == [(("metric",), "metric", "length"), (("columns", "0"), "column", "problem")]

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+import bezierplan
 from bezierplan.workspaces.circles import Circles
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
@@ -28,22 +29,7 @@ if TYPE_CHECKING:
     from bezierplan.planners import Plan
     from bezierplan.running.problems import Regions
 
-__all__ = [
-    "Answer",
-    "Circles",
-    "Grid",
-    "Judged",
-    "Path",
-    "Polygons",
-    "Problem",
-    "check",
-    "methods",
-    "plan",
-    "read_map",
-    "replay",
-    "results",
-    "shortest_path",
-]
+__all__ = bezierplan.__all__
 
 Method = str | Callable[..., Any] | ModuleType
 Via = Sequence[tuple[float, float]]

@@ -44,6 +44,7 @@ figures:
     {kind: convergence, experiment: all, where: {problem: equal, method: [pso, ferguson]}, hue: method}]}
   paths: {title: Paths, columns: 1, panels: [{kind: paths, experiment: all, where: {method: pso, problem: equal}, pick: {lowest: length}}]}
 """
+FIGURE_FILES = {"svg": "svg", "png": "png", "pdf": "pdf", "data": "csv", "caption": "txt"}
 THREADS = 2
 """Processes that a job may start."""
 CLAIMS = """
@@ -132,7 +133,7 @@ def _gathering_one(given: Studies, key: str) -> Iterator[Job]:
         output = {"table": f"{folder}/tables/{name}.csv", "comparison": f"{folder}/tables/{name}.comparison.csv"}
         yield Job("table", targets.table_inputs(**of, table=name), output, targets.table_params(**of, table=name))
     for name in given[key].figures:
-        output = {part: f"{folder}/figures/{name}.{ending}" for part, ending in (("svg", "svg"), ("png", "png"), ("data", "csv"))}
+        output = {part: f"{folder}/figures/{name}.{ending}" for part, ending in FIGURE_FILES.items()}
         yield Job("figure", targets.figure_inputs(**of, figure=name), output, targets.figure_params(**of, figure=name))
     output = {"claims": f"{folder}/claims.csv", "checks": f"{folder}/claim_checks.csv"}
     yield Job("claims", targets.claims_inputs(**of), output, targets.claims_params(**of))

@@ -212,12 +212,12 @@ def _grimmer(cell: Cell, mean: Printed, std: Printed, step: Fraction, values: st
     rule = f"GRIMMER: {cell.n} {values} with the printed mean can have the printed standard deviation"
     if not cell.exact:
         return cell.row("std", rule, math.nan, None, f"only some of the {cell.n} runs count, and how many is not printed")
-    fits = possible.grimmer(mean, std, cell.n, step)
-    if fits is None:
+    sums = possible.grimmer(mean, std, cell.n, step)
+    if sums is None:
         squares = [(cell.n - 1) * (each / step) ** 2 + (mean.value / step) ** 2 * cell.n for each in (max(std.low, Fraction(0)), std.high)]
         told = f"sum {_text(mean.value / step * cell.n)}; no sum of squares from {float(squares[0]):.6g} to {float(squares[1]):.6g} fits it"
         return cell.row("std", rule, math.nan, False, told)
-    total, squares = fits
+    total, squares = sums
     exact = math.sqrt((squares - total**2 / cell.n) / (cell.n - 1)) * float(step)
     told = f"sum {total}, sum of squares {squares}: sqrt(({squares} - {total}^2 / {cell.n}) / {cell.n - 1}) = {exact:.6g}"
     if step != 1:

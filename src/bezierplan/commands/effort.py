@@ -72,12 +72,12 @@ def spent(session: Session, folder: Path) -> tuple[Counter[str], int, float]:
     return seconds, len(jobs), waited
 
 
-def lines(session: Session, of_each: Counter[str], jobs: int, waited: float) -> list[str]:
+def lines(session: Session, parts: Counter[str], jobs: int, waited: float) -> list[str]:
     """A table in Markdown. What the cores did not do for this workflow is what remains of their time."""
     clock = session.ended - session.started
     whole = clock * session.cores
-    rest = {"cores idle, or busy with other programs": whole - of_each.total()}
-    rows = [(name, of_each[name]) for name in ROWS if of_each[name]] + list(rest.items())
+    rest = {"cores idle, or busy with other programs": whole - parts.total()}
+    rows = [(name, parts[name]) for name in ROWS if parts[name]] + list(rest.items())
     return [
         f"{jobs} jobs in {clock:.0f} s on {session.cores} cores; jobs waited {waited:.0f} s for kernels that another job compiled",
         "",

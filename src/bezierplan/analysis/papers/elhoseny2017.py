@@ -120,13 +120,13 @@ def fitness_leads(
                 shares.append([fitness / (fitness + compared * math.ceil(genes / word)) for word in words])
     if not shares:
         raise Untestable("no run has a path")
-    experiment = np.array(shares)
-    ends = [statistics.interval("mean", own, generator(f"elhoseny2017/C21/{word}")) for word, own in zip(words, experiment.T, strict=True)]
+    table = np.array(shares)
+    ends = [statistics.interval("mean", own, generator(f"elhoseny2017/C21/{word}")) for word, own in zip(words, table.T, strict=True)]
     marks = ["+" if low > 0.5 else "-" if high < 0.5 else "?" for low, high in ends]
     if len(set(marks)) > 1:
-        each = ", ".join(f"{share:.2f} if {word} at a time" for word, share in zip(words, experiment.mean(axis=0), strict=True))
+        each = ", ".join(f"{share:.2f} if {word} at a time" for word, share in zip(words, table.mean(axis=0), strict=True))
         raise Untestable(f"the share of fitness in the work depends on how many genes are compared at once: {each}")
-    return marks[0], float(experiment[:, 0].mean()), ends[0], len(experiment)
+    return marks[0], float(table[:, 0].mean()), ends[0], len(table)
 
 
 def audit(published: dict[str, pd.DataFrame]) -> list[dict]:
