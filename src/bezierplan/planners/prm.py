@@ -158,9 +158,19 @@ def _pairs(points: np.ndarray, neighbours: int | None) -> tuple[np.ndarray, np.n
     count = len(points)
     if neighbours is None or neighbours >= count - 1:
         return np.triu_indices(count, 1)
-    near = np.zeros((count, count), dtype=bool)
-    np.put_along_axis(near, _nearest(points, neighbours), True, axis=1)
-    return np.nonzero(np.triu(near | near.T))
+    return np.divmod(_marked(_nearest(points, neighbours)), count)
+
+
+@compiled
+def _marked(nearest):
+    """Numbers count i + j, ascending, of the pairs i < j of which one is among the nearest (count, neighbours) of the other."""
+    count, neighbours = nearest.shape
+    marks = np.zeros(count * count, dtype=np.bool_)
+    for i in range(count):
+        for k in range(neighbours):
+            j = nearest[i, k]
+            marks[min(i, j) * count + max(i, j)] = True
+    return np.flatnonzero(marks)
 
 
 @compiled
@@ -168,11 +178,15 @@ def _nearest(points, neighbours):
     """Indices (n, neighbours) of the nearest other points of each point (n, 2), nearest first, ties in their original order."""
     nearest = np.empty((len(points), neighbours), dtype=np.int64)
     square = np.empty(neighbours)  # of the distance to each of them
+    distances = np.empty(len(points))
     for i in range(len(points)):
-        found = 0
         for j in range(len(points)):
-            distance = (points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2
-            if j == i or (found == neighbours and distance >= square[-1]):
+            distances[j] = (points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2
+        distances[i] = np.inf
+        found, most = 0, np.inf
+        for j in range(len(points)):
+            distance = distances[j]
+            if distance >= most or j == i:
                 continue
             found = min(found + 1, neighbours)
             place = found - 1
@@ -180,6 +194,8 @@ def _nearest(points, neighbours):
                 square[place], nearest[i, place] = square[place - 1], nearest[i, place - 1]
                 place -= 1
             square[place], nearest[i, place] = distance, j
+            if found == neighbours:
+                most = square[-1]
     return nearest
 
 
@@ -195,16 +211,50 @@ def _visible(starts: np.ndarray, targets: np.ndarray, centres: np.ndarray, radii
     return visible
 
 
-def _shortest_way(points: np.ndarray, one: np.ndarray, other: np.ndarray) -> tuple[float, list[int]]:
+def _shortest_way(points: np.ndarray, one: np.ndarray, other: np.ndarray) -> tuple[float, np.ndarray]:
     """Length of the shortest path from node 0 to node 1 along links, and its nodes; infinite and empty if they are not connected."""
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import dijkstra
+    return _dijkstra(len(points), one, other, np.hypot(*(points[one] - points[other]).T))
 
-    roads = csr_array((np.hypot(*(points[one] - points[other]).T), (one, other)), shape=(len(points), len(points)))
-    lengths, before = dijkstra(roads, directed=False, indices=0, return_predecessors=True)
-    if math.isinf(lengths[1]):
-        return math.inf, []
-    way = [1]
-    while way[-1] != 0:
-        way.append(int(before[way[-1]]))
-    return float(lengths[1]), way[::-1]
+
+@compiled
+def _dijkstra(count, one, other, lengths):
+    """`_shortest_way` by Dijkstra's algorithm, over `count` nodes and the lengths (links,) of links between two of them each."""
+    first = np.zeros(count + 2, dtype=np.int64)  # where the links of each node begin
+    for k in range(len(one)):
+        first[one[k] + 2] += 1
+        first[other[k] + 2] += 1
+    first = np.cumsum(first)
+    ends, steps = np.empty(2 * len(one), dtype=np.int64), np.empty(2 * len(one))
+    for k in range(len(one)):
+        for node, end in ((one[k], other[k]), (other[k], one[k])):
+            place = first[node + 1]
+            ends[place], steps[place] = end, lengths[k]
+            first[node + 1] += 1
+
+    far, before = np.full(count, np.inf), np.full(count, -1)
+    waiting, waits = np.empty(count, dtype=np.int64), 1  # nodes that are reached and not settled: few, so they need no heap
+    waiting[0], far[0] = 0, 0.0
+    while waits > 0:
+        place = 0
+        for k in range(1, waits):
+            if far[waiting[k]] < far[waiting[place]]:
+                place = k
+        node = waiting[place]
+        if node == 1:
+            break
+        waits -= 1
+        waiting[place] = waiting[waits]
+        for k in range(first[node], first[node + 1]):
+            length = far[node] + steps[k]
+            if length < far[ends[k]]:
+                if far[ends[k]] == np.inf:
+                    waiting[waits] = ends[k]
+                    waits += 1
+                far[ends[k]], before[ends[k]] = length, node
+    way, place = waiting, count
+    node = 1 if far[1] < np.inf else -1
+    while node >= 0:
+        place -= 1
+        way[place] = node
+        node = before[node]
+    return far[1], way[place:]
