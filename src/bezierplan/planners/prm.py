@@ -4,7 +4,6 @@ The baseline PRM of tharwat2018's Figure 22 (its reference 48) and of elhoseny20
 circles a link is a segment that enters none; on a grid, one that touches no occupied cell.
 """
 
-import math
 from collections.abc import Callable
 from enum import IntEnum
 from functools import partial
