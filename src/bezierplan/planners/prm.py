@@ -174,27 +174,34 @@ def _marked(nearest):
 
 @compiled
 def _nearest(points, neighbours):
-    """Indices (n, neighbours) of the nearest other points of each point (n, 2), nearest first, ties in their original order."""
+    """Indices (n, neighbours) of the nearest other points of each point (n, 2), nearest first, ties in their original order.
+
+    From each point to both sides, in the order of x, until the next one is too far away by its x alone.
+    """
+    order = np.argsort(points[:, 0])
     nearest = np.empty((len(points), neighbours), dtype=np.int64)
     square = np.empty(neighbours)  # of the distance to each of them
-    distances = np.empty(len(points))
-    for i in range(len(points)):
-        for j in range(len(points)):
-            distances[j] = (points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2
-        distances[i] = np.inf
-        found, most = 0, np.inf
-        for j in range(len(points)):
-            distance = distances[j]
-            if distance >= most or j == i:
-                continue
-            found = min(found + 1, neighbours)
-            place = found - 1
-            while place > 0 and square[place - 1] > distance:
-                square[place], nearest[i, place] = square[place - 1], nearest[i, place - 1]
-                place -= 1
-            square[place], nearest[i, place] = distance, j
-            if found == neighbours:
-                most = square[-1]
+    for rank in range(len(points)):
+        i, found, most = order[rank], 0, np.inf
+        for side in range(-1, 2, 2):
+            other = rank + side
+            while 0 <= other < len(points):
+                j = order[other]
+                other += side
+                across = (points[j, 0] - points[i, 0]) ** 2
+                if across > most:
+                    break
+                distance = across + (points[j, 1] - points[i, 1]) ** 2
+                if distance > most or (distance == most and j > nearest[i, -1]):
+                    continue
+                found = min(found + 1, neighbours)
+                place = found - 1
+                while place > 0 and (square[place - 1] > distance or (square[place - 1] == distance and nearest[i, place - 1] > j)):
+                    square[place], nearest[i, place] = square[place - 1], nearest[i, place - 1]
+                    place -= 1
+                square[place], nearest[i, place] = distance, j
+                if found == neighbours:
+                    most = square[-1]
     return nearest
 
 
