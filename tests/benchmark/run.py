@@ -15,6 +15,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "src"))
 from elhoseny2017 import benchmark_fields
 from geometry import benchmark_geometry
 from growth import benchmark_growth
+from least import benchmark_least
 from limits import benchmark_limits
 from meledje import benchmark_node_genetic
 from runs import benchmark_runs
@@ -48,6 +49,7 @@ PARTS = {
     "meledje": benchmark_node_genetic,
     "elhoseny2017": benchmark_fields,
     "runs": benchmark_runs,
+    "least": benchmark_least,
     "simulation": benchmark_simulation,
     "geometry": benchmark_geometry,
     "limits": benchmark_limits,

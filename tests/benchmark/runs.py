@@ -22,7 +22,7 @@ def _milliseconds(run: Callable[[int], object]) -> float:
     return float(np.median(taken))
 
 
-def _methods(study: definition.Study) -> Iterator[tuple[str, str]]:
+def methods(study: definition.Study) -> Iterator[tuple[str, str]]:
     """Every method with the first experiment that it takes part in; baselines are the same everywhere and left out, and so are drives
     through worlds that move (`simulation.py`).
     """
@@ -40,7 +40,7 @@ def benchmark_runs() -> None:
     """Each method of each study on the first condition of its first experiment."""
     print(f"\n{'a run':44}{'median ms':>12}   under")
     for key, study in reading.load(reading.read_config({})).items():
-        for experiment, method in _methods(study):
+        for experiment, method in methods(study):
             job = jobs.job(study, experiment, method, "smoke", 0)
             made, _ = problems.build_all(jobs.problems_job(study, experiment, "smoke"), study.folder)
             condition = next(execution.conditions(list(job["problems"]), job["vary"]))

@@ -4,7 +4,6 @@ The baseline PRM of tharwat2018's Figure 22 (its reference 48) and of elhoseny20
 circles a link is a segment that enters none; on a grid, one that touches no occupied cell.
 """
 
-import math
 from collections.abc import Callable
 from enum import IntEnum
 from functools import partial
@@ -158,28 +157,51 @@ def _pairs(points: np.ndarray, neighbours: int | None) -> tuple[np.ndarray, np.n
     count = len(points)
     if neighbours is None or neighbours >= count - 1:
         return np.triu_indices(count, 1)
-    near = np.zeros((count, count), dtype=bool)
-    np.put_along_axis(near, _nearest(points, neighbours), True, axis=1)
-    return np.nonzero(np.triu(near | near.T))
+    return np.divmod(_marked(_nearest(points, neighbours)), count)
+
+
+@compiled
+def _marked(nearest):
+    """Numbers count i + j, ascending, of the pairs i < j of which one is among the nearest (count, neighbours) of the other."""
+    count, neighbours = nearest.shape
+    marks = np.zeros(count * count, dtype=np.bool_)
+    for i in range(count):
+        for k in range(neighbours):
+            j = nearest[i, k]
+            marks[min(i, j) * count + max(i, j)] = True
+    return np.flatnonzero(marks)
 
 
 @compiled
 def _nearest(points, neighbours):
-    """Indices (n, neighbours) of the nearest other points of each point (n, 2), nearest first, ties in their original order."""
+    """Indices (n, neighbours) of the nearest other points of each point (n, 2), nearest first, ties in their original order.
+
+    From each point to both sides, in the order of x, until the next one is too far away by its x alone.
+    """
+    order = np.argsort(points[:, 0])
     nearest = np.empty((len(points), neighbours), dtype=np.int64)
     square = np.empty(neighbours)  # of the distance to each of them
-    for i in range(len(points)):
-        found = 0
-        for j in range(len(points)):
-            distance = (points[j, 0] - points[i, 0]) ** 2 + (points[j, 1] - points[i, 1]) ** 2
-            if j == i or (found == neighbours and distance >= square[-1]):
-                continue
-            found = min(found + 1, neighbours)
-            place = found - 1
-            while place > 0 and square[place - 1] > distance:
-                square[place], nearest[i, place] = square[place - 1], nearest[i, place - 1]
-                place -= 1
-            square[place], nearest[i, place] = distance, j
+    for rank in range(len(points)):
+        i, found, most = order[rank], 0, np.inf
+        for side in range(-1, 2, 2):
+            other = rank + side
+            while 0 <= other < len(points):
+                j = order[other]
+                other += side
+                across = (points[j, 0] - points[i, 0]) ** 2
+                if across > most:
+                    break
+                distance = across + (points[j, 1] - points[i, 1]) ** 2
+                if distance > most or (distance == most and j > nearest[i, -1]):
+                    continue
+                found = min(found + 1, neighbours)
+                place = found - 1
+                while place > 0 and (square[place - 1] > distance or (square[place - 1] == distance and nearest[i, place - 1] > j)):
+                    square[place], nearest[i, place] = square[place - 1], nearest[i, place - 1]
+                    place -= 1
+                square[place], nearest[i, place] = distance, j
+                if found == neighbours:
+                    most = square[-1]
     return nearest
 
 
@@ -195,16 +217,50 @@ def _visible(starts: np.ndarray, targets: np.ndarray, centres: np.ndarray, radii
     return visible
 
 
-def _shortest_way(points: np.ndarray, one: np.ndarray, other: np.ndarray) -> tuple[float, list[int]]:
+def _shortest_way(points: np.ndarray, one: np.ndarray, other: np.ndarray) -> tuple[float, np.ndarray]:
     """Length of the shortest path from node 0 to node 1 along links, and its nodes; infinite and empty if they are not connected."""
-    from scipy.sparse import csr_array
-    from scipy.sparse.csgraph import dijkstra
+    return _dijkstra(len(points), one, other, np.hypot(*(points[one] - points[other]).T))
 
-    roads = csr_array((np.hypot(*(points[one] - points[other]).T), (one, other)), shape=(len(points), len(points)))
-    lengths, before = dijkstra(roads, directed=False, indices=0, return_predecessors=True)
-    if math.isinf(lengths[1]):
-        return math.inf, []
-    way = [1]
-    while way[-1] != 0:
-        way.append(int(before[way[-1]]))
-    return float(lengths[1]), way[::-1]
+
+@compiled
+def _dijkstra(count, one, other, lengths):
+    """`_shortest_way` by Dijkstra's algorithm, over `count` nodes and the lengths (links,) of links between two of them each."""
+    first = np.zeros(count + 2, dtype=np.int64)  # where the links of each node begin
+    for k in range(len(one)):
+        first[one[k] + 2] += 1
+        first[other[k] + 2] += 1
+    first = np.cumsum(first)
+    ends, steps = np.empty(2 * len(one), dtype=np.int64), np.empty(2 * len(one))
+    for k in range(len(one)):
+        for node, end in ((one[k], other[k]), (other[k], one[k])):
+            place = first[node + 1]
+            ends[place], steps[place] = end, lengths[k]
+            first[node + 1] += 1
+
+    far, before = np.full(count, np.inf), np.full(count, -1)
+    waiting, waits = np.empty(count, dtype=np.int64), 1  # nodes that are reached and not settled: few, so they need no heap
+    waiting[0], far[0] = 0, 0.0
+    while waits > 0:
+        place = 0
+        for k in range(1, waits):
+            if far[waiting[k]] < far[waiting[place]]:
+                place = k
+        node = waiting[place]
+        if node == 1:
+            break
+        waits -= 1
+        waiting[place] = waiting[waits]
+        for k in range(first[node], first[node + 1]):
+            length = far[node] + steps[k]
+            if length < far[ends[k]]:
+                if far[ends[k]] == np.inf:
+                    waiting[waits] = ends[k]
+                    waits += 1
+                far[ends[k]], before[ends[k]] = length, node
+    way, place = waiting, count
+    node = 1 if far[1] < np.inf else -1
+    while node >= 0:
+        place -= 1
+        way[place] = node
+        node = before[node]
+    return far[1], way[place:]

@@ -82,27 +82,32 @@ def length(particle: np.ndarray, objective: Objective, curve: np.ndarray, chords
     # Three control points at a time, so that each sample is read and written fewer times.
     threes = n // 3 * 3
     for axis in range(len(ends)):
-        x, z = curve[axis], particle[axis * n : (axis + 1) * n]
-        for s in range(samples):
-            x[s] = ends[axis, s]
-        for k in range(0, threes, 3):
+        x, end, z = curve[axis], ends[axis], particle[axis * n : (axis + 1) * n]
+        if threes > 0:
+            a, b, c = z[0], z[1], z[2]
+            for s in range(samples):
+                x[s] = end[s] + a * free[0, s] + b * free[1, s] + c * free[2, s]
+        else:
+            for s in range(samples):
+                x[s] = end[s]
+        for k in range(3, threes, 3):
             a, b, c = z[k], z[k + 1], z[k + 2]
             for s in range(samples):
                 x[s] = x[s] + a * free[k, s] + b * free[k + 1, s] + c * free[k + 2, s]
         for k in range(threes, n):
             for s in range(samples):
                 x[s] += z[k] * free[k, s]
-    x, y = curve[0], curve[1]
-    for s in range(samples - 1):
-        dx, dy = x[s + 1] - x[s], y[s + 1] - y[s]
-        chords[s] = dx * dx + dy * dy
-    for axis in range(2, len(ends)):
-        x = curve[axis]
-        for s in range(samples - 1):
-            chords[s] += (x[s + 1] - x[s]) ** 2
     # The square roots are vectorised if their sum is separate; its four partial sums need not wait for each other.
-    for s in range(samples - 1):
-        chords[s] = np.sqrt(chords[s])
+    x, y = curve[0], curve[1]
+    if len(ends) == 2:
+        for s in range(samples - 1):
+            dx, dy = x[s + 1] - x[s], y[s + 1] - y[s]
+            chords[s] = np.sqrt(dx * dx + dy * dy)
+    else:
+        z = curve[2]
+        for s in range(samples - 1):
+            dx, dy, dz = x[s + 1] - x[s], y[s + 1] - y[s], z[s + 1] - z[s]
+            chords[s] = np.sqrt(dx * dx + dy * dy + dz * dz)
     a, b, c, d = 0.0, 0.0, 0.0, 0.0
     fours = (samples - 1) // 4 * 4
     for s in range(0, fours, 4):
@@ -145,32 +150,53 @@ def _sides(ring: "LinearRing") -> np.ndarray:
 
 
 @allocation_free
-def violation(curve: np.ndarray, objective: Objective, scratch: np.ndarray) -> tuple[float, int]:
+def violation(curve: np.ndarray, length: float, limit: float, objective: Objective, scratch: np.ndarray) -> tuple[float, int]:
     """Violation of a path, and its number of samples in obstacles, both summed over the obstacles.
 
     The violation of an obstacle is the mean over the samples of their depth below its edge, as a share of the largest depth (tharwat2018,
     eqs. 20 and 21; the paper prints control points where only points of the path make sense).
 
-    curve: (d, samples). scratch: (samples,).
+    curve: (d, samples). scratch: (samples,). limit: nobody needs to know by how much the fitness of a path of this length exceeds it, so
+    the rest of what a path meets is left out where that is certain.
     """
-    of_balls, in_balls = _among_balls(curve, objective.balls, scratch)
-    of_polygons, in_polygons = _among_polygons(curve[0], curve[1], objective.polygons)
-    return of_balls + of_polygons, in_balls + in_polygons
+    total, colliding = _among_balls(curve, length, limit, objective, scratch)
+    if len(objective.polygons.deepest) == 0 or _is_lost(length, total, limit, objective):
+        return total, colliding
+    of_polygons, in_polygons = _among_polygons(curve[0], curve[1], length, limit, objective)
+    return total + of_polygons, colliding + in_polygons
 
 
 @allocation_free
-def _among_polygons(x, y, polygons):
+def _is_lost(length, violation, limit, objective):
+    """Whether no path of this length with at least this violation has a fitness below a limit."""
+    if objective.penalty == Penalty.death and violation <= FEASIBLE:
+        return False
+    return fitness(length, violation, objective) >= limit
+
+
+@allocation_free
+def _among_polygons(x, y, length, limit, objective):
+    """The part of `violation` for polygons, if there are no others."""
+    polygons = objective.polygons
     samples = len(x)
     total, colliding = 0.0, 0
     for o in range(len(polygons.deepest)):
         left, right, bottom, top = polygons.boxes[o]
+        near = 0
+        for s in range(samples):
+            near += (left < x[s]) & (x[s] < right) & (bottom < y[s]) & (y[s] < top)
+        if near == 0:
+            continue
         edges = polygons.edges[polygons.first[o] : polygons.first[o + 1]]
         depths = 0.0
         for s in range(samples):
             if left < x[s] < right and bottom < y[s] < top:
                 depth = _depth(x[s], y[s], edges)
-                depths += depth / polygons.deepest[o]
-                colliding += depth > 0.0
+                if depth > 0.0:
+                    depths += depth / polygons.deepest[o]
+                    colliding += 1
+                    if _is_lost(length, total + depths / samples, limit, objective):
+                        return total + depths / samples, colliding
         total += depths / samples
     return total, colliding
 
@@ -181,20 +207,25 @@ def _depth(x, y, edges):
     edges.
     """
     inside = False
+    for e in range(len(edges)):
+        x1, y1, x2, y2 = edges[e]
+        if (y1 > y) != (y2 > y) and x < x1 + (y - y1) / (y2 - y1) * (x2 - x1):
+            inside = not inside
+    if not inside:
+        return 0.0
     nearest = np.inf
     for e in range(len(edges)):
         x1, y1, x2, y2 = edges[e]
         dx, dy = x2 - x1, y2 - y1
-        if (y1 > y) != (y2 > y) and x < x1 + (y - y1) / dy * dx:
-            inside = not inside
         along = min(max(((x - x1) * dx + (y - y1) * dy) / (dx * dx + dy * dy), 0.0), 1.0)
         nearest = min(nearest, (x1 + along * dx - x) ** 2 + (y1 + along * dy - y) ** 2)
-    return np.sqrt(nearest) if inside else 0.0
+    return np.sqrt(nearest)
 
 
 @allocation_free
-def _among_balls(curve, balls, squares):
-    """The parts of `violation` for circles or spheres (obstacles, d + 1)."""
+def _among_balls(curve, length, limit, objective, squares):
+    """The part of `violation` for circles or spheres."""
+    balls = objective.balls
     dimensions, samples = curve.shape
     x, y = curve[0], curve[1]
     total, colliding = 0.0, 0
@@ -218,4 +249,6 @@ def _among_balls(curve, balls, squares):
                     depth += max(1.0 - np.sqrt(squares[s]) / radius, 0.0)
             total += depth / samples
             colliding += inside
+            if _is_lost(length, total, limit, objective):
+                break
     return total, colliding

@@ -1,0 +1,284 @@
+"""Run time of each planner beside the least that its evaluations cost: `make benchmark ARGS=least`.
+
+A run is made once more with its kernels as plain Python functions, all but the inner ones, which stay compiled and whose calls are counted:
+nothing is added to a kernel. The least is what that many operations cost in kernels that do nothing else.
+"""
+
+import sys
+from collections import Counter
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack
+from functools import cache, partial
+from types import ModuleType
+from typing import Any
+from unittest import mock
+
+import numpy as np
+from numba import njit
+from numba.core.dispatcher import Dispatcher
+from runs import methods
+from timing import cpu_seconds
+
+from bezierplan.geometry import cell_length
+from bezierplan.planners import Plan, abc_ep, ant_colony, bca, binary_genetic, grid_genetic, prm
+from bezierplan.planners.parts import cell_paths, gene_curves, penalised
+from bezierplan.running import execution, problems
+from bezierplan.study import definition, jobs, reading
+from bezierplan.workspaces import ground
+
+ROUNDS = 7
+_SAMPLES, _POINTS, _OBSTACLES = 100, 8, 10
+
+Count = Callable[..., dict[str, int]]
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# What one operation costs
+
+OPERATIONS = {
+    "terms": "a control point's share of a sample, in x and y",
+    "roots": "a chord's length",
+    "obstacles": "a sample and a circle or box",
+    "edges": "a point and an edge, or a segment and a circle",
+    "cells": "a cell looked up",
+}
+
+
+@njit(cache=True)
+def _terms(weights, points, x, y):
+    for k in range(len(points)):
+        column, row = points[k, 0], points[k, 1]
+        for s in range(len(x)):
+            x[s] += weights[k, s] * column
+            y[s] += weights[k, s] * row
+
+
+@njit(cache=True)
+def _roots(x, y, chords):
+    total = 0.0
+    for s in range(len(chords)):
+        dx, dy = x[s + 1] - x[s], y[s + 1] - y[s]
+        chords[s] = np.sqrt(dx * dx + dy * dy)
+    for s in range(len(chords)):
+        total += chords[s]
+    return total
+
+
+@njit(cache=True)
+def _obstacles(x, y, circles):
+    inside = 0
+    for k in range(len(circles)):
+        column, row, square = circles[k, 0], circles[k, 1], circles[k, 2]
+        for s in range(len(x)):
+            dx, dy = x[s] - column, y[s] - row
+            inside += dx * dx + dy * dy < square
+    return inside
+
+
+@njit(cache=True)
+def _edges(x, y, edges):
+    nearest = np.inf
+    for s in range(len(x)):
+        for k in range(len(edges)):
+            dx, dy = edges[k, 2] - edges[k, 0], edges[k, 3] - edges[k, 1]
+            share = ((x[s] - edges[k, 0]) * dx + (y[s] - edges[k, 1]) * dy) / (dx * dx + dy * dy)
+            share = min(max(share, 0.0), 1.0)
+            nearest = min(nearest, (edges[k, 0] + share * dx - x[s]) ** 2 + (edges[k, 1] + share * dy - y[s]) ** 2)
+    return nearest
+
+
+@njit(cache=True)
+def _cells(x, y, occupied):
+    bad = 0
+    for s in range(len(x)):
+        bad += occupied[int(y[s]), int(x[s])]
+    return bad
+
+
+@njit(cache=True)
+def _repeat(kernel, arguments, times):
+    for _ in range(times):
+        kernel(*arguments)
+
+
+def costs() -> dict[str, float]:
+    """CPU seconds of one operation of each kind."""
+    rng = np.random.default_rng(0)
+    x, y, chords = *(16 * rng.random((2, _SAMPLES))), np.empty(_SAMPLES - 1)
+    weights, points = rng.random((_POINTS, _SAMPLES)), rng.random((_POINTS, 2))
+    works = {
+        "terms": (_terms, (weights, points, np.zeros(_SAMPLES), np.zeros(_SAMPLES)), _POINTS * _SAMPLES),
+        "roots": (_roots, (x, y, chords), _SAMPLES - 1),
+        "obstacles": (_obstacles, (x, y, 16 * rng.random((_OBSTACLES, 3))), _OBSTACLES * _SAMPLES),
+        "edges": (_edges, (x, y, 16 * rng.random((_OBSTACLES, 4))), _OBSTACLES * _SAMPLES),
+        "cells": (_cells, (x, y, rng.random((16, 16)) < 0.2), _SAMPLES),
+    }
+    times = 20_000
+    return {
+        name: cpu_seconds(partial(_repeat, kernel, arguments, times), ROUNDS) / (times * number)
+        for name, (kernel, arguments, number) in works.items()
+    }
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# What a run is asked to do: the operations of a call, from its result and its arguments
+
+
+def _written_samples(_, points, last, first, stride, count, *__):
+    return {"terms": count * len(points)}
+
+
+def _particle(_, particle, objective, *__):
+    n, samples = objective.free.shape
+    return {"terms": n * samples, "roots": samples - 1}
+
+
+def _violation(_, curve, length, limit, objective, __):
+    x, y = curve[0], curve[1]
+    polygons = objective.polygons
+    done = Counter(obstacles=(len(objective.balls) + len(polygons.deepest)) * len(x))
+    for (left, right, bottom, top), edges in zip(polygons.boxes, np.diff(polygons.first)):
+        done["edges"] += int(((left < x) & (x < right) & (bottom < y) & (y < top)).sum() * edges)
+    return done
+
+
+def _measured_by_bca(found, genes, cells, curve, scratch, with_clearance):
+    samples = curve.ends.shape[1]
+    done = Counter(terms=len(genes) * samples, roots=samples - 1, cells=samples)
+    if with_clearance and found[1] == 0:
+        rows, columns = cells.occupied.shape
+        at = columns * np.minimum(scratch[1].astype(int), rows - 1) + np.minimum(scratch[0].astype(int), columns - 1)
+        done["obstacles"] += int((cells.first[at + 1] - cells.first[at]).sum())
+    return done
+
+
+def _stretch(_, cells, occupied, places, basis, stretch, *__):
+    first_point, last_point, first, last = stretch
+    return {"terms": (last_point - first_point + 1) * (last - first + 1), "roots": last - first, "cells": last - first}
+
+
+class _Looked:
+    """Cells that count how often one is looked up."""
+
+    def __init__(self, occupied: np.ndarray) -> None:
+        self.occupied, self.shape, self.times = occupied, occupied.shape, 0
+
+    def __getitem__(self, place: tuple[int, int]) -> bool:
+        self.times += 1
+        return self.occupied[place]
+
+
+def _leg(_, occupied, *ends, is_free_leg=cell_length.is_free_leg.py_func):
+    looked = _Looked(occupied)
+    is_free_leg(looked, *ends)
+    return {"cells": looked.times}
+
+
+def _cells_of_walk(size, rng, walker, walk, count, goal):
+    return {"cells": 8 * ((size or count + walker.longest_walk) - count)}
+
+
+COUNTS: dict[Dispatcher, Count] = {
+    cell_length.write_samples: _written_samples,
+    cell_length.sum_of_steps: lambda _, x, *__: {"roots": max(len(x) - 1, 0)},
+    cell_length.occupied_cells: lambda _, columns, *__: {"cells": len(columns)},
+    cell_length.is_free_leg: _leg,
+    gene_curves._reach: lambda *_: {"cells": 1},
+    penalised.length: _particle,
+    penalised.violation: _violation,
+    bca._measure: _measured_by_bca,
+    binary_genetic._measure: _stretch,
+    abc_ep._length: lambda *_: {"roots": 1},
+    ant_colony._walk: lambda _, rng, lattice, trail, heuristic, rules, path, visits, ant: {"cells": 8 * int((visits == ant).sum())},
+    cell_paths.length: lambda _, path, lattice: {"cells": len(path)},
+    cell_paths.step_between: lambda *_: {"cells": 8},
+    cell_paths.forage: lambda *_: {"cells": 8},
+    grid_genetic._extend: _cells_of_walk,
+    grid_genetic._cost: lambda _, path, count, *__: {"cells": count},
+    ground.obstacles_met: lambda *_: {"cells": 1},
+    ground.edge_energy: lambda *_: {"cells": 1},
+    prm._nearest: lambda _, points, neighbours: {"obstacles": len(points) ** 2},
+}
+
+
+def operations(run: Callable[[], Plan]) -> tuple[Plan, Counter]:
+    """The plan of a run and the operations that it was asked for, by kind."""
+    done: Counter = Counter()
+
+    def counting(kernel: Dispatcher, count: Count) -> Callable:
+        def call(*arguments: Any) -> Any:
+            found = kernel(*arguments)
+            done.update(count(found, *arguments))
+            return found
+
+        return call
+
+    counted = {kernel: counting(kernel, count) for kernel, count in COUNTS.items()}
+    own = [module for name, module in sys.modules.items() if name.startswith("bezierplan.")]
+    kernels = [(module, name, each) for module in own for name, each in vars(module).items() if isinstance(each, Dispatcher)]
+    plain = [(module, name, counted.get(kernel, kernel.py_func)) for module, name, kernel in kernels if _leads_to_one(kernel)]
+    with ExitStack() as stack, np.errstate(all="ignore"):
+        for module, name, function in plain:
+            stack.enter_context(mock.patch.object(module, name, function))
+        return run(), done
+
+
+@cache
+def _leads_to_one(kernel: Dispatcher) -> bool:
+    """Whether a kernel counts, or calls one that does, itself or through others."""
+    return kernel in COUNTS or any(map(_leads_to_one, _called(kernel)))
+
+
+def _called(kernel: Dispatcher) -> Iterator[Dispatcher]:
+    names, known = kernel.py_func.__code__.co_names, kernel.py_func.__globals__
+    own = [known[name] for name in names if name in known]
+    for module in [each for each in own if isinstance(each, ModuleType)]:
+        own += [getattr(module, name) for name in names if hasattr(module, name)]
+    return (each for each in own if isinstance(each, Dispatcher) and each is not kernel)
+
+
+# ---------------------------------------------------------------------------------------------------------------------
+# Table
+
+# Beside the first method of each planner of a study: those whose work is of another kind.
+ALSO = {
+    "song2016": ["smooth_cubic", "smooth_single", "nonsmooth"],
+    "elhoseny2017": ["mga_plain", "mga_c"],
+    "ma2020": ["bca_q", "aco_strong", "ga_strong", "aco_ga_strong"],
+    "tharwat2018": ["cpso2_singer"],
+}
+
+
+def _chosen(study: definition.Study) -> Iterator[tuple[str, str]]:
+    """Experiment and method of the first method of each planner, and of those of `ALSO`."""
+    seen = set()
+    for experiment, method in methods(study):
+        planner = study.planner(method)
+        if planner not in seen or method in ALSO.get(study.key, []):
+            seen.add(planner)
+            yield experiment, method
+
+
+def benchmark_least() -> None:
+    """Run time, the least that its evaluations cost, and their ratio, under the first condition of a method's first experiment."""
+    cost = costs()
+    print(f"\n{'one operation':26}{'CPU ns':>12}")
+    for name, seconds in cost.items():
+        print(f"  {OPERATIONS[name] + ' (' + name + ')':60}{1e9 * seconds:8.2f}")
+    print(f"\n{'a run':34}{'ms':>10}{'least':>10}{'ratio':>8}   thousands of {', '.join(OPERATIONS)}")
+    for key, study in reading.load(reading.read_config({})).items():
+        for experiment, method in _chosen(study):
+            job = jobs.job(study, experiment, method, "smoke", 0)
+            made, _ = problems.build_all(jobs.problems_job(study, experiment, "smoke"), study.folder)
+            condition = next(execution.conditions(list(job["problems"]), job["vary"]))
+            run = partial(execution.run, job, condition, 0, made[condition.problem])
+            taken = cpu_seconds(run, ROUNDS)
+            found, done = operations(run)
+            if found.objective != run().objective:
+                sys.exit(f"{key} {method}: the run with counters ends in another path")
+            least = sum(cost[name] * number for name, number in done.items())
+            numbers = "".join(f"{done[name] / 1e3:10,.1f}" for name in OPERATIONS)
+            print(
+                f"  {key + ' ' + method:32}{1e3 * taken:10.2f}{1e3 * least:10.2f}{taken / least if least else np.nan:8.1f}{numbers}",
+                flush=True,
+            )
