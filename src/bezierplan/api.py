@@ -252,7 +252,7 @@ def read_map(
     ----------
     file : str or Path
         GeoJSON polygons (.geojson, .json), as GIS programs write them, also in projected coordinates; an occupancy map of ROS's map_server
-        (.yaml), or an image alone (.png, .pgm, .bmp); a MovingAI grid (.map), or cells as text (.txt).
+        (.yaml), or an image alone (.png, .pgm, .bmp); a MovingAI grid (.map), cells as text (.txt), or shapes of a drawing (.svg).
     cell : float, optional
         Side of a cell. Of text, 1 by default. Of polygons: makes a grid of them, for methods that need cells.
     rule : {"overlap", "centre"}, optional
@@ -264,7 +264,8 @@ def read_map(
     margin : float, optional
         Of GeoJSON without a border: how far the border lies from the obstacles, in the map's unit.
     resolution : float, optional
-        Of an image alone: side of a pixel, in the map's unit. Its lower left corner is at 0, 0, and dark pixels are occupied.
+        Of an image alone: side of a pixel, in the map's unit. Its lower left corner is at 0, 0, and dark pixels are occupied. Of a drawing:
+        length of a user unit, 1 by default.
     unknown : {"occupied", "free"}, optional
         What pixels of a ROS map or an image count as that are unknown; occupied by default.
     most_pixels : int, optional

@@ -70,6 +70,7 @@ maps:
              planners that need cells get --cell and --rule
   .yaml      an occupancy map of ROS's map_server, beside its image; unknown pixels count as occupied, or with --unknown free as free
   .png .pgm  an image alone, with --resolution; dark pixels are occupied, and the lower left corner is at 0,0
+  .svg       shapes of a drawing are obstacles, its viewBox is the border; --resolution is the length of a user unit (default: 1)
   .map       a MovingAI grid; --scenario FILE:NUMBER in place of --start and --target
   .txt       cells of . (free) and # (occupied), the top row first, of the side --cell
 
@@ -156,7 +157,9 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
         help="refuse a path that turns tighter than the turning radius, whose curvature jumps, or on which the footprint is not free",
     )
     parser.add_argument("--margin", type=float, metavar="D", help="how far the border lies from the obstacles of a .geojson without one")
-    parser.add_argument("--resolution", type=float, metavar="SIDE", help="side of a pixel of an image without a YAML file")
+    parser.add_argument(
+        "--resolution", type=float, metavar="SIDE", help="side of a pixel of an image without a YAML file, or a user unit of an .svg"
+    )
     parser.add_argument("--unknown", choices=("occupied", "free"), help="what unknown pixels count as (default: occupied)")
     parser.add_argument("--most-pixels", type=int, metavar="N", help="the most pixels of an image")
     parser.add_argument("--unit", metavar="NAME", help="the unit of length that is printed (default: m, of grids cell)")
