@@ -17,6 +17,8 @@ import numpy as np
 
 import bezierplan
 from bezierplan.workspaces.circles import Circles
+from bezierplan.workspaces.footprint import Footprint
+from bezierplan.workspaces.footprint import footprint as outline_of
 from bezierplan.workspaces.grid import Grid
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Path, Problem, Workspace
@@ -33,6 +35,7 @@ __all__ = bezierplan.__all__
 
 Method = str | Callable[..., Any] | ModuleType
 Via = Sequence[tuple[float, float]]
+Corners = Sequence[tuple[float, float]]
 
 
 @dataclass(frozen=True)
@@ -47,17 +50,24 @@ class Judged:
     length : float
         Exact arc length, in the map's unit; nan without a path.
     feasible : bool
-        Whether the path stays out of every obstacle and within the border.
+        Whether the path stays out of every obstacle and within the border; with a footprint, whether that does.
     collision : tuple of float or None
-        The first point (x, y) at which it enters an obstacle.
+        The first point (x, y) of the path at which it or the footprint enters an obstacle.
     depth : float
-        How deeply it enters, in the map's unit; 0 if it is feasible.
+        How deeply the path itself enters, in the map's unit; 0 if it does not.
     clearance : float
-        Least distance to an obstacle or the border of the map itself, in the map's unit; 0 if the path enters one.
+        Least distance of the path, or of the footprint along it, to an obstacle or the border of the map itself, in the map's unit; 0 if it
+        enters one.
     robot_radius : float
-        The clearance that a feasible path keeps, in the map's unit.
+        The clearance that a feasible path keeps, in the map's unit; of a footprint, the radius of the circle within it.
+    footprint : Footprint or None
+        The robot's outline, which turns with the direction of travel.
     curvature : float
         Largest absolute curvature of samples, in 1/unit; corners have none.
+    curvature_bound : float
+        What it is nowhere more than, certified by subdivision; infinite at a cusp, and where the curve stands still.
+    curvature_jump : float
+        Its largest jump between two pieces of the path; infinite at a corner.
     corners : bool
         Whether the direction of travel jumps somewhere.
     shortest : float
@@ -74,9 +84,12 @@ class Judged:
     depth: float
     clearance: float
     curvature: float
+    curvature_bound: float
+    curvature_jump: float
     corners: bool
     shortest: float
     robot_radius: float
+    footprint: Footprint | None
     via: tuple[tuple[float, float], ...]
 
     @property
@@ -181,6 +194,8 @@ class Answer(Judged):
     turning_radius : float
         Radius of the tightest turn, where the planner is `rounded_shortest_path` or `dubins_search`: 0 where a corner is left, infinite
         without turns; nan of other planners.
+    planned_radius : float
+        Radius of the disc for which the path was planned, in the map's unit: with a footprint, from the circle within it to that around it.
     """
 
     method: str
@@ -191,6 +206,7 @@ class Answer(Judged):
     history: np.ndarray = field(repr=False)
     stop: str
     turning_radius: float
+    planned_radius: float
 
 
 @dataclass(frozen=True)
@@ -222,7 +238,7 @@ def read_map(
     ----------
     file : str or Path
         GeoJSON polygons (.geojson, .json), as GIS programs write them, also in projected coordinates; an occupancy map of ROS's map_server
-        (.yaml), or an image alone (.png, .pgm, .bmp); a MovingAI grid (.map), or cells as text (.txt).
+        (.yaml), or an image alone (.png, .pgm, .bmp); a MovingAI grid (.map), cells as text (.txt), or shapes of a drawing (.svg).
     cell : float, optional
         Side of a cell. Of text, 1 by default. Of polygons: makes a grid of them, for methods that need cells.
     rule : {"overlap", "centre"}, optional
@@ -234,7 +250,8 @@ def read_map(
     margin : float, optional
         Of GeoJSON without a border: how far the border lies from the obstacles, in the map's unit.
     resolution : float, optional
-        Of an image alone: side of a pixel, in the map's unit. Its lower left corner is at 0, 0, and dark pixels are occupied.
+        Of an image alone: side of a pixel, in the map's unit. Its lower left corner is at 0, 0, and dark pixels are occupied. Of a drawing:
+        length of a user unit, 1 by default.
     unknown : {"occupied", "free"}, optional
         What pixels of a ROS map or an image count as that are unknown; occupied by default.
     most_pixels : int, optional
@@ -292,7 +309,7 @@ def shortest_path(problem: Problem) -> Shortest:
     return Shortest(bound.length, bound.points + shifted.shift_of(placed.workspace))
 
 
-def check(problem: Problem, path: Path) -> Judged:
+def check(problem: Problem, path: Path, footprint: Corners | None = None) -> Judged:
     """Judge any path by exact geometry.
 
     Parameters
@@ -300,6 +317,9 @@ def check(problem: Problem, path: Path) -> Judged:
     problem : Problem
     path : Path
         A curve kind and its control points (n, 2); its ends need not be those of the problem.
+    footprint : sequence of tuple of float, optional
+        Corners (x, y) of the robot, a convex polygon, in the map's unit: x ahead and y to the left of the point that follows the path. At a
+        corner of the path the robot turns on the spot.
 
     Returns
     -------
@@ -308,7 +328,8 @@ def check(problem: Problem, path: Path) -> Judged:
     Raises
     ------
     ValueError
-        For a curve kind that is unknown, points of the wrong shape, or coordinates that are not finite or too large.
+        For a curve kind that is unknown, points of the wrong shape, or coordinates that are not finite or too large; for a footprint that
+        is not convex, or on a map that has grown by a robot's radius.
 
     Examples
     --------
@@ -318,17 +339,22 @@ def check(problem: Problem, path: Path) -> Judged:
     (True, 4.071, 0.5)
     """
     from bezierplan.geometry import curves, shortest_paths
-    from bezierplan.running import problems
+    from bezierplan.running import footprints, problems
     from bezierplan.workspaces import shifted
 
     regions = problems.remembered()
+    outline = None if footprint is None else outline_of(footprint)
+    footprints.check_map(outline, problem.workspace, 0.0)
     placed = _placed(problem, regions)
     x, y = shifted.shift_of(placed.workspace)
     bound = shortest_paths.shortest_path(shifted.near_problem(placed), blocked=regions(placed.workspace))
-    return Judged(**verdict(placed, curves.moved(path, (-x, -y)), bound.length, regions) | {"path": path})
+    judged = verdict(placed, curves.moved(path, (-x, -y)), bound.length, regions, footprint=outline)
+    return Judged(**judged | {"path": path})
 
 
-def verdict(problem: Problem, path: Path | None, shortest: float, regions: Regions, via: Via = ()) -> dict[str, Any]:
+def verdict(
+    problem: Problem, path: Path | None, shortest: float, regions: Regions, via: Via = (), footprint: Footprint | None = None
+) -> dict[str, Any]:
     """The fields of `Judged` for a path, or for none.
 
     path: on the map where it is computed with (`shifted`). shortest: length of the exact shortest path. regions: the blocked regions of
@@ -337,32 +363,40 @@ def verdict(problem: Problem, path: Path | None, shortest: float, regions: Regio
     """
     from bezierplan.analysis.measures import CURVATURE_SAMPLES
     from bezierplan.geometry import checker, curves
+    from bezierplan.geometry.checker.footprint import check_footprint
+    from bezierplan.geometry.curvature_bound import largest_curvature
     from bezierplan.workspaces import robot, shifted
-    from bezierplan.workspaces.grown import grown_of
+    from bezierplan.workspaces.grown import grown_of, original
 
     grown = grown_of(problem.workspace)
-    asked = {"robot_radius": grown.radius if grown else 0.0, "via": tuple(via), "shortest": shortest}
+    asked = {"robot_radius": grown.radius if grown else 0.0, "via": tuple(via), "shortest": shortest, "footprint": footprint}
     if path is None:
-        nothing = dict.fromkeys(("length", "depth", "clearance", "curvature"), math.nan)
+        nothing = dict.fromkeys(("length", "depth", "clearance", "curvature", "curvature_bound", "curvature_jump"), math.nan)
         return {"problem": problem, "path": None, **nothing, "feasible": False, "collision": None, "corners": False, **asked}
     pieces = curves.bezier_pieces(path)
     verdict = checker.check(pieces, regions(problem.workspace))
     clearance = checker.check(pieces, regions(grown.original)).clearance if grown else verdict.clearance
     if grown and verdict.feasible and clearance < grown.radius - robot.TOLERANCE:
         raise ValueError(f"its path is feasible, but {clearance:.12g} from an obstacle, less than the robot's radius: the checker is wrong")
+    jump = curves.curvature_jump(path)
     kappa, _ = curves.curvature(path, max(CURVATURE_SAMPLES, 20 * len(pieces) + 1))
     shift = shifted.shift_of(problem.workspace)
-    collision = None if verdict.feasible else tuple((curves.point_at(path, verdict.collision_at) + shift).tolist())
+    feasible, collision_at = verdict.feasible, verdict.collision_at
+    if footprint and feasible:
+        feasible, collision_at, clearance, _ = check_footprint(pieces, regions(original(problem.workspace)), footprint)
+    collision = None if feasible else tuple((curves.point_at(path, collision_at) + shift).tolist())
     return {
         "problem": problem,
         "path": curves.moved(path, shift),
         "length": curves.length(path),
-        "feasible": verdict.feasible,
+        "feasible": feasible,
         "collision": collision,
         "depth": verdict.depth,
         "clearance": clearance,
         "curvature": float(np.nan_to_num(np.abs(kappa)).max()),
-        "corners": not math.isfinite(curves.curvature_jump(path)),
+        "curvature_bound": largest_curvature(pieces).bound,
+        "curvature_jump": jump,
+        "corners": not math.isfinite(jump),
         **asked,
     }
 
@@ -373,7 +407,9 @@ def plan(
     *,
     seed: int = 0,
     robot_radius: float = 0.0,
+    footprint: Corners | None = None,
     via: Via = (),
+    smooth: str = "arcs",
     strict: bool = False,
     **settings: Any,
 ) -> Answer:
@@ -390,11 +426,18 @@ def plan(
         Of the random numbers.
     robot_radius : float
         Radius of the robot, in the map's unit: obstacles grow by it and the border shrinks. 0 if the map was read with one.
+    footprint : sequence of tuple of float, optional
+        In place of a radius: corners (x, y) of the robot, a convex polygon, x ahead and y to the left of the point that follows the path.
+        Discs are planned for, from the circle within the footprint to that around it, until the footprint itself is free along the path.
     via : sequence of tuple of float
         Way points (x, y), in their order: the path joins paths from one to the next. For the planners without a method, `dubins_search`
         and `shortest_path`.
+    smooth : {"arcs", "continuous"}
+        Whether the path turns along arcs, or with a curvature that rises and falls along transitions, wherever there is room for these. For
+        the planners without a method and `dubins_search`.
     strict : bool
-        Whether a turning radius that cannot be kept everywhere is an error. For the planners without a method and `dubins_search`.
+        Whether a turning radius that cannot be kept everywhere is an error, a footprint that is free along no path, and a curvature that
+        should be continuous and jumps. For the planners without a method and `dubins_search`.
     **settings
         Settings in place of the method's own. Without a method: `turning_radius`; `start_heading` and `target_heading`, directions at the
         ends, in radians counterclockwise from the x-axis, None for any.
@@ -423,23 +466,67 @@ def plan(
     >>> wide.feasible, round(wide.length, 3), round(wide.clearance, 6)
     (True, 9.156, 0.5)
     """
-    from bezierplan.running import answer as door
-    from bezierplan.running import legs, problems
-    from bezierplan.running.columns import TAKEN
+    from bezierplan.running import footprints, legs, problems
 
     if not isinstance(seed, int | np.integer) or isinstance(seed, bool) or seed < 0:
         raise ValueError(f"seed: {seed!r}; expected a whole number of at least 0")
     _check_problem(problem)
-    name, module, preset = _method(method, problem, settings)
-    chosen, regions = preset | settings, problems.remembered()
-    problem = _placed(_grown(problem, robot_radius), regions, getattr(module, "workspaces", None))
+    named, regions = _method(method, problem, settings), problems.remembered()
+    legs.check_planner(_planner_name(*named[:2]), via, strict, smooth)
+    served = getattr(named[1], "workspaces", None)
+    if footprint is None:
+        planned = _planned(_placed(_grown(problem, robot_radius), regions, served), named, seed, via, smooth, settings, regions)
+    else:
+        outline = outline_of(footprint)
+        footprints.check_map(outline, problem.workspace, robot_radius)
+
+        def attempt(radius: float, first: Answer | None) -> Answer | None:
+            try:
+                placed = _placed(_grown(problem, radius), regions, served)
+                legs.legs(placed, via, regions)
+            except ValueError:  # no room for a disc that large
+                if first is None:
+                    raise
+                return None
+            answer = _planned(placed, named, seed, via, smooth, settings, regions, outline, first)
+            return None if first and answer.path is None else answer
+
+        planned = footprints.first_that_holds(outline, attempt, lambda answer: answer.feasible)
+    if strict:
+        footprints.check_held(planned.footprint, planned.feasible)
+        legs.check_continuous(smooth, planned.curvature_jump, planned.curvature_bound, problem.workspace.unit)
+        legs.check_kept(planned.settings["turning_radius"], planned.turning_radius, problem.workspace.unit)
+    return planned
+
+
+def _planned(
+    problem: Problem,
+    named: tuple[str, Any, dict[str, Any]],
+    seed: int,
+    via: Via,
+    smooth: str,
+    settings: Mapping[str, Any],
+    regions: Regions,
+    footprint: Footprint | None = None,
+    judged_as: Answer | None = None,
+) -> Answer:
+    """The answer of a method, given by name, module and settings, to a problem on a map for the robot's centre.
+
+    judged_as: an answer on the map and by the shortest path of which this one is judged, if not by its own.
+    """
+    from bezierplan.running import answer as door
+    from bezierplan.running import legs
+    from bezierplan.running.columns import TAKEN
+    from bezierplan.workspaces.grown import grown_of
+
+    name, module, preset = named
+    chosen = preset | settings
     _check_settings(name, module, chosen, problem)
-    planner = getattr(module, "__name__", name).removeprefix("bezierplan.planners.")
-    legs.check_planner(planner, via, strict)
+    planner = _planner_name(name, module)
     parts, blocked = legs.legs(problem, via, regions), regions(problem.workspace)
     bounds = legs.shortest(parts, blocked)
     if planner in legs.TURNING:
-        answer = legs.solved(planner, parts, bounds, blocked, chosen)
+        answer = legs.solved(planner, parts, bounds, blocked, chosen, smooth)
     else:
         answer = legs.joined([_answered(part, name, module, seed, chosen) for part in parts])
     try:
@@ -447,12 +534,12 @@ def plan(
         answer = door.accepted(answer, whole, {*TAKEN, *chosen})
     except door.Unfit as fault:
         raise ValueError(f"the answer of planner {name}: {fault}") from None
-    kept = legs.kept(planner, answer, chosen)
-    if strict:
-        legs.check_kept(chosen["turning_radius"], kept, problem.workspace.unit)
+    grown = grown_of(problem.workspace)
+    home, shortest = (judged_as.problem, judged_as.shortest) if judged_as else (problem, legs.whole(bounds).length)
     return Answer(
-        **verdict(problem, answer.path, legs.whole(bounds).length, regions, via),
-        turning_radius=kept,
+        **verdict(home, answer.path, shortest, regions, via, footprint),
+        turning_radius=legs.kept(planner, answer, chosen),
+        planned_radius=grown.radius if grown else 0.0,
         method=name,
         settings=chosen,
         claimed_feasible=answer.claimed_feasible,
@@ -461,6 +548,10 @@ def plan(
         history=answer.history,
         stop=answer.stop,
     )
+
+
+def _planner_name(name: str, module: Any) -> str:
+    return getattr(module, "__name__", name).removeprefix("bezierplan.planners.")
 
 
 def _answered(problem: Problem, name: str, module: Any, seed: int, settings: Mapping[str, Any]) -> Plan:
@@ -659,9 +750,11 @@ def replay(run: str) -> Answer:
         raise ValueError(f"run: {run}: is a drive; expected a run in a world that stands still, or `bezierplan replay`")
     names = planner_settings(planner_module(row["planner"]))
     problem = made.problems[row["problem"]]
+    judged = verdict(problem, path_of(row), shortest_path(problem).length, problems.remembered())
     return Answer(
-        **verdict(problem, path_of(row), shortest_path(problem).length, problems.remembered()),
+        **judged,
         turning_radius=float(row.get("least_radius", math.nan)),
+        planned_radius=judged["robot_radius"],
         method=f"{study}/{method}",
         settings={name: row[name] for name in names},
         claimed_feasible=bool(row["claimed_feasible"]),

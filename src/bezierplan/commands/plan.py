@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path as File
 from types import ModuleType
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from bezierplan import api
 from bezierplan.geometry import checker, shortest_paths
 from bezierplan.places import TREE
 from bezierplan.planners import Plan, known_planners, planner_module
-from bezierplan.running import answer, interface, legs, problems, watchdog
+from bezierplan.running import answer, footprints, interface, legs, problems, watchdog
 from bezierplan.running.columns import TAKEN
 from bezierplan.running.loans import lend
 from bezierplan.running.problems import Regions
@@ -25,8 +25,9 @@ from bezierplan.schema import checked
 from bezierplan.schema.checked import Fault, closest
 from bezierplan.schema.model import is_line
 from bezierplan.workspaces import map_files, robot
+from bezierplan.workspaces.footprint import Footprint, footprint
 from bezierplan.workspaces.grid import Grid
-from bezierplan.workspaces.grown import original
+from bezierplan.workspaces.grown import grown_of, original
 from bezierplan.workspaces.polygons import Polygons
 from bezierplan.workspaces.problem import Problem, Workspace
 from bezierplan.workspaces.text_file import is_count
@@ -36,7 +37,7 @@ OUT = (*PICTURES, ".csv", ".geojson", ".yaml", ".yml")
 
 _FROM_MAPS = (
     *("start", "target", "via", "cell", "rule", "margin", "resolution", "unknown", "most_pixels", "scenario"),
-    *("robot_radius", "strict", "turning_radius"),
+    *("robot_radius", "footprint", "smooth", "strict", "turning_radius"),
 )
 """What messages about a map or a problem may begin with: here these are options."""
 
@@ -49,8 +50,15 @@ the robot:
   --robot-radius R  every path keeps the distance R from the obstacles and the border of the map, on maps of all kinds: obstacles grow by R,
                     round at corners to a ten-thousandth of R, and the shortest path is that of the robot's centre. Cells with more than
                     {robot.MOST_CORNERS:,} corners grow by whole cells
+  --footprint F     in place of a radius, the corners of a convex polygon, as nav2 writes them: [[x, y], ...], x ahead and y to the left of
+                    the point that follows the path. The path is planned for discs, from the circle within the footprint to that around it,
+                    until the footprint, turned by the path's heading, is free all along; that is certified, not sampled. At a corner of
+                    the path the robot turns on the spot. With --strict a path along which it is not free is refused
   turning radius    a setting of the default planner. Where rounding has no room for it, a path that keeps it is searched; if none is found,
                     the radius that is kept is printed beside it. With --strict such a path is refused
+  --smooth continuous
+                    transitions between lines and arcs, along which the curvature rises and falls, wherever there is room for them. The
+                    largest curvature that is printed is certified for every path, and not that of samples
   headings          --start X,Y,THETA and --target X,Y,THETA: the direction of travel there, in radians, counterclockwise from the x-axis.
                     The path turns no tighter than the turning radius: the shortest one without obstacles, if it is free (Dubins), or else
                     one by a search (hybrid A*), pulled tight
@@ -62,6 +70,7 @@ maps:
              planners that need cells get --cell and --rule
   .yaml      an occupancy map of ROS's map_server, beside its image; unknown pixels count as occupied, or with --unknown free as free
   .png .pgm  an image alone, with --resolution; dark pixels are occupied, and the lower left corner is at 0,0
+  .svg       shapes of a drawing are obstacles, its viewBox is the border; --resolution is the length of a user unit (default: 1)
   .map       a MovingAI grid; --scenario FILE:NUMBER in place of --start and --target
   .txt       cells of . (free) and # (occupied), the top row first, of the side --cell
 
@@ -140,9 +149,17 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     )
     parser.add_argument("--rule", choices=("overlap", "centre"), help="which cells obstacles occupy (default: overlap)")
     parser.add_argument("--robot-radius", type=float, metavar="R", help="the distance that the path keeps from obstacles and border")
-    parser.add_argument("--strict", action="store_true", help="refuse a path that turns tighter than the turning radius")
+    parser.add_argument("--footprint", metavar="'[[X, Y], ...]'", help="the robot's outline, a convex polygon, in place of a radius")
+    parser.add_argument("--smooth", choices=legs.SMOOTH, default=legs.SMOOTH[0], help="turn along arcs, or with continuous curvature")
+    parser.add_argument(
+        "--strict",
+        action="store_true",
+        help="refuse a path that turns tighter than the turning radius, whose curvature jumps, or on which the footprint is not free",
+    )
     parser.add_argument("--margin", type=float, metavar="D", help="how far the border lies from the obstacles of a .geojson without one")
-    parser.add_argument("--resolution", type=float, metavar="SIDE", help="side of a pixel of an image without a YAML file")
+    parser.add_argument(
+        "--resolution", type=float, metavar="SIDE", help="side of a pixel of an image without a YAML file, or a user unit of an .svg"
+    )
     parser.add_argument("--unknown", choices=("occupied", "free"), help="what unknown pixels count as (default: occupied)")
     parser.add_argument("--most-pixels", type=int, metavar="N", help="the most pixels of an image")
     parser.add_argument("--unit", metavar="NAME", help="the unit of length that is printed (default: m, of grids cell)")
@@ -162,50 +179,114 @@ def _plan(given: Namespace) -> None:
     planner, settings = _planner(given, headings)
     module, regions = planner_module(planner), problems.remembered()
     with _as_options():
-        legs.check_planner(planner, given.via, given.strict)
+        legs.check_planner(planner, given.via, given.strict, given.smooth)
         via = [map_files.point("via", text) for text in given.via]
-        problem = _problem(given, planner, places, regions)
-        parts = legs.legs(problem, via, regions)
+        outline = _footprint(given)
+        described, home = _map(given, planner)
+        if outline:
+            home = robot.grow(home, footprints.radii(outline)[0])
+        problem = _problem(given, described, planner, places, home, regions)
+        legs.legs(problem, via, regions)
     if planner in legs.TURNING:
         settings = legs.preset(planner, problem.workspace) | settings
     interface.check_settings(module, settings, "--settings")
     if hasattr(module, "serves"):
         interface.asked(module.serves, f"--planner: {planner}", problem)
-    blocked = regions(problem.workspace)
-    bounds = legs.shortest(parts, blocked)
-    bound = legs.whole(bounds)
-    if not np.isfinite(bound.length):
-        raise Fault(f"--target: {given.target or given.scenario}: no free way leads there from the start; expected one that can be reached")
-    for _ in range(2):  # the first run also loads compiled code, so only the second is timed
-        if planner in legs.TURNING:
-            begin = time.process_time()
-            plan = legs.solved(planner, parts, bounds, blocked, settings)
-            seconds = time.process_time() - begin
-        else:
-            answers = [_answer(module, part, planner, settings, given.seed) for part in parts]
-            plan, seconds = legs.joined([answer for answer, _ in answers]), sum(taken for _, taken in answers)
-    kept = legs.kept(planner, plan, settings)
+    task = _Task(planner, module, settings, given.seed, via, given.smooth, regions)
+    solution = _solution(task, problem)
+    judged = _judged(task, problem, solution, solution.bound, outline)
+    if outline:
+
+        def attempt(radius: float, first: Any) -> tuple[_Solution, api.Judged] | None:
+            if first is None:
+                return solution, judged
+            try:
+                wide = _problem(given, described, planner, places, robot.grow(original(home), radius), regions)
+                found = _solution(task, wide)
+            except ValueError:  # no room for a disc that large
+                return None
+            return found, _judged(task, problem, found, solution.bound, outline)
+
+        solution, judged = footprints.first_that_holds(outline, attempt, lambda each: each[1].feasible)
+    kept = legs.kept(planner, solution.plan, settings)
     if given.strict:
         with _as_options():
+            footprints.check_held(outline, judged.feasible)
+            legs.check_continuous(given.smooth, judged.curvature_jump, judged.curvature_bound, problem.workspace.unit)
             legs.check_kept(settings["turning_radius"], kept, problem.workspace.unit)
-    try:
-        judged = api.Judged(**api.verdict(problem, plan.path, bound.length, regions, via))
-    except ValueError as error:
-        raise Fault(f"--planner: {planner}: {error}") from None
-    if judged.feasible and judged.length < shortest_paths.least_length(bound):
-        raise Fault(
-            f"--planner: {planner}: its path is {judged.length:.12g} long and feasible, but no free path is shorter than"
-            f" {bound.length:.12g}: the checker or the bound is wrong"
-        )
-    for name, text in _told(judged, planner, settings, plan.stop, kept, seconds):
+    for name, text in _told(judged, task, solution, kept):
         print(f"{name:16}{text}")
-    if given.out and plan.path is None:
+    if given.out and judged.path is None:
         raise Fault(f"--out: {given.out}: not written, {planner} found no path")
     if given.out:
         try:
             _write(given.out, judged, given.step)
         except OSError as error:  # such as a disk that is full by now
             raise _unwritable(given.out, error) from None
+
+
+class _Task(NamedTuple):
+    """What to plan with: a planner with its settings in force, way points, how smooth, and the blocked regions of maps."""
+
+    planner: str
+    module: ModuleType
+    settings: dict[str, Any]
+    seed: int
+    via: list[tuple[float, float]]
+    smooth: str
+    regions: Regions
+
+
+class _Solution(NamedTuple):
+    """A planner's answer, the CPU seconds that it took, the exact shortest path, and the radius of the disc for which both are."""
+
+    plan: Plan
+    seconds: float
+    bound: shortest_paths.Bound
+    radius: float
+
+
+def _solution(task: _Task, problem: Problem) -> _Solution:
+    """The planner's answer to a problem. Raises Fault without a free way, and if the planner fails."""
+    parts, blocked = legs.legs(problem, task.via, task.regions), task.regions(problem.workspace)
+    bounds = legs.shortest(parts, blocked)
+    bound = legs.whole(bounds)
+    if not np.isfinite(bound.length):
+        x, y = problem.target
+        raise Fault(f"--target: {x:.12g},{y:.12g}: no free way leads there from the start; expected one that can be reached")
+    for _ in range(2):  # the first run also loads compiled code, so only the second is timed
+        if task.planner in legs.TURNING:
+            begin = time.process_time()
+            plan = legs.solved(task.planner, parts, bounds, blocked, task.settings, task.smooth)
+            seconds = time.process_time() - begin
+        else:
+            answers = [_answer(task.module, part, task.planner, task.settings, task.seed) for part in parts]
+            plan, seconds = legs.joined([answer for answer, _ in answers]), sum(taken for _, taken in answers)
+    grown = grown_of(problem.workspace)
+    return _Solution(plan, seconds, bound, grown.radius if grown else 0.0)
+
+
+def _judged(task: _Task, problem: Problem, solution: _Solution, bound: shortest_paths.Bound, outline: Footprint | None) -> api.Judged:
+    """The verdict on a path, beside the exact shortest one. Raises Fault if the two contradict each other."""
+    try:
+        judged = api.Judged(**api.verdict(problem, solution.plan.path, bound.length, task.regions, task.via, outline))
+    except ValueError as error:
+        raise Fault(f"--planner: {task.planner}: {error}") from None
+    if judged.feasible and judged.length < shortest_paths.least_length(bound):
+        raise Fault(
+            f"--planner: {task.planner}: its path is {judged.length:.12g} long and feasible, but no free path is shorter than"
+            f" {bound.length:.12g}: the checker or the bound is wrong"
+        )
+    return judged
+
+
+def _footprint(given: Namespace) -> Footprint | None:
+    """The footprint that is asked for. Raises ValueError, naming the option, for one that is none, or beside a radius."""
+    if given.footprint is None:
+        return None
+    if given.robot_radius is not None:
+        raise Fault("--footprint: given beside --robot-radius, which is a footprint of its own; expected one of them")
+    return footprint(checked.parse(given.footprint, "--footprint"))
 
 
 def _check_words(given: Namespace) -> None:
@@ -274,33 +355,55 @@ def _answer(module: ModuleType, problem: Problem, planner: str, settings: dict[s
     return plan, seconds
 
 
-def _told(judged: api.Judged, planner: str, settings: dict[str, Any], stop: str, kept: float, seconds: float) -> list[tuple[str, str]]:
+def _told(judged: api.Judged, task: _Task, solution: _Solution, kept: float) -> list[tuple[str, str]]:
     """The names and values to print."""
-    home = judged.problem.workspace
+    home, planner, settings, seconds = judged.problem.workspace, task.planner, task.settings, solution.seconds
     unit = home.unit
     told = ", ".join(f"{name} {'any' if value is None else value}" for name, value in settings.items())
     lines = [("planner", planner), ("settings", told or "none")]
-    if judged.robot_radius:
+    if judged.footprint:
+        within, around = judged.footprint.inscribed, judged.footprint.circumscribed
+        lines.append(
+            ("footprint", f"{len(judged.footprint.corners)} corners, circles of {within:.6g} {unit} within and {around:.6g} around it")
+        )
+        lines.append(("planned for", f"a disc of {solution.radius:.6g} {unit}"))
+    elif judged.robot_radius:
         whole = f", by whole cells of {home.cell:g} {unit}" if isinstance(home, Grid) and not home.drawn else ""
         lines.append(("robot radius", f"{judged.robot_radius:g} {unit}{whole}"))
     lines.append(("shortest path", f"{judged.shortest:.6g} {unit}"))
     if judged.path is None:
-        return [*lines, ("path", f"none ({stop})"), ("CPU time", f"{seconds:.3g} s")]
+        return [*lines, ("path", f"none ({solution.plan.stop})"), ("CPU time", f"{seconds:.3g} s")]
     lines.append(("length", f"{judged.length:.6g} {unit}, {_told_number(100 * judged.gap, 3)} % above the shortest path"))
-    corners = ", and corners" if judged.corners else ""
-    lines.append(("curvature", f"at most {_told_number(judged.curvature, 6)} / {unit}{corners}"))
+    lines.append(("curvature", _told_curvature(judged, task.smooth)))
     if planner in legs.TURNING:
         asked = settings["turning_radius"]
         met = kept >= asked * (1 - 1e-9)
         lines.append(("turning radius", f"{asked:.6g} {unit} asked{' and kept' if met else f', {kept:.6g} {unit} kept'}"))
-    lines.append(("clearance", f"{_told_number(judged.clearance, 6)} {unit}"))
+    lines.append(("clearance", f"{_told_number(judged.clearance, 6)} {unit}{' of the footprint' if judged.footprint else ''}"))
     if judged.feasible:
         lines.append(("feasible", "yes"))
+    elif judged.footprint and not judged.depth:
+        x, y = judged.collision
+        lines.append(("feasible", f"no: the footprint enters an obstacle at {x:.6g},{y:.6g}; nor is it free on the paths of larger discs"))
     else:
         x, y = judged.collision
         what = "comes closer to an obstacle than the robot's radius" if judged.clearance > 0 else "enters an obstacle"
         lines.append(("feasible", f"no: {what} at {x:.6g},{y:.6g}, at most {judged.depth:.6g} {unit} deep"))
     return [*lines, ("CPU time", f"{seconds:.3g} s")]
+
+
+def _told_curvature(judged: api.Judged, smooth: str) -> str:
+    unit, bound = judged.problem.workspace.unit, judged.curvature_bound
+    if math.isfinite(bound):
+        told = f"at most {_told_number(bound, 6)} / {unit}"
+    else:
+        told = f"at most {_told_number(judged.curvature, 6)} / {unit} at samples, without a bound where the path stands still"
+    if judged.corners:
+        return f"{told}, and corners"
+    if smooth == "continuous":
+        continuous = legs.is_continuous(judged.curvature_jump, bound)
+        told += ", continuous" if continuous else f", jumps by up to {judged.curvature_jump:.3g} / {unit} where transitions have no room"
+    return told
 
 
 def _told_number(value: float, digits: int) -> str:
@@ -367,15 +470,23 @@ def _preset(planner: str) -> dict[str, Any]:
     return {}
 
 
-def _problem(given: Namespace, planner: str, places: dict[str, tuple[float, float]], regions: Regions) -> Problem:
-    """The map with start and target; as a grid if the planner needs cells."""
+def _map(given: Namespace, planner: str) -> tuple[dict[str, Any], Workspace]:
+    """The map's description, and the map, as a grid if the planner needs cells."""
     served = getattr(planner_module(planner), "workspaces", None)
     if given.robot_radius is not None:
         robot.check_radius(given.robot_radius)
     names = ("cell", "rule", "unit", "margin", "resolution", "unknown", "most_pixels", "scenario")
     options = {name: getattr(given, name) for name in names}
     described = map_files.described(given.map, **options, cells=map_files.needs_cells(served))
-    workspace = robot.suited(map_files.read(given.map, described, given.robot_radius), served)
+    return described, map_files.read(given.map, described, given.robot_radius)
+
+
+def _problem(
+    given: Namespace, described: dict[str, Any], planner: str, places: dict[str, tuple[float, float]], home: Workspace, regions: Regions
+) -> Problem:
+    """The map with start and target."""
+    served = getattr(planner_module(planner), "workspaces", None)
+    workspace = robot.suited(home, served)
     met = "polygons" if isinstance(workspace, Polygons) else "grid"
     if served is not None and met not in served:
         raise Fault(f"--planner: {planner}: serves workspaces of kind {', '.join(served)}, and a map is {met}")

@@ -195,12 +195,8 @@ def _grid_region(grid: Grid) -> GridRegion:
     blocked[::2, 1::2] = cells[:, :-1] & cells[:, 1:]
     around = occupied_around(cells)
     blocked[1::2, 1::2] = around.all(axis=0)
-    counts = np.zeros((blocked.shape[0] + 1, blocked.shape[1] + 1), dtype=np.int64)
-    np.cumsum(blocked, axis=1, out=counts[1:, 1:])
-    np.cumsum(counts[1:, 1:], axis=0, out=counts[1:, 1:])
-
     horizontal = _runs(cells[:-1, 1:-1] != cells[1:, 1:-1])
-    vertical = _runs((cells[1:-1, :-1] != cells[1:-1, 1:]).T)
+    vertical = _runs(np.ascontiguousarray((cells[1:-1, :-1] != cells[1:-1, 1:]).T))
     edges = np.ascontiguousarray(np.concatenate([horizontal[:, [1, 0, 2, 0]], vertical[:, [0, 1, 0, 2]]]) * grid.cell)
 
     below_left, below_right, above_left, above_right = around
@@ -208,15 +204,26 @@ def _grid_region(grid: Grid) -> GridRegion:
     rising = ~below_left & ~above_right & below_right & above_left
     row, column = np.nonzero(rising | falling)
     contacts = np.column_stack([column * grid.cell, row * grid.cell, np.where(rising[row, column], 1.0, -1.0)])
-    return GridRegion(float(grid.cell), np.array(grid.origin, dtype=float), blocked, counts, edges, contacts)
+    return GridRegion(float(grid.cell), np.array(grid.origin, dtype=float), blocked, _prefix_sums(blocked), edges, contacts)
+
+
+def _prefix_sums(elements: np.ndarray) -> np.ndarray:
+    """The number of true elements below and to the left of each corner of a bool array (rows, columns): (rows + 1, columns + 1).
+
+    On a map of 16 million cells this takes most of the time of its region: with half the memory, and row after row, a fifth of it.
+    """
+    counts = np.zeros((elements.shape[0] + 1, elements.shape[1] + 1), dtype=np.int32 if elements.size < 2**31 else np.int64)
+    for row, below, above in zip(elements, counts, counts[1:]):
+        np.cumsum(row, out=above[1:])
+        above += below
+    return counts
 
 
 def _runs(boundary: np.ndarray) -> np.ndarray:
     """Maximal runs of true values in the rows of a bool array: (n, 3) row, first column, column after the last."""
-    change = np.diff(np.pad(boundary, ((0, 0), (1, 1))).astype(np.int8), axis=1)
-    row, first = np.nonzero(change == 1)
-    _, end = np.nonzero(change == -1)
-    return np.column_stack([row, first, end]).astype(float)
+    around = np.pad(boundary, ((0, 0), (1, 1)))
+    row, column = np.nonzero(around[:, 1:] != around[:, :-1])  # where a run begins and ends, in turn
+    return np.column_stack([row[::2], column[::2], column[1::2]]).astype(float)
 
 
 def _circle_region(circles: Circles) -> CircleRegion:

@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from bezierplan.geometry import shortest_paths
+from bezierplan.geometry import curves, shortest_paths, transitions
+from bezierplan.geometry.curvature_bound import largest_curvature
 from bezierplan.geometry.region import Region
 from bezierplan.planners import Plan, dubins_search, rounded_shortest_path
 from bezierplan.planners.parts.settings import filled
@@ -32,12 +33,22 @@ _STRAIGHT = 1e-8
 # A radius that is smaller by less, as a share, is the same.
 _SAME = 1e-9
 
+SMOOTH = ("arcs", "continuous")
+"""Whether a path turns along arcs, or with a curvature that changes continuously."""
 
-def check_planner(planner: str, via: Sequence[tuple[float, float]], strict: bool) -> None:
-    """Raise ValueError for way points or a strict turning radius with a planner that does not have them."""
+# A jump of the curvature by less, as a share of the largest one, is rounding.
+_NO_JUMP = 1e-6
+
+
+def check_planner(planner: str, via: Sequence[tuple[float, float]], strict: bool, smooth: str = SMOOTH[0]) -> None:
+    """Raise ValueError for way points, a strict turning radius or continuous curvature with a planner that does not have them."""
     own = planner.removeprefix("bezierplan.planners.")
     if via and own not in CHAINED:
         raise ValueError(f"via: only for {', '.join(CHAINED[:-1])} and {CHAINED[-1]}; the planner is {own}")
+    if smooth not in SMOOTH:
+        raise ValueError(f"smooth: {smooth!r}; expected {' or '.join(SMOOTH)}")
+    if smooth == "continuous" and own not in TURNING:
+        raise ValueError(f"smooth: only for {' and '.join(TURNING)}, whose paths have arcs; the planner is {own}")
     if strict and own not in TURNING:
         raise ValueError(f"strict: only for {' and '.join(TURNING)}, which have a turning radius; the planner is {own}")
 
@@ -82,9 +93,24 @@ def whole(bounds: Sequence[shortest_paths.Bound]) -> shortest_paths.Bound:
 
 
 def solved(
-    planner: str, parts: Sequence[Problem], bounds: Sequence[shortest_paths.Bound], blocked: Region, settings: dict[str, Any]
+    planner: str,
+    parts: Sequence[Problem],
+    bounds: Sequence[shortest_paths.Bound],
+    blocked: Region,
+    settings: dict[str, Any],
+    smooth: str = SMOOTH[0],
 ) -> Plan:
-    """The answer of a planner with a turning radius to all legs. Where rounding leaves a corner at a way point, the legs are searched."""
+    """The answer of a planner with a turning radius to all legs. Where rounding leaves a corner at a way point, the legs are searched.
+
+    With `continuous` curvature, transitions go before and after arcs wherever there is room. They shift arcs inwards, so these are planned
+    wider and as much farther from the corners.
+    """
+    if smooth == "continuous":
+        radius = settings["turning_radius"] * (1 + transitions.SHIFT) * (1 + transitions.EXCESS)
+        wide = settings | {"turning_radius": radius}
+        if planner == ROUNDED:
+            wide["offset"] = settings["offset"] + transitions.SHIFT * radius
+        return _eased(planner, solved(planner, parts, bounds, blocked, wide), blocked)
     if planner == DRIVEN:
         return joined(_driven(parts, bounds, blocked, settings))
     rounded = joined([rounded_shortest_path.gentlest(part, None, bound, blocked, **settings) for part, bound in zip(parts, bounds)])
@@ -95,6 +121,17 @@ def solved(
     if driven.path is None:
         return rounded
     return driven._replace(extra={"turns": rounded.extra["turns"], "tight_turns": 0, "least_radius": radius})
+
+
+def _eased(planner: str, plan: Plan, blocked: Region) -> Plan:
+    """The same path with transitions, and what is told of it."""
+    if plan.path is None:
+        return plan
+    path = transitions.eased(plan.path, blocked)
+    length, extra = curves.length(path), plan.extra
+    if planner == ROUNDED and 0 < extra["least_radius"] < math.inf:
+        extra = extra | {"least_radius": 1 / largest_curvature(curves.bezier_pieces(path)).bound}
+    return plan._replace(path=path, objective=length, history=np.array([length]), extra=extra)
 
 
 def _driven(parts: Sequence[Problem], bounds: Sequence[shortest_paths.Bound], blocked: Region, settings: dict[str, Any]) -> list[Plan]:
@@ -149,6 +186,17 @@ def _has_corner(one: Path, other: Path) -> bool:
     arriving, leaving = np.diff(one.points[-2:], axis=0)[0], np.diff(other.points[:2], axis=0)[0]
     cross = arriving[0] * leaving[1] - arriving[1] * leaving[0]
     return abs(math.atan2(cross, float(arriving @ leaving))) > _STRAIGHT
+
+
+def is_continuous(jump: float, curvature: float) -> bool:
+    """Whether a largest jump of the curvature is none, beside the largest curvature."""
+    return jump <= _NO_JUMP * curvature
+
+
+def check_continuous(smooth: str, jump: float, curvature: float, unit: str) -> None:
+    """Raise ValueError if the curvature should be continuous and jumps. jump, curvature: the largest of the path, nan without one."""
+    if smooth == "continuous" and not is_continuous(jump, curvature):
+        raise ValueError(f"smooth: continuous: the curvature jumps by {jump:.3g} / {unit}, no room; expected room, or not strict")
 
 
 def check_kept(asked: float, kept: float, unit: str) -> None:

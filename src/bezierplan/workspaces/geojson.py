@@ -64,7 +64,7 @@ def polygons_from_geojson(text: str, unit: str, margin: float | None = None, lar
         check_numbers(np.concatenate(shape.rings), shape.name, largest)
     obstacles = [shape for shape in shapes if shape.role == "obstacle"]
     limits, outside = _border([shape for shape in shapes if shape.role == "border"], obstacles, content.get("bbox"), margin, largest)
-    return Polygons(limits, tuple(_within(limits, [*obstacles, *outside])), unit)
+    return Polygons(limits, tuple(within(limits, [*obstacles, *outside])), unit)
 
 
 def _content(text: str) -> dict[str, Any]:
@@ -197,7 +197,7 @@ def _border(borders: list[Shape], obstacles: list[Shape], bbox: Any, margin: flo
         if not border.is_valid:
             raise ValueError(f"{name}: {shapely.is_valid_reason(border)}; expected a simple polygon")
         beyond = [part for part in shapely.get_parts(_frame(limits).difference(border)) if not part.is_empty]
-        return limits, [Shape("obstacle", f"{name}: outside of it", _rings_of(part)) for part in beyond]
+        return limits, [Shape("obstacle", f"{name}: outside of it", rings_of(part)) for part in beyond]
     if margin is not None:
         if not obstacles:
             raise ValueError(f"margin: {margin:g}: the file has no obstacle; expected a border")
@@ -238,11 +238,12 @@ def _frame(limits: Bounds) -> Any:
     return shapely.box(limits[0], limits[2], limits[1], limits[3])
 
 
-def _rings_of(polygon: Any) -> Rings:
+def rings_of(polygon: Any) -> Rings:
+    """The rings of a polygon of shapely, each without its last position."""
     return tuple(np.array(ring.coords)[:-1] for ring in (polygon.exterior, *polygon.interiors))
 
 
-def _within(limits: Bounds, obstacles: list[Shape]) -> list[Rings]:
+def within(limits: Bounds, obstacles: list[Shape]) -> list[Rings]:
     """The rings of obstacles, checked, and cut at the border."""
     import shapely
 
@@ -265,7 +266,7 @@ def _within(limits: Bounds, obstacles: list[Shape]) -> list[Rings]:
     kept: list[Rings] = []
     for each, shape, inside in zip(obstacles, shapes, covered):
         parts = [] if inside else [part for part in shapely.get_parts(shape.intersection(frame)) if isinstance(part, shapely.Polygon)]
-        kept += [each.rings] if inside else map(_rings_of, parts)
+        kept += [each.rings] if inside else map(rings_of, parts)
     return kept
 
 

@@ -21,6 +21,7 @@ KINDS = {
     ".yml": "ros_map",
     ".map": "moving_ai",
     ".txt": "grid",
+    ".svg": "svg",
     **dict.fromkeys(IMAGES, "image"),
 }
 """Suffix of a map file -> the kind of workspace that it is read as."""
@@ -32,8 +33,8 @@ _APPLIES = {
     "scenario": ("moving_ai",),
     "cell": ("grid", "raster"),
     "rule": ("raster",),
-    "margin": ("polygons", "raster"),
-    "resolution": ("image",),
+    "margin": ("polygons",),
+    "resolution": ("image", "svg"),
     "unknown": ("ros_map", "image"),
     "most_pixels": ("ros_map", "image"),
 }
@@ -46,6 +47,7 @@ _KIND_NAMES = {
     "polygons": "polygons",
     "raster": "polygons for a planner that needs cells",
     "ros_map": "a ROS map",
+    "svg": "an SVG drawing",
 }
 
 
@@ -62,7 +64,8 @@ def described(
     scenario: str | None = None,
     cells: bool = False,
 ) -> dict[str, Any]:
-    """The description of a map file as a workspace of a study (config/README.md), which has no kind `image`; None is what is not given.
+    """The description of a map file as a workspace of a study (config/README.md), which has no kinds `image` and `svg`; None is what is not
+    given.
 
     cells: whether polygons become a grid. Raises ValueError, naming the option, for a value that is wrong or does nothing on this kind of
     map, and for an unknown kind of file.
@@ -81,13 +84,13 @@ def described(
         raise ValueError(f"unknown: {unknown}; expected occupied or free")
     if most_pixels is not None and most_pixels < 1:
         raise ValueError(f"most_pixels: {most_pixels}; expected a whole number of at least 1")
-    metres = kind in ("polygons", "ros_map", "image")
+    metres = kind in ("polygons", "ros_map", "image", "svg")
     description: dict[str, Any] = {"kind": kind, "file": file.name, "unit": unit or ("m" if metres else "cell")}
-    drawn = kind == "polygons" and cells
+    drawn = kind in ("polygons", "svg") and cells
     given = {"scenario": scenario, "cell": cell, "rule": rule, "margin": margin, "resolution": resolution, "unknown": unknown}
     given["most_pixels"] = most_pixels
     for name, kinds in _APPLIES.items():
-        if given[name] is not None and ("raster" if drawn else kind) not in kinds:
+        if given[name] is not None and kind not in kinds and not (drawn and "raster" in kinds):
             wanted = " or ".join(_KIND_NAMES[each] for each in kinds)
             raise ValueError(f"{name}: only for {wanted}; {file} is {_KIND_NAMES['raster' if drawn else kind]}")
     if kind == "image" and resolution is None:
@@ -112,7 +115,8 @@ def read(file: Path, description: dict[str, Any], robot_radius: float | None = N
     robot.check_radius(robot_radius or 0.0)
     if description["kind"] != "raster":
         return robot.grow(_loaded(file, description), robot_radius or 0.0)
-    polygons = robot.grow(_loaded(file, description | {"kind": "polygons"}), robot_radius or 0.0)  # before it becomes cells
+    drawn = _loaded(file, description | {"kind": KINDS[file.suffix.lower()]})
+    polygons = robot.grow(drawn, robot_radius or 0.0)  # before it becomes cells
     assert isinstance(polygons, Polygons)  # by its kind
     cell = float(description["cell"])
     check_thickness(cell, "cell:")
@@ -135,6 +139,10 @@ def _anywhere(file: Path, description: dict[str, Any]) -> Workspace:
     kind, unit = description["kind"], description["unit"]
     if kind == "polygons":
         return polygons_from_geojson(read_text(file), unit, description.get("margin"), FARTHEST)
+    if kind == "svg":
+        from bezierplan.workspaces.svg import polygons_from_svg
+
+        return polygons_from_svg(read_text(file), unit, description.get("resolution", 1.0))
     options = {name: description[name] for name in ("unknown", "most_pixels") if name in description}
     if kind == "image":
         return ros.read_image(file, description["resolution"], unit, **options)

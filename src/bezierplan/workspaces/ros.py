@@ -12,7 +12,7 @@ import math
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path, PureWindowsPath
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
@@ -38,6 +38,16 @@ _TRUTHS = {"0": False, "1": True, "false": False, "true": True, "no": False, "ye
 
 SMALLEST_YAW = 1e-6
 """A map that is turned by less, in radians, counts as not turned: over 1,000 m it is a millimetre."""
+
+
+class Shades(NamedTuple):
+    """light: from 0 to 1. known: whether the place is known. of_pixels: (rows, columns) the number of the shade of each pixel, where there
+    are few; None where each pixel has its own.
+    """
+
+    light: np.ndarray
+    known: np.ndarray
+    of_pixels: np.ndarray | None
 
 
 def read(
@@ -144,18 +154,20 @@ def _occupied(file: Path, content: dict[str, Any], most_pixels: int, unknown: Un
         try:
             with Image.open(file) as image:
                 columns, rows = image.size
-                light, known = _light(image) if columns * rows <= most_pixels else (None, None)
+                shades = _shades(image) if columns * rows <= most_pixels else None
         except MemoryError:
             raise ValueError(f"image: {columns:,} x {rows:,} pixels: more than there is memory for; expected a smaller image") from None
         except Exception as error:  # of a damaged file each format raises another one
             raise ValueError(f"image: {content['image']}: cannot be read as an image ({type(error).__name__})") from None
-    if light is None or known is None:
+    if shades is None:
         raise _too_large(columns, rows, most_pixels)
-    return ~_free(light, known, content, unknown)[::-1]
+    free = _free(shades, content, unknown)
+    return ~(free if shades.of_pixels is None else free[shades.of_pixels])[::-1]
 
 
-def _free(light: np.ndarray, known: np.ndarray, content: dict[str, Any], unknown: Unknown) -> np.ndarray:
-    """Which pixels count as free, by their lightness from 0 to 1 and by whether they are known: bool (rows, columns)."""
+def _free(shades: Shades, content: dict[str, Any], unknown: Unknown) -> np.ndarray:
+    """Which shades count as free: bool, of their shape."""
+    light, known = shades.light, shades.known
     if content["mode"] == "raw":
         share = np.rint(255 * light) / 100
         known = known & (share <= 1)
@@ -184,10 +196,10 @@ def _too_large(columns: int, rows: int, most_pixels: int) -> ValueError:
     return ValueError(f"image: {size}; expected at most {most_pixels:,}; most_pixels raises the limit, as far as memory goes")
 
 
-def _light(image: Any) -> tuple[np.ndarray, np.ndarray]:
-    """Lightness (rows, columns) of each pixel, from 0 to 1, the mean of its colours; and whether it is known: not transparent."""
+def _shades(image: Any) -> Shades:
+    """The shades of an image; the lightness of a pixel is the mean of its colours, and it is known unless it is transparent."""
     if image.mode.startswith("I"):
-        return np.asarray(image, dtype=float) / 65535.0, np.ones(image.size[::-1], dtype=bool)
+        return Shades(np.asarray(image, dtype=float) / 65535.0, np.ones(image.size[::-1], dtype=bool), None)
     transparent = "A" in image.getbands() or "transparency" in image.info
     if transparent or image.mode == "P":
         image = image.convert("RGBA")
@@ -195,6 +207,6 @@ def _light(image: Any) -> tuple[np.ndarray, np.ndarray]:
         image = image.convert("L")
     values = np.asarray(image)
     if values.ndim == 2:
-        return values / 255.0, np.ones(values.shape, dtype=bool)
+        return Shades(np.arange(256) / 255.0, np.ones(256, dtype=bool), values)
     known = values[..., 3] > 0 if values.shape[2] == 4 else np.ones(values.shape[:2], dtype=bool)
-    return values[..., :3].mean(axis=2) / 255.0, known
+    return Shades(values[..., :3].mean(axis=2) / 255.0, known, None)

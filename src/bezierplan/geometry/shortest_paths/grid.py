@@ -15,6 +15,10 @@ from bezierplan.workspaces.problem import Problem
 # A graph has an entry for every pair of nodes; with more nodes than this, a search that stores no pairs is used instead.
 MOST_NODES = 5000
 
+# On a map with more cells the lines of sight of such a graph are long, and most of them are never needed: then the same holds for so many.
+_MANY_CELLS = 1_000_000
+_FEW_NODES = 500
+
 # Start and target are put on a lattice of at most this many points per cell, so that visibility is decided with integers.
 _FINEST_LATTICE = 2**20
 
@@ -39,7 +43,8 @@ def shortest_on_grid(problem: Problem, blocked: GridRegion, corner_cutting: str)
     ends = from_origin(np.array([problem.start, problem.target], dtype=float), blocked)
     scale = _lattice(ends / blocked.cell, min(_FINEST_LATTICE, _LARGEST_WHOLE // max(cells.shape)))
     lattice = np.concatenate([np.rint(ends / blocked.cell * scale).astype(np.int64), corners * scale])
-    if len(lattice) > MOST_NODES and corner_cutting == "open":
+    most = _FEW_NODES if cells.size > _MANY_CELLS else MOST_NODES
+    if len(lattice) > most and corner_cutting == "open":
         if not _joined(cells, lattice[0], lattice[1], scale):
             return no_path()
         direct = bool((lattice[0] == lattice[1]).all()) or _sees(lattice[0], lattice[1], cells, scale, False)
@@ -92,10 +97,9 @@ def _grid_corners(cells: np.ndarray, closed: bool) -> tuple[np.ndarray, np.ndarr
 
     A slope of +1 stands for directions with dx dy >= 0, -1 for dx dy <= 0. A quadrant holds the signs of dx and dy, or zeros for any.
     """
-    around = occupied_around(cells)
-    below_left, below_right, above_left, above_right = around
-    single = around.sum(axis=0) == 1
-    pair = around.sum(axis=0) == 2
+    below_left, below_right, above_left, above_right = around = occupied_around(cells)
+    number = around.view(np.int8).sum(axis=0, dtype=np.int8)
+    single, pair = number == 1, number == 2
     # Around a single occupied cell a path turns from one of the two adjacent quadrants to the other; at a contact it stays in the free
     # ones.
     rising = (single & (below_right | above_left)) | (pair & below_right & above_left)

@@ -12,7 +12,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bezierplan.geometry.region import occupied_around
 from bezierplan.geometry.shortest_paths.graph import way_back
 from bezierplan.kernels import allocation_free, compiled
 
@@ -39,13 +38,15 @@ class Scene(NamedTuple):
 
 def scene(cells: np.ndarray, corners: np.ndarray, slopes: np.ndarray, scale: int) -> Scene:
     """The scene of occupied cells with a ring around them and corners as `grid` finds them."""
-    change = np.diff(np.pad(cells, ((0, 0), (1, 1))).astype(np.int8), axis=1)
-    row, begin = np.nonzero(change == 1)
-    _, end = np.nonzero(change == -1)
-    runs = np.column_stack([begin, end]) - 1
+    around = np.pad(cells, ((0, 0), (1, 1)))
+    row, column = np.nonzero(around[:, 1:] != around[:, :-1])  # where a run begins and ends, in turn
+    row, runs = row[::2], np.column_stack([column[::2], column[1::2]]) - 1
     first_run = np.searchsorted(row, np.arange(len(cells) + 1))
     first_corner = np.searchsorted(corners[:, 1], np.arange(len(cells)))
-    below_left, below_right, above_left, above_right = occupied_around(cells)[:, corners[:, 1], corners[:, 0]].astype(np.int64)
+    column, row = corners.T
+    below_left, below_right, above_left, above_right = (
+        cells[row + up, column + right].astype(np.int64) for up in (0, 1) for right in (0, 1)
+    )
     sides = above_left + above_right - below_left - below_right
     return Scene(cells, first_run, runs, corners, first_corner, slopes, sides, scale)
 
