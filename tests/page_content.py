@@ -76,6 +76,9 @@ def study(claims: list[content.Claim], numbers: list[content.Number]) -> content
         title=HOSTILE,
         paper=content.Paper(title=HOSTILE, where="A journal, 2000", doi="10.1/x"),
         outcome={"numbers": 2, "agrees": 1, "supported": 1},
+        methods=[
+            content.Method(address="one/method/a", name="a", planner="swarm", about=["A swarm.", HOSTILE], settings={"size": HOSTILE})
+        ],
         claims=claims,
         tables=[table, listing],
         figures=[],

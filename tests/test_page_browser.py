@@ -179,6 +179,7 @@ def test_search_finds_a_number_by_the_words_of_its_table(visit, small):
         ("What are the published and the reproduced mean objective of a?", ["one/table1/a/objective/mean"], "10.51 → 10.71 inconclusive"),
         ("Are the paths of a lower than those of b?", ["one/C1", "one/C2", "one/C3"], "Method a is the best (C1)."),
         ("Which claims of one fail?", ["one/C2"], "C2 Method a is the best (C2)."),
+        ("What does inconclusive mean?", ["page-word/inconclusive", "one/table1/a/objective/mean"], "the range is too wide"),
         ("Which claims of one hold", ["one/C1"], "claim, supported"),
         ("the path of a's worst feasible run", ["one/first/p/a/1"], "worst feasible run"),
     ],
@@ -191,6 +192,46 @@ def test_question_in_plain_words_finds_its_answer_in_one_step(visit, small, ques
         expect(hits.nth(hit)).to_have_attribute("href", f"#{address}")
     expect(hits.first).to_contain_text(answer)
     expect(hits).to_have_count(len(addresses))
+
+
+def charted(tab, name):
+    """The marks of a chart, once the library has drawn it."""
+    tab.wait_for_function("!document.querySelector('[data-chart] > svg')")
+    return tab.locator(f"[data-chart={name}] .mark-symbol.role-mark").first.locator("path")
+
+
+def test_charts_are_drawn_from_the_page_and_lead_to_its_numbers(visit, small):
+    tab = visit(small)
+    dots = charted(tab, "ratios")
+    expect(dots).to_have_count(3)
+    dots.nth(1).hover(force=True)
+    expect(tab.locator("#page-tip")).to_contain_text("published 10.51")
+    dots.nth(1).click(force=True)
+    expect(tab.locator("td:target")).to_be_visible()
+
+
+def test_methods_in_the_chart_can_be_chosen(visit, small):
+    tab = visit(small)
+    dots = charted(tab, "methods")
+    expect(dots).to_have_count(2)
+    tab.locator(".toggles summary").click()
+    tab.locator(".toggles [value='one/worth/c']").click()
+    expect(dots).to_have_count(1)
+    tab.locator(".toggles [data-all]").click()
+    expect(dots).to_have_count(0)
+
+
+def test_without_scripts_charts_are_pictures(visit, small):
+    tab = visit(small, java_script_enabled=False)
+    for name in ("numbers", "claims", "ratios", "methods"):
+        expect(tab.locator(f"[data-chart={name}] > svg")).to_be_visible()
+    expect(tab.locator(".toggles")).to_be_hidden()
+
+
+def test_method_is_described_where_its_name_leads(visit, small):
+    tab = visit(small, "one/table1/a/length/mean")
+    tab.locator("[id='one/table1'] tbody th a").first.click()
+    expect(tab.locator("[id='one/method/a'] p").first).to_have_text("A swarm.")
 
 
 def test_claims_that_fail_are_listed_with_the_reason(visit, small):

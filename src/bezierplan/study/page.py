@@ -148,6 +148,7 @@ def _study(studies: Studies, scale: str, key: str, made: list[str], tried: dict[
         "title": study.title,
         "paper": _paper(key),
         "labels": study.labels,
+        "methods": {name: {"planner": study.planner(name), "settings": study.resolved(name)} for name in study.methods},
         "checks": {claim.id: claim.plain()["checks"] for claim in study.claims} if judged else {},
         "repeats": {each: _repeats(study, each) for each in (scale, "extended")},
         "tables": {name: described[name] | {"spec": study.tables[name].plain()} for name in made if name in study.tables},

@@ -203,9 +203,9 @@ def _path(name: str, element: ET.Element) -> Any:
         except (ValueError, AttributeError, IndexError, TypeError):
             raise ValueError(f"{name}: d: {words[:60]}: cannot be read; expected commands of a path with their numbers") from None
     if tag in ("polygon", "polyline"):
-        words = re.split(r"[\s,]+|(?<=\d)(?=[-+])", element.attrib.get("points", "").strip())
+        numbers = re.split(r"[\s,]+|(?<=\d)(?=[-+])", element.attrib.get("points", "").strip())
         try:
-            points = np.array([number(word) for word in words if word]).reshape(-1, 2)
+            points = np.array([number(word) for word in numbers if word]).reshape(-1, 2)
         except ValueError:
             raise ValueError(f"{name}: points: {element.attrib.get('points', '')[:60]}; expected pairs of numbers") from None
         closed = tag == "polygon" or len(points) == 0

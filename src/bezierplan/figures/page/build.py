@@ -1,5 +1,7 @@
 """The page as text: its content in templates, with style, scripts and the table library in the same file."""
 
+import base64
+import zlib
 from collections import Counter
 from importlib import resources
 from pathlib import Path
@@ -7,7 +9,7 @@ from typing import Any, NamedTuple
 
 from bezierplan.analysis import worth
 from bezierplan.analysis.metrics import METRICS
-from bezierplan.figures.page import HERE, addresses, answer, content, glossary, pictures, search
+from bezierplan.figures.page import HERE, addresses, answer, charts, content, glossary, pictures, search
 from bezierplan.figures.page.gather import printed_key
 
 # Verdict -> the class that colours it and its symbol; another verdict gets the last one.
@@ -45,7 +47,12 @@ def html(page: content.Page, folder: Path) -> str:
         "json_text": _json_text,
         "printed_key": printed_key,
     }
+    drawn = charts.charts(page)
     environment.globals |= {
+        "charts": drawn,
+        "chart_library": _packed(charts.script()) if drawn else "",
+        "specifications": {name: chart.spec for name, chart in drawn.items()},
+        "still": lambda chart: Markup(chart.svg),
         "forests": pictures.forests,
         "grid": grid,
         "counts": counts,
@@ -57,15 +64,23 @@ def html(page: content.Page, folder: Path) -> str:
         "deviation": deviation,
         "words": glossary.WORDS,
         "baseline": worth.BASELINE,
+        "address": addresses.address,
+        "methods_shown": {method.address for study in page.studies.values() for method in study.methods},
         "reliable": answer.reliable,
+        "times_as_long": times_as_long,
         "marks": MARKS,
         "picture": lambda figure: Markup(pictures.data_uri(folder / figure.svg)),
         "size": lambda figure: pictures.size(folder / figure.svg),
         "static": lambda name: Markup((HERE / "static" / name).read_text(encoding="utf-8")),
-        "table_library": lambda: Markup(resources.files("itables").joinpath("html/dt_bundle.js").read_text(encoding="utf-8")),
+        "table_library": _packed(resources.files("itables").joinpath("html/dt_bundle.js").read_text(encoding="utf-8")),
     }
     data, schema = page.model_dump(mode="json"), content.Page.model_json_schema()
     return environment.get_template("page.html.jinja").render(page=page, data=data, schema=schema)
+
+
+def _packed(text: str) -> str:
+    """Text that the page's script unpacks: a library takes less than half its room so."""
+    return base64.b64encode(zlib.compress(text.encode(), 9)).decode()
 
 
 def _json_text(value: Any) -> Any:
@@ -90,6 +105,15 @@ def short(value: content.Cell, digits: int = 4) -> str:
     return f"{value:.{digits}g}" if isinstance(value, float) else str(value)
 
 
+def times_as_long(ratio: float) -> str:
+    """How long paths are compared with others, to a tenth of a per cent.
+
+    >>> times_as_long(1.0002), times_as_long(1.25)
+    ('as long', '1.25 times as long')
+    """
+    return "as long" if abs(ratio - 1) < 0.0005 else f"{ratio:.4g} times as long"
+
+
 def counts(verdicts: list[str]) -> list[tuple[str, int]]:
     """How many there are of each verdict, in the order of `LOOKS`."""
     found = Counter(verdict for verdict in verdicts if verdict)
@@ -97,11 +121,11 @@ def counts(verdicts: list[str]) -> list[tuple[str, int]]:
 
 
 class Row(NamedTuple):
-    """A row of a table of numbers: its keys as printed, its cells in the order of the columns, and whether it is the paper's
-    interpretation.
+    """A row of a table of numbers: its keys as printed, each with the address of the method that it may name; its cells in the order of the
+    columns; whether it is the paper's interpretation.
     """
 
-    keys: list[str]
+    keys: list[tuple[str, str]]
     cells: list[content.Number | None]
     primary: bool
 
@@ -129,7 +153,7 @@ def grid(table: content.Table, labels: dict[str, str]) -> Grid:
         rows.setdefault(tuple(number.keys.values()), {})[number.column] = number
     listed = [
         Row(
-            [_key(key, next(iter(cells.values())).keys[key], labels) for key in told],
+            [_key(key, next(iter(cells.values())).keys[key], labels, table) for key in told],
             [cells.get(column) for column in columns],
             any(number.primary for number in cells.values()),
         )
@@ -141,9 +165,10 @@ def grid(table: content.Table, labels: dict[str, str]) -> Grid:
     return Grid([labels.get(key, key.replace("_", " ")) for key in told], columns, listed, same, decimals)
 
 
-def _key(key: str, value: content.Cell, labels: dict[str, str]) -> str:
-    """A key in a column that names it: a number stands alone."""
-    return short(value) if isinstance(value, int | float) else printed_key(key, value, labels)
+def _key(key: str, value: content.Cell, labels: dict[str, str], table: content.Table) -> tuple[str, str]:
+    """A key in a column that names it, where a number stands alone, and the address of the method of this name."""
+    words = short(value) if isinstance(value, int | float) else printed_key(key, value, labels)
+    return words, addresses.address(table.address.partition("/")[0], "method", value)
 
 
 def _decimals(value: float | None) -> int:

@@ -180,6 +180,18 @@ class Audited(Record):
     arithmetic: str = Field(description="how it was checked, for rules that hold for any paper; otherwise empty")
 
 
+class Method(Record):
+    """A method: a planner with its settings."""
+
+    address: Address
+    name: str
+    planner: str = Field(description="name of the planner, or its file")
+    about: list[str] = Field(description="paragraphs that say what the planner does, and what of the paper it follows")
+    settings: dict[str, str] = Field(
+        description="its settings in this study as text, by name; the planner's own defaults hold for the others"
+    )
+
+
 class Worth(Record):
     """A method beside a baseline that needs no search: medians over conditions of its median over the baseline's."""
 
@@ -243,6 +255,7 @@ class Study(Record):
     title: str
     paper: Paper | None = Field(None, description="null for a study that is no paper")
     outcome: dict[str, int] = Field(description="how many numbers and claims there are, by verdict")
+    methods: list[Method] = []
     claims: list[Claim]
     tables: list[Table]
     figures: list[Figure]

@@ -92,6 +92,7 @@ def _study(
         address=address(key),
         title=job["title"],
         paper=content.Paper(**job["paper"]) if job["paper"] else None,
+        methods=[other.of_method(key, name, method) for name, method in job["methods"].items()],
         outcome={name: count for name, count in outcome.items() if isinstance(count, int)},
         claims=_claims(key, judged, files.get("checks"), choices, job),
         tables=tables,

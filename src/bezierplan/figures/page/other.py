@@ -1,10 +1,13 @@
-"""Content of the page from tables beside those of the paper: what the methods are worth, and which interpretations explain its numbers."""
+"""Content of the page from tables beside those of the paper: its methods, what they are worth, and which interpretations explain it."""
 
+import ast
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
 
+from bezierplan import planners
 from bezierplan.analysis import worth
 from bezierplan.analysis.explained import DEFAULT
 from bezierplan.figures.page import content
@@ -12,6 +15,16 @@ from bezierplan.figures.page.addresses import address
 
 # Interpretations shown of a study, beside the default.
 MOST_INTERPRETATIONS = 10
+
+
+def of_method(study: str, name: str, method: dict[str, Any]) -> content.Method:
+    """A method, from `planner` and `settings`. What its planner does stands in the planner's file, which is read and not imported."""
+    planner = method["planner"]
+    file = Path(planner) if planner.endswith(".py") else Path(planners.__file__).with_name(f"{planner}.py")
+    told = ast.get_docstring(ast.parse(file.read_text(encoding="utf-8"))) or ""
+    about = [" ".join(paragraph.replace("`", "").split()) for paragraph in told.split("\n\n")]
+    settings = {setting: str(value) for setting, value in method["settings"].items()}
+    return content.Method(address=address(study, "method", name), name=name, planner=planner, about=about, settings=settings)
 
 
 def of_worth(study: str, measured: pd.DataFrame) -> dict[str, Any]:

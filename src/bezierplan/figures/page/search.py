@@ -26,7 +26,9 @@ SECTIONS = (
         "What should I use?",
         "instead recommended recommendation best planner method alternative baseline plan command",
     ),
-    Entry("section", "page-paths", "Path viewer: look at a run, and replay it", "rerun repeat again reproduce drive path command"),
+    Entry(
+        "section", "page-paths", "Path viewer: look at a run, and replay it", "rerun repeat again reproduce drive path command one single"
+    ),
     Entry("section", "page-words", "What the words mean", "glossary legend verdict meaning definition"),
     Entry("section", "page-about", "The data of this page", "json csv download schema readme cite citation version commit doi"),
 )
@@ -44,6 +46,9 @@ def entries(page: Page) -> list[Entry]:
 
 def _of_study(key: str, study: Study) -> Iterator[Entry]:
     yield Entry("paper", study.address, study.title, key)
+    for method in study.methods:
+        name, does = study.labels.get(method.name, _words(method.name)), method.about[0]
+        yield Entry("method", method.address, f"{name}: {does}", f"{key} method planner {method.name} {method.planner}", True)
     for claim in study.claims:
         compared = " ".join(each.name for each in claim.comparisons)
         said = IN_SHORT.get(claim.verdict, "undecided")

@@ -1,12 +1,20 @@
 // Links into closed parts, tooltips by keyboard, search, filters, and tables that sort. Without this script the page shows the same content.
 const find = (id) => document.getElementById(id);
 
-// Tables: the library's text is a module of its own, which a blob makes importable from a single file.
+// Libraries: their text is packed, and a blob makes a module of it, which a single file can import.
+
+async function load(id) {
+  const packed = Uint8Array.from(atob(find(id).textContent), (letter) => letter.charCodeAt(0));
+  const text = await new Response(new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"))).text();
+  return import(URL.createObjectURL(new Blob([text], { type: "text/javascript" })));
+}
+
+// Tables
 
 let library;
 
 async function enhance(table) {
-  library ??= import(URL.createObjectURL(new Blob([find("page-tables").textContent], { type: "text/javascript" })));
+  library ??= load("page-tables");
   const { jQuery } = await library;
   const many = table.tBodies[0].rows.length > 8;
   jQuery(table).DataTable({
@@ -67,15 +75,22 @@ addEventListener("afterprint", () => {
 
 const tip = find("page-tip");
 
-function showTip(cell) {
+function tipOf(cell) {
   if (cell.title) {
     cell.dataset.tip = cell.title;
     cell.removeAttribute("title");
   }
-  tip.replaceChildren(...cell.dataset.tip.split("; ").map((line) => Object.assign(document.createElement("div"), { textContent: line })));
-  tip.hidden = false;
+  return cell.dataset.tip;
+}
+
+function showTip(cell) {
+  showWords(tipOf(cell), cell.getBoundingClientRect());
   cell.querySelector("a").setAttribute("aria-describedby", tip.id);
-  const place = cell.getBoundingClientRect();
+}
+
+function showWords(words, place) {
+  tip.replaceChildren(...words.split("; ").map((line) => Object.assign(document.createElement("div"), { textContent: line })));
+  tip.hidden = false;
   const below = place.bottom + tip.offsetHeight + 8 < innerHeight;
   tip.style.left = `${Math.max(8, Math.min(place.left, innerWidth - tip.offsetWidth - 8))}px`;
   tip.style.top = `${below ? place.bottom + 4 : place.top - tip.offsetHeight - 4}px`;
@@ -96,14 +111,72 @@ addEventListener("scroll", () => {
   else tip.hidden = true;
 }, { passive: true });
 
-// Commands that can be copied
+// Charts: the library draws anew what stands there as a picture. A click on a mark leads to its number, method or paper.
 
-for (const button of document.querySelectorAll(".copy")) {
+async function drawCharts() {
+  await load("page-vega");
+  const specs = JSON.parse(find("page-charts").textContent);
+  for (const place of document.querySelectorAll("[data-chart]")) {
+    const stage = document.createElement("div");
+    const picture = place.firstElementChild;
+    place.append(stage);
+    const tooltip = (handler, event, item, value) => {
+      const words = item?.datum?.address && (item.datum.tip ?? tipOf(find(item.datum.address)));
+      if (value && words) showWords(words, new DOMRect(event.clientX, event.clientY, 0, 12));
+      else tip.hidden = true;
+    };
+    const { view } = await vegaEmbed(stage, specs[place.dataset.chart], { actions: false, defaultStyle: false, renderer: "svg", tooltip });
+    view.addEventListener("click", (event, item) => { if (item?.datum?.address) location.hash = item.datum.address; });
+    stage.chart = view;
+    picture.remove();
+  }
+  chooseMethods();
+}
+
+function chooseMethods() {
+  const form = document.querySelector(".toggles"), chart = document.querySelector("[data-chart=methods] > div")?.chart;
+  if (!form) return;
+  form.hidden = false;
+  form.addEventListener("change", (event) => {
+    const study = event.target.closest("fieldset"), boxes = [...study.querySelectorAll("[value]")];
+    if ("all" in event.target.dataset) for (const box of boxes) box.checked = event.target.checked;
+    else study.querySelector("[data-all]").checked = boxes.some((box) => box.checked);
+    chart.signal("hidden", [...form.querySelectorAll("[value]:not(:checked)")].map((box) => box.value)).runAsync();
+  });
+}
+
+if (find("page-vega")) drawCharts();
+
+// Figures that enlarge
+
+const enlarged = find("page-enlarged"), large = new Image();
+enlarged.append(large);
+
+for (const sheet of document.querySelectorAll(".sheet")) {
+  sheet.addEventListener("click", (event) => {
+    const { src, alt } = sheet.firstElementChild;
+    Object.assign(large, { src, alt });
+    enlarged.showModal();
+    event.preventDefault();
+  });
+}
+enlarged.addEventListener("click", (event) => { if (event.target === enlarged) enlarged.close(); });
+
+// Commands and addresses that can be copied
+
+function offer(button, text) {
   button.hidden = !navigator.clipboard;
   button.addEventListener("click", async () => {
-    await navigator.clipboard.writeText(find(button.dataset.copies).textContent);
+    await navigator.clipboard.writeText(text());
     button.textContent = "Copied";
   });
+}
+
+for (const button of document.querySelectorAll(".copy")) offer(button, () => find(button.dataset.copies).textContent);
+for (const link of document.querySelectorAll(".here")) {
+  const button = Object.assign(document.createElement("button"), { type: "button", className: "copy", textContent: "Copy the address" });
+  link.after(" ", button);
+  offer(button, () => link.href);
 }
 
 // Filters of claims by verdict
@@ -135,7 +208,7 @@ function search() {
   const scored = index.map((each) => [words.filter((word) => each.all.includes(/^\d+$/.test(word) ? ` ${word} ` : ` ${word}`)).length, each]);
   const most = Math.max(...scored.map(([score]) => score));
   const matching = most ? scored.filter(([score]) => score === most).map(([, each]) => each) : [];
-  const rank = (each) => (each.own.startsWith(` ${words.join(" ")} `) ? -3 : 0) + (each.later ? 2 : 0) + (words.every((word) => wordsOf(each.text).includes(word)) ? 0 : 1);
+  const rank = (each) => (each.kind === "section" ? -1 : 0) + (each.kind === "word" && words.includes(wordsOf(each.text)[0]) ? -3 : 0) + (each.own.startsWith(` ${words.join(" ")} `) ? -3 : 0) + (each.later ? 2 : 0) + (words.every((word) => wordsOf(each.text).includes(word)) ? 0 : 1);
   const best = matching.map((each) => [rank(each), each]).sort((one, other) => one[0] - other[0]).slice(0, 30);
   hits.replaceChildren(...best.map(([, each]) => {
     const link = Object.assign(document.createElement("a"), { href: `#${encodeURI(each.address)}`, textContent: each.text });
