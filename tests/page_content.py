@@ -88,7 +88,7 @@ def study(claims: list[content.Claim], numbers: list[content.Number]) -> content
         worth=[worth("a", 1.25), worth("c", None)],
         worth_in_words=HOSTILE,
         explanations=[explanation("O1=8", 3), explanation("default", 1)],
-        interpretations_tried=7,
+        interpretations_in_words="The printed numbers are most likely from O1=8.",
         explained=[content.Explained(table="table1", numbers=3, default=1, best=3, never=0)],
         labels={"a": HOSTILE, "p": "the room"},
     )

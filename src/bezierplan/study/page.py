@@ -16,6 +16,9 @@ from bezierplan.study.targets import Studies
 
 _END = b"</html>"
 
+SEARCHED = ("interpretations", "explained", "held_out")
+"""Tables of what the search for an interpretation found."""
+
 
 def file(scale: str) -> str:
     """The page of a scale."""
@@ -87,11 +90,9 @@ def params(studies: Studies, scale: str, root: str = "") -> dict[str, Any]:
 
 def _tried(folder: str) -> dict[str, str]:
     """Tables in the folder of a study that are made only if asked for; those of interpretations are made together."""
-    files = {name: f"{folder}/{name}.csv" for name in ("sensitivity", "interpretations", "explained")}
+    files = {name: f"{folder}/{name}.csv" for name in ("sensitivity", *SEARCHED)}
     there = {name: file for name, file in files.items() if Path(file).is_file()}
-    return (
-        there if {"interpretations", "explained"} <= there.keys() else {name: file for name, file in there.items() if name == "sensitivity"}
-    )
+    return there if there.keys() >= set(SEARCHED) else {name: file for name, file in there.items() if name not in SEARCHED}
 
 
 def _artefacts(studies: Studies, scale: str) -> dict[str, list[str]]:

@@ -266,7 +266,7 @@ class Study(Record):
     worth: list[Worth] = []
     worth_in_words: str = Field("", description="what follows from `worth`")
     explanations: list[Explanation] = Field([], description="the best interpretations tried, the best first, and the default")
-    interpretations_tried: int = 0
+    interpretations_in_words: str = Field("", description="which interpretation is the most likely, and what none explains")
     explained: list[Explained] = []
     shown: list[Shown]
     labels: dict[str, str] = Field(description="name -> how it is printed")

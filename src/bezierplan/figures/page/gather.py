@@ -104,7 +104,7 @@ def _study(
         shown=[],
         labels=job["labels"],
         **(other.of_worth(key, measured) if measured is not None else {}),
-        **(other.of_interpretations(files["interpretations"], files["explained"]) if "interpretations" in files else {}),
+        **(other.of_interpretations(files["interpretations"], files["explained"], files["held_out"]) if "interpretations" in files else {}),
     )
 
 

@@ -9,7 +9,7 @@ import pandas as pd
 
 from bezierplan import planners
 from bezierplan.analysis import worth
-from bezierplan.analysis.explained import DEFAULT
+from bezierplan.analysis.explained import DEFAULT, sentences
 from bezierplan.figures.page import content
 from bezierplan.figures.page.addresses import address
 
@@ -46,10 +46,8 @@ def of_worth(study: str, measured: pd.DataFrame) -> dict[str, Any]:
     return {"worth": rows, "worth_in_words": worth.sentence(own)}
 
 
-def of_interpretations(tried: pd.DataFrame, explained: pd.DataFrame) -> dict[str, Any]:
-    """Fields `explanations`, `interpretations_tried` and `explained` of a study, from interpretations.csv, whose best row is first, and
-    explained.csv.
-    """
+def of_interpretations(tried: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFrame) -> dict[str, Any]:
+    """Fields `explanations`, `interpretations_in_words` and `explained` of a study, from the tables of `analysis.explained`."""
     named = tried["interpretation"] == DEFAULT
     shown = pd.concat([tried[:MOST_INTERPRETATIONS], tried[MOST_INTERPRETATIONS:][named[MOST_INTERPRETATIONS:]]])
     tables = [
@@ -64,7 +62,7 @@ def of_interpretations(tried: pd.DataFrame, explained: pd.DataFrame) -> dict[str
     ]
     columns = ["interpretation", "in_range", "numbers", "by_chance"]
     rows = [content.Explanation(**row | {"by_chance": _known(row["by_chance"])}) for row in shown[columns].to_dict("records")]
-    return {"explanations": rows, "interpretations_tried": len(tried), "explained": tables}
+    return {"explanations": rows, "interpretations_in_words": sentences(tried, explained, held_out), "explained": tables}
 
 
 def _known(value: float) -> float | None:
