@@ -189,6 +189,13 @@ def test_an_event_that_none_of_our_few_runs_had_may_be_in_print_once_or_twice():
     assert likelihood(50) < likelihood(0) - 50
 
 
+def test_a_number_of_an_unstated_number_of_runs_is_as_likely_by_many_of_ours_as_by_few():
+    def likelihood(runs):
+        return interpretations.numbers_of(results(5.0, runs=runs), SPEC, printed(6.0, 7.0).assign(n=math.nan), "study/table")[1]
+
+    assert likelihood(4000) == pytest.approx(likelihood(100), abs=3)
+
+
 def test_too_few_runs_explain_nothing():
     found, likelihood = interpretations.numbers_of(results(5.0, runs=3), SPEC, printed(5.0, 6.0), "study/table")
     assert not found["in_range"].any()

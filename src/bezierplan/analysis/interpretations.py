@@ -150,7 +150,8 @@ def _experiments(runs: pd.DataFrame, row: pd.Series, name: str) -> np.ndarray:
         drawn = statistics.predicted_within(row["statistic"], row["groups"], size, generator(f"{name}/{row.name}/within"))
         return drawn[:: len(drawn) // EXPERIMENTS][:EXPERIMENTS]
     values = runs.groupby(_unit_columns(runs))["value"].mean().to_numpy()
-    chosen = generator(f"{name}/experiments").integers(1 << 30, size=(EXPERIMENTS, size or len(values))) % len(values)
+    # Of a number of runs that is not stated, a single one, as `statistics.prediction` has it.
+    chosen = generator(f"{name}/experiments").integers(1 << 30, size=(EXPERIMENTS, size or 1)) % len(values)
     if not np.isnan(values).any():
         return statistics.STATISTICS[row["statistic"]](values[chosen])
     return np.array([statistics.statistic(row["statistic"], own[~np.isnan(own)]) for own in values[chosen]])
@@ -171,7 +172,7 @@ def _least_of_count(row: pd.Series, size: int | None) -> float:
         return 0.0
     runs = row["numbers"]
     share = (runs.sum() + 0.5) / (len(runs) + 1)
-    asked = size or len(runs)
+    asked = size or 1
     spread = math.sqrt(share * (1 - share) * (1 / asked + 1 / (len(runs) + 1)))
     return spread * (asked if row["statistic"] == "count" else 1)
 
