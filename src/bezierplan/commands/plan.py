@@ -374,7 +374,8 @@ def _told(judged: api.Judged, task: _Task, solution: _Solution, kept: float) -> 
     if judged.path is None:
         return [*lines, ("path", f"none ({solution.plan.stop})"), ("CPU time", f"{seconds:.3g} s")]
     gap = _told_number(100 * abs(judged.gap), 3)
-    lines.append(("length", f"{judged.length:.6g} {unit}, {gap} % {'below' if judged.gap < 0 and gap != '0' else 'above'} the shortest path"))
+    side = "below" if judged.gap < 0 and gap != "0" else "above"
+    lines.append(("length", f"{judged.length:.6g} {unit}, {gap} % {side} the shortest path"))
     lines.append(("curvature", _told_curvature(judged, task.smooth)))
     if planner in legs.TURNING:
         asked = settings["turning_radius"]
