@@ -68,6 +68,7 @@ mutants: .venv/ready ## plant each fault of tests/mutants, and see that its test
 compare: .cache/comparison/ready ## our swarm beside other libraries, and all studies' planners beside OMPL, into results/comparison
 	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare.py'
 	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare_planners.py'
+	cd $(<D) && bin/python '$(CURDIR)/tests/benchmark/compare_robots.py'
 
 cluster: .venv/ready ## add Snakemake's plugins for Slurm and other schedulers, for profiles/slurm and profiles/cluster
 	@$(call install,$(RUN),-r environment-cluster.txt)

@@ -85,6 +85,7 @@ def test_files_that_are_written(capsys, tmp_path):
 def test_a_path_that_collides_is_told_with_the_place(capsys):
     found = planned(capsys, GAPS, *ENDS, "--planner", "straight_line")
     assert found["feasible"].startswith("no: enters an obstacle at 4.75,10, ")
+    assert found["length"].endswith(" % below the shortest path")
 
 
 def test_a_planner_takes_its_settings_from_its_study_and_a_seed_decides(capsys):

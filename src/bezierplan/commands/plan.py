@@ -373,7 +373,9 @@ def _told(judged: api.Judged, task: _Task, solution: _Solution, kept: float) -> 
     lines.append(("shortest path", f"{judged.shortest:.6g} {unit}"))
     if judged.path is None:
         return [*lines, ("path", f"none ({solution.plan.stop})"), ("CPU time", f"{seconds:.3g} s")]
-    lines.append(("length", f"{judged.length:.6g} {unit}, {_told_number(100 * judged.gap, 3)} % above the shortest path"))
+    gap = _told_number(100 * abs(judged.gap), 3)
+    side = "below" if judged.gap < 0 and gap != "0" else "above"
+    lines.append(("length", f"{judged.length:.6g} {unit}, {gap} % {side} the shortest path"))
     lines.append(("curvature", _told_curvature(judged, task.smooth)))
     if planner in legs.TURNING:
         asked = settings["turning_radius"]

@@ -1,0 +1,170 @@
+"""OMPL beside the baselines for a robot with a width, and for one with a turning radius: the third part of `make compare`.
+
+On the six maps of polygons of elhoseny2017: CPU time of one core until a path that the checker accepts is within 2 % of the shortest, the
+median of the seeds, and how many times that of ours. Budgets double, so OMPL's times are known to a factor of two; ours are of one run.
+
+* A disc: the map grows by its radius. `rounded_shortest_path` is set beside OMPL's planners with its simplifier, as in compare_planners.py;
+  its time includes that of the exact shortest path, with which all are compared. OMPL's paths are polylines.
+* A turning radius, with headings at both ends: `dubins_search` beside OMPL's planners in its space of Dubins paths, whose motions the same
+  exact test of the same paths checks. No shortest path is known here: the shortest that any of them found stands for it. In its space of
+  Reeds and Shepp a robot also backs up, which ours does not, so their lengths cannot be compared.
+
+Growing the map and compiling is charged to nobody. Writes robots.csv (each path) and robots_times.csv into results/comparison.
+"""
+
+import math
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path as File
+from typing import NamedTuple
+
+sys.path.insert(0, str(File(__file__).resolve().parents[2] / "src"))
+
+import numpy as np
+import pandas as pd
+from anytime import time_table
+
+from bezierplan.figures import sheet
+from bezierplan.geometry import checker, curves, shortest_paths
+from bezierplan.geometry.region import Region, region
+from bezierplan.planners import dubins_search
+from bezierplan.running import legs
+from bezierplan.workspaces import map_files
+from bezierplan.workspaces.problem import Path, Problem
+
+try:
+    import ompl_planners
+except ImportError as fault:
+    sys.exit(f"compare_robots: OMPL cannot be imported here ({fault}); its wheels are for Linux and for macOS 15 or later on Apple silicon")
+
+ROOT = File(__file__).resolve().parents[2]
+MAPS = ROOT / "config" / "studies" / "elhoseny2017" / "workspaces"
+FOLDER = ROOT / "results" / "comparison"
+
+ENDS = {
+    "back_and_forth": ((1.0, 1.25), (1.0, 8.75)),
+    "bugtrap1": ((12.6, 14.4), (22.4, 24.2)),
+    "complex2": ((1.0, 1.0), (19.0, 19.0)),
+    "gaps": ((2.0, 10.0), (18.0, 10.0)),
+    "hidden_U": ((10.0, 3.0), (10.0, 27.0)),
+    "square_spiral": ((2.5, 2.5), (12.5, 7.5)),
+}
+RADIUS = 0.2
+TURNING_RADIUS = 0.4
+HEADINGS = (math.pi, math.pi)
+
+WITHIN = 0.02
+SEEDS, TIMES = 20, 0.64 / 2.0 ** np.arange(9, -1, -1)
+TURNING_SEEDS, TURNING_TIMES = 5, 4.0 / 2.0 ** np.arange(8, -1, -1)
+
+OURS = "ours"
+
+# CPU seconds and the length of a path that the checker accepts; infinite without one.
+Attempt = tuple[float, float]
+
+
+class Arena(NamedTuple):
+    """A problem on a map for the robot's centre, and its blocked region."""
+
+    problem: Problem
+    blocked: Region
+
+
+def arena(name: str, radius: float) -> Arena:
+    file = MAPS / f"{name}.geojson"
+    workspace = map_files.read(file, map_files.described(file), radius)
+    problem = Problem(name, workspace, *ENDS[name])
+    return Arena(problem, region(workspace))
+
+
+def length_of(at: Arena, path: Path) -> float:
+    pieces = curves.bezier_pieces(path)
+    return curves.length(path) if checker.check(pieces, at.blocked).feasible else math.inf
+
+
+def ours(at: Arena, planner: str, settings: dict) -> Iterator[Attempt]:
+    before = time.process_time()
+    bound = shortest_paths.shortest_path(at.problem, blocked=at.blocked)
+    plan = legs.solved(planner, [at.problem], [bound], at.blocked, settings)
+    seconds = time.process_time() - before
+    yield seconds, length_of(at, plan.path) if plan.path else math.inf
+
+
+def disc(name: str) -> pd.DataFrame:
+    """Attempts of all planners for a disc, as `anytime` takes them."""
+    at = arena(name, RADIUS)
+    bound = shortest_paths.shortest_path(at.problem, blocked=at.blocked).length
+    is_free = ompl_planners.segment_test(at.blocked)
+    settings = legs.preset(legs.ROUNDED, at.problem.workspace)
+
+    def with_ompl(planner: str) -> Iterator[Attempt]:
+        for seconds, points in ompl_planners.attempts(planner, at.problem, is_free, TIMES):
+            yield seconds, math.inf if points is None else length_of(at, Path("polyline", points))
+
+    rivals = {OURS: lambda: ours(at, legs.ROUNDED, settings)}
+    rivals |= {planner: lambda planner=planner: with_ompl(planner) for planner in ompl_planners.PLANNERS}
+    return attempts_of(f"{name}, disc", rivals, SEEDS, bound)
+
+
+def turning(name: str) -> pd.DataFrame:
+    """Attempts of all planners with a turning radius."""
+    at = arena(name, 0.0)
+    is_free = ompl_planners.dubins_test(at.blocked, TURNING_RADIUS)
+    settings = {"turning_radius": TURNING_RADIUS, "start_heading": HEADINGS[0], "target_heading": HEADINGS[1]}
+
+    def with_ompl(planner: str) -> Iterator[Attempt]:
+        for seconds, poses in ompl_planners.turning_attempts(planner, at.problem, TURNING_RADIUS, HEADINGS, is_free, TURNING_TIMES):
+            pieces = [] if poses is None else dubins_search._chain(poses, TURNING_RADIUS, 1, at.blocked)
+            yield seconds, curves.length_of(pieces) if len(pieces) else math.inf
+
+    rivals = {OURS: lambda: ours(at, legs.DRIVEN, settings)}
+    rivals |= {planner: lambda planner=planner: with_ompl(planner) for planner in ompl_planners.TURNING_PLANNERS}
+    return attempts_of(f"{name}, turning", rivals, TURNING_SEEDS, None)
+
+
+def attempts_of(problem: str, rivals: dict, seeds: int, bound: float | None) -> pd.DataFrame:
+    """A row an attempt; the excess is that over a length, or over the least that was found."""
+    for run in rivals.values():
+        next(iter(run()), None)  # compiles
+    rows = [
+        {"problem": problem, "method": method, "seed": seed, "cpu_s": seconds, "length": length}
+        for seed in range(seeds)
+        for method, run in rivals.items()
+        for seconds, length in run()
+    ]
+    attempts = pd.DataFrame(rows)
+    attempts["excess"] = attempts["length"] / (attempts["length"].min() if bound is None else bound) - 1
+    return attempts
+
+
+def printed(table: pd.DataFrame) -> str:
+    """Milliseconds, the share of seeds that get there, and how many times ours, for each problem and planner."""
+    lines = []
+    for problem, own in table.groupby("problem", sort=False):
+        ours_s = own.loc[own["method"] == OURS, "median_s"].item()
+        cells = [
+            f"{each.method} {1e3 * each.median_s:.1f} ({each.median_s / ours_s:.1f} x, {100 * each.reached:.0f} %)"
+            for each in own.itertuples()
+        ]
+        lines.append(f"{problem:26}{'   '.join(cells)}")
+    return "\n".join(lines)
+
+
+def main() -> None:
+    FOLDER.mkdir(parents=True, exist_ok=True)
+    ompl_planners.start(seed=1)
+    print(f"CPU ms until a path is within {100 * WITHIN:g} % of the shortest (times ours, seeds that get there)\n")
+    found = []
+    for contest in (disc, turning):
+        for name in ENDS:
+            found.append(contest(name))
+            print(printed(time_table(found[-1], (WITHIN,))), flush=True)
+    attempts = pd.concat(found, ignore_index=True)
+    sheet.write_data(attempts, FOLDER / "robots.csv")
+    sheet.write_data(time_table(attempts, (WITHIN,)), FOLDER / "robots_times.csv")
+    print(f"\nTables: {FOLDER.relative_to(ROOT)}")
+
+
+if __name__ == "__main__":
+    main()
