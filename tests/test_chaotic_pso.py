@@ -464,7 +464,7 @@ def among(*obstacles, start=(-4.0, 0.0), target=(4.0, 0.0)):
 
 def violation_of(task, x, y, **changed):
     objective = chaotic_pso._objective(task, filled(chaotic_pso.Settings, SETTINGS | changed))
-    return penalised.violation(np.array([x, y], dtype=float), 0.0, np.inf, objective, np.empty(len(x)))
+    return penalised.violation(np.array([x, y], dtype=float), objective, np.empty(len(x)))
 
 
 def test_the_violation_of_a_polygon_is_the_mean_depth_as_a_share_of_the_deepest():
@@ -484,24 +484,6 @@ def test_a_hole_is_free_and_an_indented_polygon_has_an_outside_within_its_box():
     bay = (np.array([[0.0, 0], [6, 0], [6, 6], [4, 6], [4, 2], [2, 2], [2, 6], [0, 6]]),)
     assert violation_of(among(bay), [3, 3], [4, 2.5]) == (0.0, 0)
     assert violation_of(among(bay), [3], [1])[1] == 1
-
-
-@pytest.mark.parametrize("penalty", ["multiply", "add", "death"])
-def test_a_search_that_counts_no_collisions_leaves_out_only_what_no_result_needs(penalty):
-    task = among((SQUARE,), (SQUARE + np.array([3.0, 1.0]),), (0.5 * SQUARE - np.array([3.0, 0.5]),))
-    counting, other = (plan(task, 3, penalty=penalty, beta=12.0, count_collisions=counts) for counts in (True, False))
-    assert other.history.tolist() == counting.history.tolist()
-    assert other.path.points.tolist() == counting.path.points.tolist()
-    assert other.extra["violation"] == counting.extra["violation"]
-
-
-def test_a_violation_ends_where_the_fitness_is_known_to_reach_the_limit():
-    """Two of three points are in a square: after the first, an added penalty of 10 times its share is above 0."""
-    objective = chaotic_pso._objective(among((SQUARE,)), filled(chaotic_pso.Settings, SETTINGS | {"penalty": "add", "beta": 10.0}))
-    curve = np.array([[0.0, 0.0, 3.0], [0.0, 0.5, 0.0]])
-    assert penalised.violation(curve, 1.0, np.inf, objective, np.empty(3)) == (pytest.approx(0.5), 2)
-    assert penalised.violation(curve, 1.0, 4.0, objective, np.empty(3)) == (pytest.approx(1 / 3), 1)
-    assert penalised.violation(curve, 1.0, 5.9, objective, np.empty(3)) == (pytest.approx(0.5), 2)
 
 
 def test_polygons_grow_by_the_safety_distance():

@@ -70,7 +70,7 @@ def test_ways_are_those_of_the_runs(found):
     curve, scratch = np.empty((2, SETTINGS["samples"])), np.empty(SETTINGS["samples"])
     for best, position in zip(run["history"], points[:, 1:-1]):
         length = penalised.length(position.T.ravel(), again, curve, scratch)
-        violation, _ = penalised.violation(curve, length, np.inf, again, scratch)
+        violation, _ = penalised.violation(curve, again, scratch)
         assert penalised.fitness(length, violation, again) == pytest.approx(best, rel=1e-12)
     np.testing.assert_array_equal(points[-1].ravel(), run["path_points"])
 

@@ -129,7 +129,7 @@ def _particle(_, particle, objective, *__):
     return {"terms": n * samples, "roots": samples - 1}
 
 
-def _violation(_, curve, length, limit, objective, __):
+def _violation(_, curve, objective, __):
     x, y = curve[0], curve[1]
     polygons = objective.polygons
     done = Counter(obstacles=(len(objective.balls) + len(polygons.deepest)) * len(x))
