@@ -464,7 +464,7 @@ def among(*obstacles, start=(-4.0, 0.0), target=(4.0, 0.0)):
 
 def violation_of(task, x, y, **changed):
     objective = chaotic_pso._objective(task, filled(chaotic_pso.Settings, SETTINGS | changed))
-    return penalised.violation(np.array([x, y], dtype=float), 0.0, np.inf, objective, np.empty(len(x)))
+    return penalised.violation(np.array([x, y], dtype=float), objective, np.empty(len(x)))
 
 
 def test_the_violation_of_a_polygon_is_the_mean_depth_as_a_share_of_the_deepest():

@@ -54,6 +54,13 @@ def test_signature_and_documentation_follow_from_the_declaration():
     assert "rule : one of keep, drop\n    what happens to them (assumed)" in plan.__doc__
 
 
+def test_equal_values_of_other_types_are_filled_in_as_they_are():
+    """A kernel is compiled for each type, so 1 must not become what an equal number was before."""
+    for tries in (1, 1.0, True):
+        found = filled(Settings, {"tries": tries, "reach": 3, "rule": "keep"})
+        assert (type(found.tries), type(found.reach), found.rule) == (type(tries), float, 0)
+
+
 def test_lengths_in_units_become_cells():
     settings = filled(Settings, {"tries": 4, "reach": 3.0, "rule": "keep"})
     assert in_cells(settings, 2.0) == (4, 1.5, 0)

@@ -156,7 +156,7 @@ def test_in_the_plane_objectives_are_equal_to_the_last_bit(free, table):
         objective = chaotic_pso._objective(task, filled(chaotic_pso.Settings, SETTINGS))
         curve, scratch = np.empty((len(task.start), SETTINGS["samples"])), np.empty(SETTINGS["samples"])
         length = penalised.length(position, objective, curve, scratch)
-        found.append((length, *penalised.violation(curve, length, np.inf, objective, scratch)))
+        found.append((length, *penalised.violation(curve, objective, scratch)))
     assert found[0] == found[1]
 
 
@@ -165,7 +165,7 @@ def test_the_violation_of_a_sphere_is_the_mean_depth_as_a_share_of_its_radius():
     task = Problem("", among((0, 0, 0, 2)), (-4.0, 0.0, 0.0), (4.0, 0.0, 0.0))
     objective = chaotic_pso._objective(task, filled(chaotic_pso.Settings, SETTINGS))
     curve = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [0, 0, 2], [0, 0, 3.0]]).T.copy()
-    assert penalised.violation(curve, 0.0, np.inf, objective, np.empty(6)) == (pytest.approx((1 + 3 * 0.5) / 6), 4)
+    assert penalised.violation(curve, objective, np.empty(6)) == (pytest.approx((1 + 3 * 0.5) / 6), 4)
 
 
 def test_the_swarm_comes_close_to_the_exact_way_around_a_sphere():

@@ -62,7 +62,7 @@ def _fitness(z, objective):
     fitness = np.empty(len(z))
     for i in range(len(z)):
         length = penalised.length(z[i], objective, curve, scratch)
-        violation, _ = penalised.violation(curve, length, np.inf, objective, scratch)
+        violation, _ = penalised.violation(curve, objective, scratch)
         fitness[i] = penalised.fitness(length, violation, objective)
     return fitness
 

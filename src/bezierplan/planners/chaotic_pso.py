@@ -312,10 +312,9 @@ def _swarm(rng, x, zeta, low, high, limit, objective, rules):
                 _move(rng, r, x[i], v[i], p[i], attractor, zeta[before, min(i, zeta.shape[1] - 1)], w, limit, rules)
                 _hold(x[i], v[i], low, high, rules.bound_rule)
             length = penalised.length(x[i], objective, curve, scratch)
-            known = np.inf if rules.count_collisions else p_fitness[i]
-            if penalised.least_fitness(length, objective) >= known:
+            if not rules.count_collisions and penalised.least_fitness(length, objective) >= p_fitness[i]:
                 continue
-            violation, colliding = penalised.violation(curve, length, known, objective, scratch)
+            violation, colliding = penalised.violation(curve, objective, scratch)
             infeasible += violation > FEASIBLE
             colliding_samples += colliding
             fitness = penalised.fitness(length, violation, objective)

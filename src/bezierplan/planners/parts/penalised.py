@@ -150,39 +150,27 @@ def _sides(ring: "LinearRing") -> np.ndarray:
 
 
 @allocation_free
-def violation(curve: np.ndarray, length: float, limit: float, objective: Objective, scratch: np.ndarray) -> tuple[float, int]:
+def violation(curve: np.ndarray, objective: Objective, scratch: np.ndarray) -> tuple[float, int]:
     """Violation of a path, and its number of samples in obstacles, both summed over the obstacles.
 
     The violation of an obstacle is the mean over the samples of their depth below its edge, as a share of the largest depth (tharwat2018,
     eqs. 20 and 21; the paper prints control points where only points of the path make sense).
 
-    curve: (d, samples). scratch: (samples,). limit: nobody needs to know by how much the fitness of a path of this length exceeds it, so
-    the rest of what a path meets is left out where that is certain.
+    curve: (d, samples). scratch: (samples,).
     """
-    total, colliding = _among_balls(curve, length, limit, objective, scratch)
-    if len(objective.polygons.deepest) == 0 or _is_lost(length, total, limit, objective):
-        return total, colliding
-    of_polygons, in_polygons = _among_polygons(curve[0], curve[1], length, limit, objective)
-    return total + of_polygons, colliding + in_polygons
+    of_balls, in_balls = _among_balls(curve, objective.balls, scratch)
+    of_polygons, in_polygons = _among_polygons(curve[0], curve[1], objective.polygons)
+    return of_balls + of_polygons, in_balls + in_polygons
 
 
 @allocation_free
-def _is_lost(length, violation, limit, objective):
-    """Whether no path of this length with at least this violation has a fitness below a limit."""
-    if objective.penalty == Penalty.death and violation <= FEASIBLE:
-        return False
-    return fitness(length, violation, objective) >= limit
-
-
-@allocation_free
-def _among_polygons(x, y, length, limit, objective):
-    """The part of `violation` for polygons, if there are no others."""
-    polygons = objective.polygons
+def _among_polygons(x, y, polygons):
+    """The parts of `violation` for polygons."""
     samples = len(x)
     total, colliding = 0.0, 0
     for o in range(len(polygons.deepest)):
         left, right, bottom, top = polygons.boxes[o]
-        near = 0
+        near = 0  # most polygons lie aside, which vector instructions tell
         for s in range(samples):
             near += (left < x[s]) & (x[s] < right) & (bottom < y[s]) & (y[s] < top)
         if near == 0:
@@ -192,11 +180,8 @@ def _among_polygons(x, y, length, limit, objective):
         for s in range(samples):
             if left < x[s] < right and bottom < y[s] < top:
                 depth = _depth(x[s], y[s], edges)
-                if depth > 0.0:
-                    depths += depth / polygons.deepest[o]
-                    colliding += 1
-                    if _is_lost(length, total + depths / samples, limit, objective):
-                        return total + depths / samples, colliding
+                depths += depth / polygons.deepest[o]
+                colliding += depth > 0.0
         total += depths / samples
     return total, colliding
 
@@ -223,9 +208,8 @@ def _depth(x, y, edges):
 
 
 @allocation_free
-def _among_balls(curve, length, limit, objective, squares):
-    """The part of `violation` for circles or spheres."""
-    balls = objective.balls
+def _among_balls(curve, balls, squares):
+    """The parts of `violation` for circles or spheres (obstacles, d + 1)."""
     dimensions, samples = curve.shape
     x, y = curve[0], curve[1]
     total, colliding = 0.0, 0
@@ -249,6 +233,4 @@ def _among_balls(curve, length, limit, objective, squares):
                     depth += max(1.0 - np.sqrt(squares[s]) / radius, 0.0)
             total += depth / samples
             colliding += inside
-            if _is_lost(length, total, limit, objective):
-                break
     return total, colliding

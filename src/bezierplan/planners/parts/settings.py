@@ -17,7 +17,7 @@ import sys
 import typing
 from collections.abc import Callable
 from enum import EnumMeta
-from functools import cache, wraps
+from functools import cache, lru_cache, wraps
 from typing import Any, NamedTuple, TypeVar
 
 ASSUMED = "assumed"
@@ -145,8 +145,14 @@ def _declared(settings: type) -> dict[str, Setting]:
 
 def filled(settings: type[T], values: dict[str, Any]) -> T:
     """A class of settings with these values, given by name as in a study. Raises TypeError for a missing or unknown name."""
+    return _filled(settings, tuple(values.items()), tuple(map(type, values.values())))
+
+
+@lru_cache(maxsize=256)
+def _filled(settings: type[T], values: tuple[tuple[str, Any], ...], types: tuple[type, ...]) -> T:
+    """`filled`, once for all runs with the same settings. types: of the values, since 1, 1.0 and true are equal."""
     declared = _declared(settings)
-    return settings(**{name: declared[name].number(value) if name in declared else value for name, value in values.items()})
+    return settings(**{name: declared[name].number(value) if name in declared else value for name, value in values})
 
 
 def in_cells(settings: T, cell: float) -> T:
