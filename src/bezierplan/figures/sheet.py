@@ -157,8 +157,8 @@ def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, column
     return figure
 
 
-# Kinds with names beside their rows, which take the room of a second panel, and the most panels of others below each other.
-_NAMED_ROWS, _MOST_BELOW = {"boxes", "critical_difference", "dots", "expected_running_time"}, 4
+# Kinds with names or a strip of last values beside them, which take the room of a second panel, and the most panels of others below each other.
+_NAMED_ROWS, _MOST_BELOW = {"boxes", "convergence", "critical_difference", "dots", "expected_running_time"}, 4
 
 
 def narrow_columns(panels: list[dict[str, Any]]) -> int:
