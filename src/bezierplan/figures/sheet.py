@@ -157,7 +157,7 @@ def draw(panels: list[dict[str, Any]], frame: pd.DataFrame, scene: Scene, column
     return figure
 
 
-# Kinds with names or a strip of last values beside them, which take the room of a second panel, and the most panels of others below each other.
+# Kinds with names or last values beside them, which take the room of a second panel, and the most panels of others below each other.
 _NAMED_ROWS, _MOST_BELOW = {"boxes", "convergence", "critical_difference", "dots", "expected_running_time"}, 4
 
 
