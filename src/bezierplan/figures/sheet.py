@@ -95,7 +95,7 @@ def draw(panels: list[Panel], frame: pd.DataFrame, scene: Scene, columns: int, w
     return figure
 
 
-# The most panels without names beside their rows below each other.
+# The most panels without names or last values beside them below each other.
 _MOST_BELOW = 4
 
 

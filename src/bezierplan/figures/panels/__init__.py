@@ -112,7 +112,7 @@ class Panel(Model):
     published_drawn: whether published numbers are drawn. rerun: whether runs are repeated to draw what no table keeps. plans: whether it
     plans by itself, with a method of the study. one: columns of which the runs that it shows have one value. drives: whether these are
     drives. tracks: whether their planner must have `track`. fewest_methods: how many methods it compares at least. named_rows: whether
-    names stand beside its rows, which take the room of a second panel.
+    names or last values stand beside it, which take the room of a second panel.
     """
 
     published_drawn: ClassVar[bool] = False

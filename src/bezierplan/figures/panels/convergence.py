@@ -5,7 +5,7 @@ A study's label of `generation` names the axis, such as `iteration` for a swarm.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -39,6 +39,8 @@ _FAR = 0.5
 
 class Options(RunsPanel):
     """Keys of a panel."""
+
+    named_rows: ClassVar[bool] = True
 
     pick: Pick = Field(None, description=PICK)
     hue: Column = Field(None, description="in place of pick, a column of the runs table: a line for each of its values")
