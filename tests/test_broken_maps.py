@@ -223,7 +223,7 @@ LINES = {
     "a margin beside a border": (["room.geojson", *ENDS, "--margin", "1"], "--margin: 1: the file has a border of its own; expected no"),
     "a margin of cells": (["room.txt", *ENDS, "--margin", "1"], "--margin: only for polygons; room.txt is cells"),
     "a resolution of nan": (["room.png", *ENDS, "--resolution", "nan"], "--resolution: nan; expected a number above 0"),
-    "a resolution of a map": (["room.yaml", *ENDS, "--resolution", "1"], "--resolution: only for an image or an SVG drawing; room.yaml is a ROS map"),
+    "a resolution of a map": (["room.yaml", *ENDS, "--resolution", "1"], "only for an image or an SVG drawing; room.yaml is a ROS"),
     "an image without a resolution": (["room.png", *ENDS], "--resolution: missing; expected the length of a pixel's side, or the YAML"),
     "unknown pixels of cells": (["room.txt", *ENDS, "--unknown", "free"], "--unknown: only for a ROS map or an image; room.txt is cells"),
     "unknown pixels of a colour": (["room.yaml", *ENDS, "--unknown", "grey"], "argument --unknown: invalid choice: 'grey'"),

@@ -99,6 +99,7 @@ def turning_attempts(
         state = space.allocState()
         state.setXY(x, y)
         state.setYaw(heading)
+        space.enforceBounds(state)  # a heading of pi is out of bounds, and OMPL would not say so
         ends.append(state)
     definition.setStartAndGoalStates(*ends)
     definition.setOptimizationObjective(base.PathLengthOptimizationObjective(information))
