@@ -259,14 +259,14 @@ class Evaluator:
             for workspace, key in choice.get("workspace", {}).items()
             if choice["id"] in interpretation and workspace in used
         ]
-        place = json.dumps([experiment, names, changes])
-        if place not in self.worlds:
+        described_world = json.dumps([experiment, names, changes])
+        if described_world not in self.worlds:
             workspaces = {name: dict(described["workspaces"][name]) for name in sorted(used)}
             for workspace, key, value in changes:
                 workspaces[workspace][key] = value
             made, _ = problem_files.build_all(described | {"problems": wanted, "workspaces": workspaces}, self.maps)
-            self.worlds[place] = made, problem_files.bounds_of(made).to_pandas()
-        return *self.worlds[place], changes
+            self.worlds[described_world] = made, problem_files.bounds_of(made).to_pandas()
+        return *self.worlds[described_world], changes
 
     def _runs(self, job: dict, problems: dict, changes: list) -> pd.DataFrame:
         key = source_digest(_planner(job["planner"])) + self.job["maps"] + json.dumps([job, changes], sort_keys=True)

@@ -173,26 +173,26 @@ def main(parser: ArgumentParser, words: list[str]) -> None:
     _plan(parser.parse_args(_joined(words)))
 
 
-def _plan(given: Namespace) -> None:
-    _check_words(given)
-    places, headings = _places(given)
-    planner, settings = _planner(given, headings)
+def _plan(arguments: Namespace) -> None:
+    _check_words(arguments)
+    places, headings = _places(arguments)
+    planner, settings = _planner(arguments, headings)
     module, regions = planner_module(planner), problems.remembered()
     with _as_options():
-        legs.check_planner(planner, given.via, given.strict, given.smooth)
-        via = [map_files.point("via", text) for text in given.via]
-        outline = _footprint(given)
-        described, home = _map(given, planner)
+        legs.check_planner(planner, arguments.via, arguments.strict, arguments.smooth)
+        via = [map_files.point("via", text) for text in arguments.via]
+        outline = _footprint(arguments)
+        described, home = _map(arguments, planner)
         if outline:
             home = robot.grow(home, footprints.radii(outline)[0])
-        problem = _problem(given, described, planner, places, home, regions)
+        problem = _problem(arguments, described, planner, places, home, regions)
         legs.legs(problem, via, regions)
     if planner in legs.TURNING:
         settings = legs.preset(planner, problem.workspace) | settings
     interface.check_settings(module, settings, "--settings")
     if hasattr(module, "serves"):
         interface.asked(module.serves, f"--planner: {planner}", problem)
-    task = _Task(planner, module, settings, given.seed, via, given.smooth, regions)
+    task = _Task(planner, module, settings, arguments.seed, via, arguments.smooth, regions)
     solution = _solution(task, problem)
     judged = _judged(task, problem, solution, solution.bound, outline)
     if outline:
@@ -201,7 +201,7 @@ def _plan(given: Namespace) -> None:
             if first is None:
                 return solution, judged
             try:
-                wide = _problem(given, described, planner, places, robot.grow(original(home), radius), regions)
+                wide = _problem(arguments, described, planner, places, robot.grow(original(home), radius), regions)
                 found = _solution(task, wide)
             except ValueError:  # no room for a disc that large
                 return None
@@ -209,20 +209,20 @@ def _plan(given: Namespace) -> None:
 
         solution, judged = footprints.first_that_holds(outline, attempt, lambda each: each[1].feasible)
     kept = legs.kept(planner, solution.plan, settings)
-    if given.strict:
+    if arguments.strict:
         with _as_options():
             footprints.check_held(outline, judged.feasible)
-            legs.check_continuous(given.smooth, judged.curvature_jump, judged.curvature_bound, problem.workspace.unit)
+            legs.check_continuous(arguments.smooth, judged.curvature_jump, judged.curvature_bound, problem.workspace.unit)
             legs.check_kept(settings["turning_radius"], kept, problem.workspace.unit)
     for name, text in _told(judged, task, solution, kept):
         print(f"{name:16}{text}")
-    if given.out and judged.path is None:
-        raise Fault(f"--out: {given.out}: not written, {planner} found no path")
-    if given.out:
+    if arguments.out and judged.path is None:
+        raise Fault(f"--out: {arguments.out}: not written, {planner} found no path")
+    if arguments.out:
         try:
-            _write(given.out, judged, given.step)
+            _write(arguments.out, judged, arguments.step)
         except OSError as error:  # such as a disk that is full by now
-            raise _unwritable(given.out, error) from None
+            raise _unwritable(arguments.out, error) from None
 
 
 class _Task(NamedTuple):
@@ -280,29 +280,29 @@ def _judged(task: _Task, problem: Problem, solution: _Solution, bound: shortest_
     return judged
 
 
-def _footprint(given: Namespace) -> Footprint | None:
+def _footprint(arguments: Namespace) -> Footprint | None:
     """The footprint that is asked for. Raises ValueError, naming the option, for one that is none, or beside a radius."""
-    if given.footprint is None:
+    if arguments.footprint is None:
         return None
-    if given.robot_radius is not None:
+    if arguments.robot_radius is not None:
         raise Fault("--footprint: given beside --robot-radius, which is a footprint of its own; expected one of them")
-    return footprint(checked.parse(given.footprint, "--footprint"))
+    return footprint(checked.parse(arguments.footprint, "--footprint"))
 
 
-def _check_words(given: Namespace) -> None:
+def _check_words(arguments: Namespace) -> None:
     """Raise Fault for options that are wrong whatever the map is."""
-    if given.out:
-        _check_out(given.out)
-    if given.unit is not None and not is_line(given.unit):
-        raise Fault(f"--unit: {given.unit!r}; expected a name of one line")
-    if given.seed < 0:
-        raise Fault(f"--seed: {given.seed}; expected a whole number of at least 0")
-    if given.scenario and (given.start or given.target):
-        raise Fault(f"--scenario: {given.scenario}: has a start and a target of its own; expected no --start and no --target beside it")
-    if given.step is not None and not 0 < given.step < math.inf:
-        raise Fault(f"--step: {given.step:g}; expected a number above 0")
-    if given.step is not None and (given.out is None or given.out.suffix.lower() in PICTURES):
-        raise Fault(f"--step: {given.step:g}: only for --out with a file that ends in {', '.join(OUT[len(PICTURES) :])}")
+    if arguments.out:
+        _check_out(arguments.out)
+    if arguments.unit is not None and not is_line(arguments.unit):
+        raise Fault(f"--unit: {arguments.unit!r}; expected a name of one line")
+    if arguments.seed < 0:
+        raise Fault(f"--seed: {arguments.seed}; expected a whole number of at least 0")
+    if arguments.scenario and (arguments.start or arguments.target):
+        raise Fault(f"--scenario: {arguments.scenario}: has a start and a target of its own; expected no --start and no --target beside it")
+    if arguments.step is not None and not 0 < arguments.step < math.inf:
+        raise Fault(f"--step: {arguments.step:g}; expected a number above 0")
+    if arguments.step is not None and (arguments.out is None or arguments.out.suffix.lower() in PICTURES):
+        raise Fault(f"--step: {arguments.step:g}: only for --out with a file that ends in {', '.join(OUT[len(PICTURES) :])}")
 
 
 @contextmanager
@@ -424,26 +424,28 @@ def _places(given: Namespace) -> tuple[dict[str, tuple[float, float]], dict[str,
     return places, headings
 
 
-def _planner(given: Namespace, headings: dict[str, float]) -> tuple[str, dict[str, Any]]:
+def _planner(arguments: Namespace, headings: dict[str, float]) -> tuple[str, dict[str, Any]]:
     """The planner and its settings, as far as they are known without the map."""
-    own = checked.parse(given.settings, "--settings")
-    if not isinstance(own, dict):
-        raise Fault(f"--settings: {given.settings}: expected '{{name: value, ...}}'")
-    if twice := headings.keys() & own.keys():
+    changed = checked.parse(arguments.settings, "--settings")
+    if not isinstance(changed, dict):
+        raise Fault(f"--settings: {arguments.settings}: expected '{{name: value, ...}}'")
+    if twice := headings.keys() & changed.keys():
         raise Fault(f"--settings: {min(twice)}: given with --{min(twice).removesuffix('_heading')} as well; expected once")
-    if given.like:
-        planner, preset = _like(given.like)
+    if arguments.like:
+        planner, preset = _like(arguments.like)
     else:
-        planner = given.planner or (legs.DRIVEN if {"start_heading", "target_heading"} & (headings.keys() | own.keys()) else legs.ROUNDED)
+        planner = arguments.planner or (
+            legs.DRIVEN if {"start_heading", "target_heading"} & (headings.keys() | changed.keys()) else legs.ROUNDED
+        )
         if not planner.endswith(".py") and planner not in known_planners():
             raise Fault(f"--planner: {planner}: unknown{closest(planner, known_planners())}")
         interface.loaded(planner, f"--planner: {planner}")
         preset = {} if planner in legs.TURNING or planner.endswith(".py") else _preset(planner)
     if headings and planner != legs.DRIVEN:
         end = min(headings).removesuffix("_heading")
-        raise Fault(f"--{end}: {getattr(given, end)}: a heading is only for {legs.DRIVEN}; the planner is {planner}")
-    interface.refuse_unknown(planner_module(planner), own, "--settings")
-    return planner, preset | own | headings
+        raise Fault(f"--{end}: {getattr(arguments, end)}: a heading is only for {legs.DRIVEN}; the planner is {planner}")
+    interface.refuse_unknown(planner_module(planner), changed, "--settings")
+    return planner, preset | changed | headings
 
 
 def _like(name: str) -> tuple[str, dict[str, Any]]:
@@ -472,19 +474,19 @@ def _preset(planner: str) -> dict[str, Any]:
     return {}
 
 
-def _map(given: Namespace, planner: str) -> tuple[dict[str, Any], Workspace]:
+def _map(arguments: Namespace, planner: str) -> tuple[dict[str, Any], Workspace]:
     """The map's description, and the map, as a grid if the planner needs cells."""
     served = getattr(planner_module(planner), "workspaces", None)
-    if given.robot_radius is not None:
-        robot.check_radius(given.robot_radius)
+    if arguments.robot_radius is not None:
+        robot.check_radius(arguments.robot_radius)
     names = ("cell", "rule", "unit", "margin", "resolution", "unknown", "most_pixels", "scenario")
-    options = {name: getattr(given, name) for name in names}
-    described = map_files.described(given.map, **options, cells=map_files.needs_cells(served))
-    return described, map_files.read(given.map, described, given.robot_radius)
+    options = {name: getattr(arguments, name) for name in names}
+    described = map_files.described(arguments.map, **options, cells=map_files.needs_cells(served))
+    return described, map_files.read(arguments.map, described, arguments.robot_radius)
 
 
 def _problem(
-    given: Namespace, described: dict[str, Any], planner: str, places: dict[str, tuple[float, float]], home: Workspace, regions: Regions
+    arguments: Namespace, described: dict[str, Any], planner: str, places: dict[str, tuple[float, float]], home: Workspace, regions: Regions
 ) -> Problem:
     """The map with start and target."""
     served = getattr(planner_module(planner), "workspaces", None)
@@ -492,8 +494,8 @@ def _problem(
     met = "polygons" if isinstance(workspace, Polygons) else "grid"
     if served is not None and met not in served:
         raise Fault(f"--planner: {planner}: serves workspaces of kind {', '.join(served)}, and a map is {met}")
-    if given.scenario:
-        return problems.build("", _scenario(given, described, original(workspace)), workspace, regions)
+    if arguments.scenario:
+        return problems.build("", _scenario(arguments, described, original(workspace)), workspace, regions)
     return problems.build("", places, workspace, regions)
 
 

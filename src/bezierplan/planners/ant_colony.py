@@ -88,14 +88,14 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     grid = problem.workspace
     corners = Corners(settings.corners).name
     colony = search(lattice(grid, problem.start, problem.target, corners), rng, settings)
-    found = len(colony.best) > 0
+    solved = len(colony.best) > 0
     return Plan(
-        path=Path("polyline", points(grid, problem.start, problem.target, colony.best)) if found else None,
+        path=Path("polyline", points(grid, problem.start, problem.target, colony.best)) if solved else None,
         objective=colony.history[-1] * grid.cell,
-        claimed_feasible=found,
+        claimed_feasible=solved,
         evaluations=settings.ants * len(colony.history),
         history=colony.history * grid.cell,
-        stop="iterations" if found else "no path",
+        stop="iterations" if solved else "no path",
         extra={},
     )
 
@@ -160,21 +160,21 @@ def _walk(rng, lattice, trail, heuristic, rules, path, visits, ant):
     while cell != lattice.target:
         open_steps = 0
         for step in range(8):
-            other = lattice.neighbours[cell, step]
-            if other >= 0 and visits[other] != ant:
+            neighbour = lattice.neighbours[cell, step]
+            if neighbour >= 0 and visits[neighbour] != ant:
                 steps[open_steps] = step
                 weighted = trail[cell, step]
                 # Taking the power costs as much as the rest of a step.
                 if rules.trail_weight != 1.0:
                     weighted **= rules.trail_weight
-                attraction[open_steps] = weighted * heuristic[other]
+                attraction[open_steps] = weighted * heuristic[neighbour]
                 open_steps += 1
         if open_steps == 0:
             return 0
-        other = lattice.neighbours[cell, steps[_choose(rng, attraction[:open_steps], rules.exploitation)]]
+        neighbour = lattice.neighbours[cell, steps[_choose(rng, attraction[:open_steps], rules.exploitation)]]
         if rules.local_evaporation > 0:
-            _lay(lattice, trail, cell, other, 1.0 - rules.local_evaporation, rules.local_evaporation * rules.initial_trail)
-        cell = other
+            _lay(lattice, trail, cell, neighbour, 1.0 - rules.local_evaporation, rules.local_evaporation * rules.initial_trail)
+        cell = neighbour
         path[size] = cell
         visits[cell] = ant
         size += 1

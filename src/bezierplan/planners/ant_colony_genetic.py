@@ -76,8 +76,8 @@ def plan(problem: Problem, rng: np.random.Generator, ants: ant_colony.Settings, 
     first, moves = rng.spawn(2)
     colony = ant_colony.search(places, first, ants)
     best, history = colony.best, colony.history
-    found = len(best) > 0
-    if found and places.start != places.target:
+    solved = len(best) > 0
+    if solved and places.start != places.target:
         rules = cell_paths.Rules(
             settings.crossover_probability,
             True,
@@ -91,12 +91,12 @@ def plan(problem: Problem, rng: np.random.Generator, ants: ant_colony.Settings, 
         best, later = cell_paths.evolve(moves, places, *_first_population(colony, settings.population), settings.generations, rules)
         history = np.concatenate([history, later[1:]])
     return Plan(
-        path=Path("polyline", points(grid, problem.start, problem.target, best)) if found else None,
+        path=Path("polyline", points(grid, problem.start, problem.target, best)) if solved else None,
         objective=history[-1] * grid.cell,
-        claimed_feasible=found,
+        claimed_feasible=solved,
         evaluations=ants.ants * len(colony.history) + settings.population * (len(history) - len(colony.history)),
         history=history * grid.cell,
-        stop="generations" if found else "no path",
+        stop="generations" if solved else "no path",
         extra={},
     )
 

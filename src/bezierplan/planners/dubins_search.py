@@ -250,17 +250,17 @@ def _free_word(a, b, radius, most, blocked, words, pieces):
 def _chain(poses, radius, most, blocked):
     """The pieces (n, 4, 2) of free words from pose to pose; none if there is not one between two of them."""
     words, pieces = np.empty((WORDS, 8)), np.empty((MOST_PIECES, 4, 2))
-    found = np.empty(((len(poses) - 1) * MOST_PIECES, 4, 2))
+    chain = np.empty(((len(poses) - 1) * MOST_PIECES, 4, 2))
     total = 0
     for i in range(len(poses) - 1):
         word, count = _free_word(poses[i], poses[i + 1], radius, most, blocked, words, pieces)
         if word < 0:
-            return found[:0]
+            return chain[:0]
         for k in range(count):
             for j in range(4):
-                found[total, j, 0], found[total, j, 1] = pieces[k, j, 0], pieces[k, j, 1]
+                chain[total, j, 0], chain[total, j, 1] = pieces[k, j, 0], pieces[k, j, 1]
             total += 1
-    return found[:total]
+    return chain[:total]
 
 
 # ---------------------------------------------------------------------------------------------------------------------
@@ -353,14 +353,14 @@ def _way(poses, came_from, last, ends):
     while node >= 0:
         count += 1
         node = came_from[node]
-    found = np.empty((count + 1, 3))
-    found[count] = ends[1]
+    way = np.empty((count + 1, 3))
+    way[count] = ends[1]
     node = last
     for k in range(count - 1, -1, -1):
-        found[k] = poses[node]
+        way[k] = poses[node]
         node = came_from[node]
-    found[0] = ends[0]
-    return found
+    way[0] = ends[0]
+    return way
 
 
 # ---------------------------------------------------------------------------------------------------------------------

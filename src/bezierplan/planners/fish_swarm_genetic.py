@@ -83,9 +83,9 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         paths, sizes, released = np.array([[places.start]]), np.array([1]), 1
     else:
         paths, sizes, released = _release(first, places, settings)
-    found = len(sizes) > 0
+    solved = len(sizes) > 0
     best, history = np.empty(0, dtype=np.int64), np.array([np.inf])
-    if found:
+    if solved:
         rules = cell_paths.Rules(
             settings.crossover_probability,
             True,
@@ -99,12 +99,12 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
         turns = np.resize(np.arange(len(sizes)), settings.population)
         best, history = cell_paths.evolve(moves, places, paths[turns], sizes[turns], settings.generations, rules)
     return Plan(
-        path=Path("polyline", points(grid, problem.start, problem.target, best)) if found else None,
+        path=Path("polyline", points(grid, problem.start, problem.target, best)) if solved else None,
         objective=history[-1] * grid.cell,
-        claimed_feasible=found,
+        claimed_feasible=solved,
         evaluations=settings.fish * released + settings.population * (len(history) - 1),
         history=history * grid.cell,
-        stop="generations" if found else "no path",
+        stop="generations" if solved else "no path",
         extra={},
     )
 
@@ -116,7 +116,7 @@ _SWIMMING, _ARRIVED, _DEAD = range(3)
 def _release(rng, lattice, swarm):
     """The first paths (n, longest path) of fish that arrive, at most a population, their sizes (n,), and the number of releases."""
     wanted = swarm.population
-    found, found_sizes = np.empty((wanted, swarm.longest_path), dtype=np.int64), np.empty(wanted, dtype=np.int64)
+    arrivals, arrival_sizes = np.empty((wanted, swarm.longest_path), dtype=np.int64), np.empty(wanted, dtype=np.int64)
     paths, sizes = np.empty((swarm.fish, swarm.longest_path), dtype=np.int64), np.empty(swarm.fish, dtype=np.int64)
     visited = np.empty((swarm.fish, len(lattice.row)), dtype=np.int64)
     cells, states = np.empty(swarm.fish, dtype=np.int64), np.empty(swarm.fish, dtype=np.int64)
@@ -148,9 +148,9 @@ def _release(rng, lattice, swarm):
                 if cell == lattice.target:
                     states[i] = _ARRIVED
                     if arrived < wanted:
-                        found_sizes[arrived] = cell_paths.put(paths[i, : sizes[i]], found[arrived], 0)
+                        arrival_sizes[arrived] = cell_paths.put(paths[i, : sizes[i]], arrivals[arrived], 0)
                         arrived += 1
-    return found[:arrived], found_sizes[:arrived], released
+    return arrivals[:arrived], arrival_sizes[:arrived], released
 
 
 @allocation_free

@@ -137,15 +137,15 @@ def _search(walks_rng, moves_rng, walker, start, target, rules):
     size, columns, population = len(walker.walled), walker.columns, rules.population
     # A path visits a cell once; before its loops are removed, a child consists of at most two paths and a walk.
     walk, last_visit = np.empty(2 * size + 2 * walker.longest_walk + 2, dtype=np.int64), np.empty(size, dtype=np.int64)
-    place, common = np.full(size, -1), np.empty(size, dtype=np.int64)
+    index, common = np.full(size, -1), np.empty(size, dtype=np.int64)
 
     paths, costs = _first_walks(walks_rng, walker, start, target, rules, walk, last_visit)
-    found = len(paths)
-    if found == 0:
-        return np.empty(0, dtype=np.int64), found, np.full(1, np.inf)
-    for i in range(found, population):
-        paths.append(paths[i % found])
-        costs[i] = costs[i % found]
+    founders = len(paths)
+    if founders == 0:
+        return np.empty(0, dtype=np.int64), founders, np.full(1, np.inf)
+    for i in range(founders, population):
+        paths.append(paths[i % founders])
+        costs[i] = costs[i % founders]
     paths, costs = _best(paths, costs, population)
     history = np.empty(rules.generations + 1)
     history[0] = costs[0]
@@ -156,7 +156,7 @@ def _search(walks_rng, moves_rng, walker, start, target, rules):
             head, tail = paths[drawn[2 * i]], paths[drawn[2 * i + 1]]
             count = 0
             if moves_rng.random() < rules.crossover_probability:
-                count = _join(moves_rng, head, tail, place, common, walk)
+                count = _join(moves_rng, head, tail, index, common, walk)
             if count == 0:
                 count = _copy(head, 0, len(head), walk, 0)
             count = _cut_loops(walk, count, last_visit)
@@ -166,7 +166,7 @@ def _search(walks_rng, moves_rng, walker, start, target, rules):
             costs[population + i] = _cost(walk, count, columns, rules.diagonal_cost)
         paths, costs = _best(paths, costs, population)
         history[generation + 1] = costs[0]
-    return paths[0], found, history
+    return paths[0], founders, history
 
 
 @compiled
@@ -281,26 +281,26 @@ def _cut_loops(walk, count, last_visit):
 
 
 @allocation_free
-def _join(rng, head, tail, place, common, walk):
+def _join(rng, head, tail, index, common, walk):
     """Write the head of one path and the tail of another, joined at a random inner cell of both. Returns its length, or 0 if there is no
     such cell.
 
-    place: (cells,) scratch, all -1 before and after.
+    index: (cells,) scratch, all -1 before and after.
     """
     for k in range(1, len(head) - 1):
-        place[head[k]] = k
+        index[head[k]] = k
     shared = 0
     for k in range(1, len(tail) - 1):
-        if place[tail[k]] >= 0:
+        if index[tail[k]] >= 0:
             common[shared] = k
             shared += 1
     count = 0
     if shared > 0:
         cut = common[integer(rng, 0, shared)]
-        count = _copy(head, 0, place[tail[cut]], walk, 0)
+        count = _copy(head, 0, index[tail[cut]], walk, 0)
         count = _copy(tail, cut, len(tail), walk, count)
     for k in range(1, len(head) - 1):
-        place[head[k]] = -1
+        index[head[k]] = -1
     return count
 
 

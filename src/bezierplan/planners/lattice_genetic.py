@@ -106,14 +106,14 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
                 settings.elitism,
             )
             best, history = cell_paths.evolve(moves, places, paths, sizes, settings.generations, rules)
-    found = len(best) > 0
+    solved = len(best) > 0
     return Plan(
-        path=Path("polyline", points(grid, problem.start, problem.target, best)) if found else None,
+        path=Path("polyline", points(grid, problem.start, problem.target, best)) if solved else None,
         objective=history[-1] * grid.cell,
-        claimed_feasible=found,
+        claimed_feasible=solved,
         evaluations=population * len(history),
         history=history * grid.cell,
-        stop="generations" if found else "no path",
+        stop="generations" if solved else "no path",
         extra={},
     )
 

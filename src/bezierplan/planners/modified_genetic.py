@@ -179,23 +179,23 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings, last: n
         known = genes_at(grid.in_cells(last), field)
         row = np.concatenate([known, np.zeros(_ROOM - len(known), dtype=np.int64)])
         first, counts = np.vstack([row, first])[: settings.population], np.append(len(known), counts)[: settings.population]
-    found = search(rng, field, settings, first, counts, scratch_for(field))
-    solved = len(found.ones) > 0
-    points = grid.in_units(polygon(found.ones, field))
+    result = search(rng, field, settings, first, counts, scratch_for(field))
+    solved = len(result.ones) > 0
+    points = grid.in_units(polygon(result.ones, field))
     points[[0, -1]] = problem.start, problem.target
     return Plan(
         path=Path(PATH_KINDS[CurveKind(settings.curve)], points) if solved else None,
-        objective=found.cost * grid.cell,
+        objective=result.cost * grid.cell,
         claimed_feasible=solved,
-        evaluations=found.evaluations,
-        history=found.history * grid.cell,
+        evaluations=result.evaluations,
+        history=result.history * grid.cell,
         stop="iterations" if solved else "no valid chromosome",
         extra={
-            "distinct_chromosomes": float(found.distinct.mean()),
-            "mean_q": float(found.q.mean()),
-            "population_q": float(found.population_q.mean()),
-            "extra_batches": found.batches,
-            "valid_share": found.valid_share,
+            "distinct_chromosomes": float(result.distinct.mean()),
+            "mean_q": float(result.q.mean()),
+            "population_q": float(result.population_q.mean()),
+            "extra_batches": result.batches,
+            "valid_share": result.valid_share,
         },
     )
 
@@ -244,24 +244,24 @@ def search(rng: np.random.Generator, field: Field, rules: Settings, first: np.nd
     best, best_cost = np.empty(0, dtype=np.int64), np.inf
     further = evaluations = bred = lost = 0
 
-    for place in range(size):
+    for row in range(size):
         for _ in range(rules.first_draws):
-            if place < len(first):
-                count = counts[place]
+            if row < len(first):
+                count = counts[row]
                 for k in range(count):  # an assignment to a slice takes seconds to compile
-                    child[k] = first[place, k]
+                    child[k] = first[row, k]
             else:
                 count = _random_chromosome(rng, child, field, rules)
             cost, free = validate(child[:count], field, rules, np.inf, scratch)
             evaluations += 1
-            if cost < np.inf or place < len(first):
+            if cost < np.inf or row < len(first):
                 break
-        gene_lists.put(child, count, min(cost, 1.0 / _UNFIT), free, pool, place)
+        gene_lists.put(child, count, min(cost, 1.0 / _UNFIT), free, pool, row)
     eta = rules.eta
     for iteration in range(rules.iterations + 1):
-        for place in range(size):
-            if pool.free[place] and pool.cost[place] < best_cost:
-                best, best_cost = pool.ones[place, : pool.count[place]].copy(), pool.cost[place]
+        for row in range(size):
+            if pool.free[row] and pool.cost[row] < best_cost:
+                best, best_cost = pool.ones[row, : pool.count[row]].copy(), pool.cost[row]
         history[iteration] = best_cost
         distinct[iteration] = gene_lists.distinct(pool, size)
         if iteration == rules.iterations:
@@ -354,17 +354,17 @@ def _validated(ones, memory, field, rules, limit, scratch):
 @allocation_free
 def _parents(rng, wheel):
     """Two different parents in proportion to fitness (Algorithm 1, line 9). The second is drawn from the wheel without the first one."""
-    one = np.searchsorted(wheel, rng.random() * wheel[-1], side="right")
-    one = min(one, len(wheel) - 1)
-    begin = wheel[one - 1] if one > 0 else 0.0
-    share = wheel[one] - begin
+    first = np.searchsorted(wheel, rng.random() * wheel[-1], side="right")
+    first = min(first, len(wheel) - 1)
+    begin = wheel[first - 1] if first > 0 else 0.0
+    share = wheel[first] - begin
     drawn = rng.random() * (wheel[-1] - share)
-    other = np.searchsorted(wheel, drawn if drawn < begin else drawn + share, side="right")
-    other = min(other, len(wheel) - 1)
-    if other == one:
+    second = np.searchsorted(wheel, drawn if drawn < begin else drawn + share, side="right")
+    second = min(second, len(wheel) - 1)
+    if second == first:
         # Rounding at the edge of the omitted share.
-        other = one - 1 if one > 0 else one + 1
-    return one, other
+        second = first - 1 if first > 0 else first + 1
+    return first, second
 
 
 @allocation_free

@@ -143,31 +143,31 @@ def plan(problem: Problem, rng: np.random.Generator, settings: Settings) -> Plan
     if obstacles_met(ground, start, target) == 0:
         # No search needed: a walk sees its target immediately, and paths without inner nodes cannot change.
         energy = edge_energy(ground, start, target)
-        found = _Found(np.array([start, target]), energy, 0, np.array([energy]), 1, False, 1.0, math.nan, 0.0)
+        result = _Found(np.array([start, target]), energy, 0, np.array([energy]), 1, False, 1.0, math.nan, 0.0)
         stop = "direct"
     elif math.isinf(optimum):
-        found, stop = _NOTHING, "no path"
+        result, stop = _NOTHING, "no path"
     else:
         drawn = _inner(~grid.occupied | (settings.random_node == RandomNode.any), start, target)
-        found = _search(starts, moves, ground, start, target, _inner(~grid.occupied, start, target), drawn, in_cells(settings, grid.cell))
-        stop = "no first population" if not len(found.path) else "stall" if found.stalled else "generations"
-    feasible = len(found.path) > 0 and found.met == 0
-    optimal = feasible and found.objective <= optimum * (1 + settings.optimal_within)
+        result = _search(starts, moves, ground, start, target, _inner(~grid.occupied, start, target), drawn, in_cells(settings, grid.cell))
+        stop = "no first population" if not len(result.path) else "stall" if result.stalled else "generations"
+    feasible = len(result.path) > 0 and result.met == 0
+    optimal = feasible and result.objective <= optimum * (1 + settings.optimal_within)
     return Plan(
-        path=Path("polyline", centres(grid, found.path)) if len(found.path) else None,
-        objective=found.objective * grid.cell,
+        path=Path("polyline", centres(grid, result.path)) if len(result.path) else None,
+        objective=result.objective * grid.cell,
         claimed_feasible=feasible,
-        evaluations=found.evaluations,
-        history=found.history * grid.cell,
+        evaluations=result.evaluations,
+        history=result.history * grid.cell,
         stop=stop,
         extra={
             "optimum": optimum * grid.cell,
             "optimal": optimal,
             "near_optimal": feasible and not optimal,
             "infeasible": not feasible,
-            "feasible_last": found.feasible_last,
-            "made_infeasible": found.made_infeasible,
-            "node_diversity": found.diversity,
+            "feasible_last": result.feasible_last,
+            "made_infeasible": result.made_infeasible,
+            "node_diversity": result.diversity,
         },
     )
 

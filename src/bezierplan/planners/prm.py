@@ -182,7 +182,7 @@ def _nearest(points, neighbours):
     nearest = np.empty((len(points), neighbours), dtype=np.int64)
     square = np.empty(neighbours)  # of the distance to each of them
     for rank in range(len(points)):
-        i, found, most = order[rank], 0, np.inf
+        i, count, most = order[rank], 0, np.inf
         for side in range(-1, 2, 2):
             other = rank + side
             while 0 <= other < len(points):
@@ -194,13 +194,13 @@ def _nearest(points, neighbours):
                 distance = across + (points[j, 1] - points[i, 1]) ** 2
                 if distance > most or (distance == most and j > nearest[i, -1]):
                     continue
-                found = min(found + 1, neighbours)
-                place = found - 1
+                count = min(count + 1, neighbours)
+                place = count - 1
                 while place > 0 and (square[place - 1] > distance or (square[place - 1] == distance and nearest[i, place - 1] > j)):
                     square[place], nearest[i, place] = square[place - 1], nearest[i, place - 1]
                     place -= 1
                 square[place], nearest[i, place] = distance, j
-                if found == neighbours:
+                if count == neighbours:
                     most = square[-1]
     return nearest
 
@@ -223,33 +223,33 @@ def _shortest_way(points: np.ndarray, one: np.ndarray, other: np.ndarray) -> tup
 
 
 @compiled
-def _dijkstra(count, one, other, lengths):
+def _dijkstra(count, starts, targets, lengths):
     """`_shortest_way` by Dijkstra's algorithm, over `count` nodes and the lengths (links,) of links between two of them each."""
     first = np.zeros(count + 2, dtype=np.int64)  # where the links of each node begin
-    for k in range(len(one)):
-        first[one[k] + 2] += 1
-        first[other[k] + 2] += 1
+    for k in range(len(starts)):
+        first[starts[k] + 2] += 1
+        first[targets[k] + 2] += 1
     first = np.cumsum(first)
-    ends, steps = np.empty(2 * len(one), dtype=np.int64), np.empty(2 * len(one))
-    for k in range(len(one)):
-        for node, end in ((one[k], other[k]), (other[k], one[k])):
-            place = first[node + 1]
-            ends[place], steps[place] = end, lengths[k]
+    ends, steps = np.empty(2 * len(starts), dtype=np.int64), np.empty(2 * len(starts))
+    for k in range(len(starts)):
+        for node, end in ((starts[k], targets[k]), (targets[k], starts[k])):
+            slot = first[node + 1]
+            ends[slot], steps[slot] = end, lengths[k]
             first[node + 1] += 1
 
     far, before = np.full(count, np.inf), np.full(count, -1)
     waiting, waits = np.empty(count, dtype=np.int64), 1  # nodes that are reached and not settled: few, so they need no heap
     waiting[0], far[0] = 0, 0.0
     while waits > 0:
-        place = 0
+        slot = 0
         for k in range(1, waits):
-            if far[waiting[k]] < far[waiting[place]]:
-                place = k
-        node = waiting[place]
+            if far[waiting[k]] < far[waiting[slot]]:
+                slot = k
+        node = waiting[slot]
         if node == 1:
             break
         waits -= 1
-        waiting[place] = waiting[waits]
+        waiting[slot] = waiting[waits]
         for k in range(first[node], first[node + 1]):
             length = far[node] + steps[k]
             if length < far[ends[k]]:
@@ -257,10 +257,10 @@ def _dijkstra(count, one, other, lengths):
                     waiting[waits] = ends[k]
                     waits += 1
                 far[ends[k]], before[ends[k]] = length, node
-    way, place = waiting, count
+    way, slot = waiting, count
     node = 1 if far[1] < np.inf else -1
     while node >= 0:
-        place -= 1
-        way[place] = node
+        slot -= 1
+        way[slot] = node
         node = before[node]
-    return far[1], way[place:]
+    return far[1], way[slot:]

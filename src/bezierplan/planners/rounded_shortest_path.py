@@ -107,15 +107,15 @@ def gentlest(problem: Problem, rng: np.random.Generator | None, settings: Settin
     first = _answer(problem, bound, blocked, settings)
     if math.isinf(bound.length) or first.extra["tight_turns"] == 0:
         return first
-    if found := _searched(problem, bound, blocked, settings.turning_radius):
-        return found
+    if driven := _searched(problem, bound, blocked, settings.turning_radius):
+        return driven
     best = _largest(problem, bound, blocked, settings, first)
     x_low, x_high, y_low, y_high = problem.workspace.bounds
     kept, failed = best.extra["least_radius"], min(settings.turning_radius, 2 * (x_high - x_low + y_high - y_low))
     while kept > 0 and failed > kept * (1 + _SAME_SEARCHED):
         wish = math.sqrt(kept * failed)
-        if found := _searched(problem, bound, blocked, wish):
-            best, kept = found, wish
+        if driven := _searched(problem, bound, blocked, wish):
+            best, kept = driven, wish
         else:
             failed = wish
     return best._replace(extra=best.extra | {"tight_turns": best.extra["turns"]})

@@ -42,15 +42,15 @@ _NO_JUMP = 1e-6
 
 def check_planner(planner: str, via: Sequence[tuple[float, float]], strict: bool, smooth: str = SMOOTH[0]) -> None:
     """Raise ValueError for way points, a strict turning radius or continuous curvature with a planner that does not have them."""
-    own = planner.removeprefix("bezierplan.planners.")
-    if via and own not in CHAINED:
-        raise ValueError(f"via: only for {', '.join(CHAINED[:-1])} and {CHAINED[-1]}; the planner is {own}")
+    name = planner.removeprefix("bezierplan.planners.")
+    if via and name not in CHAINED:
+        raise ValueError(f"via: only for {', '.join(CHAINED[:-1])} and {CHAINED[-1]}; the planner is {name}")
     if smooth not in SMOOTH:
         raise ValueError(f"smooth: {smooth!r}; expected {' or '.join(SMOOTH)}")
-    if smooth == "continuous" and own not in TURNING:
-        raise ValueError(f"smooth: only for {' and '.join(TURNING)}, whose paths have arcs; the planner is {own}")
-    if strict and own not in TURNING:
-        raise ValueError(f"strict: only for {' and '.join(TURNING)}, which have a turning radius; the planner is {own}")
+    if smooth == "continuous" and name not in TURNING:
+        raise ValueError(f"smooth: only for {' and '.join(TURNING)}, whose paths have arcs; the planner is {name}")
+    if strict and name not in TURNING:
+        raise ValueError(f"strict: only for {' and '.join(TURNING)}, which have a turning radius; the planner is {name}")
 
 
 def preset(planner: str, workspace: Workspace) -> dict[str, Any]:

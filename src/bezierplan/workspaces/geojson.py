@@ -248,25 +248,25 @@ def within(limits: Bounds, obstacles: list[Shape]) -> list[Rings]:
     import shapely
 
     frame = _frame(limits)
-    shapes = np.array([shapely.Polygon(each.rings[0], each.rings[1:]) for each in obstacles], dtype=object)
-    for each, shape in zip(obstacles, shapes):
+    shapes = np.array([shapely.Polygon(polygon.rings[0], polygon.rings[1:]) for polygon in obstacles], dtype=object)
+    for polygon, shape in zip(obstacles, shapes):
         if not shape.is_valid:
-            raise ValueError(f"{each.name}: {shapely.is_valid_reason(shape)}; expected a simple polygon")
-    for each, shape in zip(obstacles, shapes):
-        _check_thickness(each.name, each.rings, shape)
+            raise ValueError(f"{polygon.name}: {shapely.is_valid_reason(shape)}; expected a simple polygon")
+    for polygon, shape in zip(obstacles, shapes):
+        _check_thickness(polygon.name, polygon.rings, shape)
     near = shapely.STRtree(shapes).query(shapes, predicate="dwithin", distance=SMALLEST_GAP)
-    for i, (each, shape) in enumerate(zip(obstacles, shapes)):
+    for i, (polygon, shape) in enumerate(zip(obstacles, shapes)):
         beside = shapes[near[1][(near[0] == i) & (near[1] > i)]]
-        check_gaps(np.append(shapely.distance(beside, shape), shape.distance(frame.exterior)), each.name)
+        check_gaps(np.append(shapely.distance(beside, shape), shape.distance(frame.exterior)), polygon.name)
     covered = shapely.covers(frame, shapes)
-    over = [each.name for each, inside in zip(obstacles, covered) if not inside]
+    over = [polygon.name for polygon, inside in zip(obstacles, covered) if not inside]
     if over:
         first = over[0] if len(over) == 1 else f"{over[0]} and {len(over) - 1} more"
         logger.warning("%s: beyond the border, and cut there", first)
     kept: list[Rings] = []
-    for each, shape, inside in zip(obstacles, shapes, covered):
+    for polygon, shape, inside in zip(obstacles, shapes, covered):
         parts = [] if inside else [part for part in shapely.get_parts(shape.intersection(frame)) if isinstance(part, shapely.Polygon)]
-        kept += [each.rings] if inside else map(rings_of, parts)
+        kept += [polygon.rings] if inside else map(rings_of, parts)
     return kept
 
 

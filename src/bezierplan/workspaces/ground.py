@@ -108,15 +108,15 @@ def distance(ground: Ground, one: int, other: int) -> float:
 
 
 @allocation_free
-def _passed(ground, one, other):
+def _passed(ground, start, end):
     """Number of occupied cells that an edge meets, and the sum of its climbs from cell to cell.
 
     The edge crosses its next vertical grid line after (2 i + 1) / (2 across) of its length, its next horizontal one after (2 j + 1) / (2
     up); through a corner it leads from cell to cell without a third, but meets the two next to the corner if corners are closed.
     """
     columns = ground.occupied.shape[1]
-    row, column = one // columns, one % columns
-    across, up = other % columns - column, other // columns - row
+    row, column = start // columns, start % columns
+    across, up = end % columns - column, end // columns - row
     right, upward = (1 if across > 0 else -1), (1 if up > 0 else -1)
     across, up = abs(across), abs(up)
     met, climb = int(ground.occupied[row, column]), 0.0

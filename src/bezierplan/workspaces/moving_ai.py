@@ -76,19 +76,19 @@ def scenario(file: Path, number: int, grid: Grid, name: str) -> Scenario:
         raise ValueError("line 1: expected version 1")
     if not 1 <= number < len(lines):
         raise ValueError(f"scenario {number}; expected a number from 1 to {len(lines) - 1}")
-    place = f"line {number + 1}"
+    line = f"line {number + 1}"
     words = lines[number].split()
     try:
         _, home, width, height, *ends = words
         columns, rows, x, y, target_x, target_y = map(_whole, (width, height, *ends[:4]))
         optimal = number_of(ends[4])
     except (ValueError, IndexError):
-        raise ValueError(f"{place}: expected bucket, map, width, height, start x, start y, target x, target y, optimal length") from None
+        raise ValueError(f"{line}: expected bucket, map, width, height, start x, start y, target x, target y, optimal length") from None
     if Path(home).name != name:
-        raise ValueError(f"{place}: map {home}; expected a scenario of {name}")
+        raise ValueError(f"{line}: map {home}; expected a scenario of {name}")
     if (rows, columns) != grid.occupied.shape:
-        raise ValueError(f"{place}: a map of {columns} x {rows} cells; {name} has {grid.occupied.shape[1]} x {grid.occupied.shape[0]}")
+        raise ValueError(f"{line}: a map of {columns} x {rows} cells; {name} has {grid.occupied.shape[1]} x {grid.occupied.shape[0]}")
     for end, column, row in (("start", x, y), ("target", target_x, target_y)):
         if not (0 <= column < columns and 0 <= row < rows) or grid.occupied[rows - 1 - row, column]:
-            raise ValueError(f"{place}: {end} {column} {row}: expected a free cell of {name}")
+            raise ValueError(f"{line}: {end} {column} {row}: expected a free cell of {name}")
     return Scenario((x + 0.5, rows - y - 0.5), (target_x + 0.5, rows - target_y - 0.5), optimal)

@@ -261,18 +261,18 @@ def _findings(number: int, check: Check, claim: Claim, name: str, material: Mate
     """The comparisons of one check with their findings. Raises Untestable."""
     primary, kind = check.primary, kind_of(check)
     if not isinstance(check, OfRuns):
-        found = kind.findings(check, claim, material)
-        return [_Judged(number, check, primary, condition, words, None, finding) for condition, words, finding in found]
+        judged = kind.findings(check, claim, material)
+        return [_Judged(number, check, primary, condition, words, None, finding) for condition, words, finding in judged]
     if _is_timed(check) and not check.relative:
         raise Untestable("absolute seconds say nothing about another machine")
-    found = [
+    judged = [
         _Judged(
             *(number, check, primary, comparison.place, comparison.name, comparison),
             kind.find(check, comparison, f"{name}/{number}/{comparison.name}"),
         )
         for comparison in comparisons.comparisons(check, claim, material)
     ]
-    return _together(found) if check.is_together else found
+    return _together(judged) if check.is_together else judged
 
 
 def _together(found: list[_Judged]) -> list[_Judged]:

@@ -213,13 +213,13 @@ def evidence(claim: content.Claim) -> str:
     """The comparison that determines the verdict on a claim, in words; empty if there is none."""
     if claim.decisive is None:
         return ""
-    found, (low, high) = claim.comparisons[claim.decisive], claim.comparisons[claim.decisive].interval
-    what = f"{meaning(found.metric) or found.metric.replace('_', ' ')}, {found.name}"
-    if found.effect is None:
-        return f"{what}: a value in {found.counted.replace(', ', ' and ')} runs" if found.counted else what
-    unit = "" if found.unit in ("", "-") or found.test == "share" else f" {found.unit}"
+    comparison, (low, high) = claim.comparisons[claim.decisive], claim.comparisons[claim.decisive].interval
+    what = f"{meaning(comparison.metric) or comparison.metric.replace('_', ' ')}, {comparison.name}"
+    if comparison.effect is None:
+        return f"{what}: a value in {comparison.counted.replace(', ', ' and ')} runs" if comparison.counted else what
+    unit = "" if comparison.unit in ("", "-") or comparison.test == "share" else f" {comparison.unit}"
     interval = "" if low is None or high is None else f" (95\u00a0% interval {short(low, 3)} to {short(high, 3)})"
-    return f"{what}: {'share' if found.test == 'share' else 'effect'} {short(found.effect, 3)}{unit}{interval}"
+    return f"{what}: {'share' if comparison.test == 'share' else 'effect'} {short(comparison.effect, 3)}{unit}{interval}"
 
 
 def meaning(metric: str) -> str:

@@ -221,13 +221,15 @@ def _only(channel: str, field: str) -> dict[str, Any]:
 
 def _of_table(study: content.Study, table: content.Table) -> list[dict[str, Any]]:
     """Rows of a table: ratios to its published numbers, from the lowest to the highest; none where a ratio is undefined."""
-    found = [number for number in table.numbers if number.counted and number.published and (number.beside or 0) / number.published > 0]
-    found.sort(key=lambda number: number.beside / number.published)
+    numbers_shown = [
+        number for number in table.numbers if number.counted and number.published and (number.beside or 0) / number.published > 0
+    ]
+    numbers_shown.sort(key=lambda number: number.beside / number.published)
     rows = []
-    for place, number in enumerate(found):
+    for place, number in enumerate(numbers_shown):
         low, high = (None if end is None else end / number.published for end in number.predicted)
         given = {"address": number.address, "table": f"{study.address} {heading(table.name)}", "verdict": number.verdict}
-        given |= {"ratio": _digits(number.beside / number.published), "height": _digits((place + 0.5) / len(found))}
+        given |= {"ratio": _digits(number.beside / number.published), "height": _digits((place + 0.5) / len(numbers_shown))}
         # A range without an end reaches to the edge.
         given |= {"low": _digits(max(low or 0, 1 / _MOST_TIMES)), "high": _digits(min(high or math.inf, _MOST_TIMES))}
         rows.append(given)

@@ -191,9 +191,9 @@ def _claims(
     for identity, rows in judged.groupby("id", sort=False):
         row = rows[rows["primary"].astype(bool)].iloc[0]
         variant = _text(row, "variant")
-        own = checks[(checks["id"] == identity) & (checks["variant"].fillna("") == variant)] if checks is not None else pd.DataFrame()
+        compared = checks[(checks["id"] == identity) & (checks["variant"].fillna("") == variant)] if checks is not None else pd.DataFrame()
         written = [check_of(each) for each in job["checks"].get(identity, [])]
-        decisive = next((n for n, (_, each) in enumerate(own.iterrows()) if _flag(each, "decisive")), None)
+        decisive = next((n for n, (_, each) in enumerate(compared.iterrows()) if _flag(each, "decisive")), None)
         claims.append(
             content.Claim(
                 address=address(study, identity),
@@ -210,9 +210,9 @@ def _claims(
                 replication=_number(row, "replication_probability"),
                 size=_text(row, "size"),
                 shown_in=[address(study, name) for name in _text(row, "artefact").replace(",", " ").split() if name in there],
-                comparisons=[_comparison(each, labels, written) for _, each in own.iterrows()],
+                comparisons=[_comparison(each, labels, written) for _, each in compared.iterrows()],
                 decisive=decisive,
-                why=_why(own.iloc[decisive], written, labels, row) if decisive is not None else "",
+                why=_why(compared.iloc[decisive], written, labels, row) if decisive is not None else "",
                 variant=_labelled(variant, labels),
                 interpretations=[_interpretation(each, labels) for _, each in rows[~rows["primary"].astype(bool)].iterrows()],
                 choices=[choice for choice in choices if choice.claim == identity],

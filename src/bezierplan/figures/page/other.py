@@ -29,8 +29,8 @@ def of_method(study: str, name: str, method: dict[str, Any]) -> content.Method:
 
 def of_worth(study: str, measured: pd.DataFrame) -> dict[str, Any]:
     """Fields `worth` and `worth_in_words` of a study, from worth.csv; none for a study without methods there."""
-    own = measured[measured["study"] == study]
-    if own.empty:
+    rows_of_study = measured[measured["study"] == study]
+    if rows_of_study.empty:
         return {}
     rows = [
         content.Worth(
@@ -41,9 +41,9 @@ def of_worth(study: str, measured: pd.DataFrame) -> dict[str, Any]:
             cornered=bool(np.isinf(row["curvature"])),
             cpu=_known(row["cpu"]),
         )
-        for row in own.to_dict("records")
+        for row in rows_of_study.to_dict("records")
     ]
-    return {"worth": rows, "worth_in_words": worth.sentence(own)}
+    return {"worth": rows, "worth_in_words": worth.sentence(rows_of_study)}
 
 
 def of_interpretations(tried: pd.DataFrame, explained: pd.DataFrame, held_out: pd.DataFrame) -> dict[str, Any]:

@@ -47,14 +47,14 @@ def _between(row: pd.Series, check: lower.Options | ordered.Options, name: str) 
     """Of groups that should be lower, or higher, than others."""
     together = re.fullmatch(r"all (\d+) together", name)
     if together and not pd.isna(row["effect"]):
-        found = f"of {together[1]} comparisons in {_measured(row)}, the decisive one is {_apart(row, check).removesuffix(' than')}"
-        return f"{found}{_interval(row, check)}; the claim says {check.direction} in all of them{_margin(row, check)}"
-    found = re.fullmatch(r"(.+) (lower|higher) than (.+)", name)
-    if not found or pd.isna(row["effect"]):
+        decisive = f"of {together[1]} comparisons in {_measured(row)}, the decisive one is {_apart(row, check).removesuffix(' than')}"
+        return f"{decisive}{_interval(row, check)}; the claim says {check.direction} in all of them{_margin(row, check)}"
+    match = re.fullmatch(r"(.+) (lower|higher) than (.+)", name)
+    if not match or pd.isna(row["effect"]):
         return _effect(row, check, name)
-    group, direction, other = found.groups()
-    found = f"in {_measured(row)}, {group} is {_apart(row, check)} {other}{_interval(row, check)}"
-    return f"{found}; the claim says {direction}{_margin(row, check)}"
+    group, direction, other = match.groups()
+    told = f"in {_measured(row)}, {group} is {_apart(row, check)} {other}{_interval(row, check)}"
+    return f"{told}; the claim says {direction}{_margin(row, check)}"
 
 
 def _apart(row: pd.Series, check: Check) -> str:
@@ -69,13 +69,13 @@ def _apart(row: pd.Series, check: Check) -> str:
 
 def _equal(row: pd.Series, check: equal_within.Options, name: str) -> str:
     """Of groups that should be alike, or apart by a stated amount."""
-    group, _, other = name.partition(" as ")
-    if pd.isna(row["effect"]) or not other:
+    group, _, second = name.partition(" as ")
+    if pd.isna(row["effect"]) or not second:
         return _effect(row, check, name)
     target = check.target
     says = "that they are alike" if not target else f"by how much: {_amount(abs(target), row, check)} {'lower' if target < 0 else 'higher'}"
     return (
-        f"in {_quantity(row)}, {group} is {_apart(row, check)} {other}{_interval(row, check)}; the claim says {says}{_margin(row, check)}"
+        f"in {_quantity(row)}, {group} is {_apart(row, check)} {second}{_interval(row, check)}; the claim says {says}{_margin(row, check)}"
     )
 
 

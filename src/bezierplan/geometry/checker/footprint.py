@@ -342,14 +342,19 @@ def _distance(obstacle, hull, edges, centres, radii):
     inside = len(hull) > 2
     least = np.inf
     for k in range(len(hull)):
-        one, other = hull[k], hull[(k + 1) % len(hull)]
-        inside &= _left_of(one, other, ax, ay) >= 0.0
+        corner, next_corner = hull[k], hull[(k + 1) % len(hull)]
+        inside &= _left_of(corner, next_corner, ax, ay) >= 0.0
         least = min(
-            least, distance_to_segment(one[0], one[1], ax, ay, bx, by), distance_to_segment(ax, ay, one[0], one[1], other[0], other[1])
+            least,
+            distance_to_segment(corner[0], corner[1], ax, ay, bx, by),
+            distance_to_segment(ax, ay, corner[0], corner[1], next_corner[0], next_corner[1]),
         )
-        least = min(least, distance_to_segment(bx, by, one[0], one[1], other[0], other[1]))
-        if _left_of(one, other, ax, ay) * _left_of(one, other, bx, by) < 0.0:
-            across = (bx - ax) * (one[1] - ay) - (by - ay) * (one[0] - ax), (bx - ax) * (other[1] - ay) - (by - ay) * (other[0] - ax)
+        least = min(least, distance_to_segment(bx, by, corner[0], corner[1], next_corner[0], next_corner[1]))
+        if _left_of(corner, next_corner, ax, ay) * _left_of(corner, next_corner, bx, by) < 0.0:
+            across = (
+                (bx - ax) * (corner[1] - ay) - (by - ay) * (corner[0] - ax),
+                (bx - ax) * (next_corner[1] - ay) - (by - ay) * (next_corner[0] - ax),
+            )
             if across[0] * across[1] < 0.0:
                 return 0.0
     return 0.0 if inside else max(0.0, least - radius)

@@ -45,16 +45,16 @@ def _sort(edges: np.ndarray, bins: Bins) -> tuple[np.ndarray, np.ndarray]:
             for number in range(column * bins.rows + low, column * bins.rows + high + 1):  # += on a slice takes seconds to compile
                 first[number + 1] += 1
     first = np.cumsum(first)
-    place = first[:-1].copy()
-    found = np.empty(first[-1], dtype=np.int64)
+    slot = first[:-1].copy()
+    members = np.empty(first[-1], dtype=np.int64)
     for e in range(len(edges)):
         begin, end = columns_between(edges[e, 0], edges[e, 2], bins)
         for column in range(begin, end + 1):
             low, high = rows_between(edges[e, :2], edges[e, 2:], column, bins)
             for number in range(column * bins.rows + low, column * bins.rows + high + 1):
-                found[place[number]] = e
-                place[number] += 1
-    return first, found
+                members[slot[number]] = e
+                slot[number] += 1
+    return first, members
 
 
 @allocation_free

@@ -168,14 +168,14 @@ def _in_quadrant(dx: int, dy: int, quadrant: np.ndarray) -> bool:
 
 
 @allocation_free
-def _sees(one: np.ndarray, other: np.ndarray, cells: np.ndarray, scale: int, closed: bool) -> bool:
+def _sees(start: np.ndarray, end: np.ndarray, cells: np.ndarray, scale: int, closed: bool) -> bool:
     """Whether the segment between two different points of the lattice is free."""
-    dx, dy = other[0] - one[0], other[1] - one[1]
+    dx, dy = end[0] - start[0], end[1] - start[1]
     if dx == 0:
-        return _sees_along_column(one[0], min(one[1], other[1]), abs(dy), cells, scale, closed)
+        return _sees_along_column(start[0], min(start[1], end[1]), abs(dy), cells, scale, closed)
     if dy == 0:
-        return _sees_along_column(one[1], min(one[0], other[0]), abs(dx), cells.T, scale, closed)
-    return _sees_across(one[0], one[1], dx, dy, cells, scale, closed)
+        return _sees_along_column(start[1], min(start[0], end[0]), abs(dx), cells.T, scale, closed)
+    return _sees_across(start[0], start[1], dx, dy, cells, scale, closed)
 
 
 @allocation_free

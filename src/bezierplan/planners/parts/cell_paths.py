@@ -64,18 +64,18 @@ def evolve(rng, lattice, paths, sizes, generations, rules):
             sizes[i] = put(parents[drawn[i], : parent_sizes[drawn[i]]], paths[i], 0)
         for i in range(0, population, 2):
             if rng.random() < rules.crossover_probability:
-                one, other = parents[drawn[i], : parent_sizes[drawn[i]]], parents[drawn[i + 1], : parent_sizes[drawn[i + 1]]]
-                k, m = common_cell(rng, one, other, marks)
+                father, mother = parents[drawn[i], : parent_sizes[drawn[i]]], parents[drawn[i + 1], : parent_sizes[drawn[i + 1]]]
+                k, m = common_cell(rng, father, mother, marks)
                 if k == 0:
                     continue
                 if rules.shorter_parts:
-                    head = one[: k + 1] if length(one[: k + 1], lattice) <= length(other[: m + 1], lattice) else other[: m + 1]
-                    tail = one[k:] if length(one[k:], lattice) <= length(other[m:], lattice) else other[m:]
+                    head = father[: k + 1] if length(father[: k + 1], lattice) <= length(mother[: m + 1], lattice) else mother[: m + 1]
+                    tail = father[k:] if length(father[k:], lattice) <= length(mother[m:], lattice) else mother[m:]
                     size = put(tail, child, put(head[:-1], child, 0))
                 else:
-                    size = put(one[k:], child, put(other[:m], child, 0))
+                    size = put(father[k:], child, put(mother[:m], child, 0))
                     sizes[i + 1] = _replace(paths[i + 1], sizes[i + 1], child[:size], rules.cut_loops, marks)
-                    size = put(other[m:], child, put(one[:k], child, 0))
+                    size = put(mother[m:], child, put(father[:k], child, 0))
                 sizes[i] = _replace(paths[i], sizes[i], child[:size], rules.cut_loops, marks)
         for i in range(population):
             if rng.random() < rules.mutation_probability:
@@ -181,13 +181,13 @@ def join(lattice, cells, path, marks):
 
 
 @allocation_free
-def _between(lattice, one, other, marks):
+def _between(lattice, start, end, marks):
     """The cell that `join` inserts between two cells, -1 if there is none."""
     # Cells are numbered row by row, so the last one gives the number of columns.
     columns = lattice.column[-1] + 1
-    row, column = (lattice.row[one] + lattice.row[other]) // 2, (lattice.column[one] + lattice.column[other]) // 2
+    row, column = (lattice.row[start] + lattice.row[end]) // 2, (lattice.column[start] + lattice.column[end]) // 2
     middle = columns * row + column
-    if not lattice.occupied[middle] and middle != one and middle != other:
+    if not lattice.occupied[middle] and middle != start and middle != end:
         return middle
     for cell in lattice.around[middle]:
         if cell >= 0 and not marks[cell]:
@@ -196,25 +196,25 @@ def _between(lattice, one, other, marks):
 
 
 @allocation_free
-def common_cell(rng, one, other, marks):
+def common_cell(rng, first, second, marks):
     """Indices, in two paths, of a random inner cell of the first that is also an inner cell of the other; in the other, its last
     occurrence.
 
     (0, 0) if there is none.
     """
-    for m in range(1, len(other) - 1):
-        marks[other[m]] = m
+    for m in range(1, len(second) - 1):
+        marks[second[m]] = m
     common = 0
-    for k in range(1, len(one) - 1):
-        common += marks[one[k]] > 0
+    for k in range(1, len(first) - 1):
+        common += marks[first[k]] > 0
     k = m = 0
     if common:
         wanted = integer(rng, 0, common)
         while wanted >= 0:
             k += 1
-            wanted -= marks[one[k]] > 0
-        m = marks[one[k]]
-    for cell in other:
+            wanted -= marks[first[k]] > 0
+        m = marks[first[k]]
+    for cell in second:
         marks[cell] = 0
     return k, m
 
@@ -299,26 +299,26 @@ def forage(rng, lattice, cell, target, tries, visited):
     """
     neighbours = lattice.neighbours[cell]
     present = unvisited = 0
-    for other in neighbours:
-        present += other >= 0
-        unvisited += other >= 0 and not visited[other]
+    for neighbour in neighbours:
+        present += neighbour >= 0
+        unvisited += neighbour >= 0 and not visited[neighbour]
     if unvisited == 0:
         return -1
     near = distance_square(lattice, cell, target)
     for _ in range(tries):
         wanted = integer(rng, 0, present)
-        for other in neighbours:
-            wanted -= other >= 0
+        for neighbour in neighbours:
+            wanted -= neighbour >= 0
             if wanted < 0:
                 break
-        if not visited[other] and distance_square(lattice, other, target) < near:
-            return other
+        if not visited[neighbour] and distance_square(lattice, neighbour, target) < near:
+            return neighbour
     wanted = integer(rng, 0, unvisited)
-    for other in neighbours:
-        wanted -= other >= 0 and not visited[other]
+    for neighbour in neighbours:
+        wanted -= neighbour >= 0 and not visited[neighbour]
         if wanted < 0:
             break
-    return other
+    return neighbour
 
 
 @allocation_free

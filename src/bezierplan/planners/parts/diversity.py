@@ -18,19 +18,19 @@ def q_statistic(both: int, neither: int, only_one: int, only_other: int) -> floa
 
 
 @allocation_free
-def shared(one: np.ndarray, other: np.ndarray) -> int:
+def shared(first: np.ndarray, second: np.ndarray) -> int:
     """Number of elements that two ascending lists share."""
-    i = j = found = 0
-    while i < len(one) and j < len(other):
-        if one[i] == other[j]:
-            found += 1
+    i = j = common = 0
+    while i < len(first) and j < len(second):
+        if first[i] == second[j]:
+            common += 1
             i += 1
             j += 1
-        elif one[i] < other[j]:
+        elif first[i] < second[j]:
             i += 1
         else:
             j += 1
-    return found
+    return common
 
 
 def q_of_rows(one: np.ndarray, other: np.ndarray) -> float:

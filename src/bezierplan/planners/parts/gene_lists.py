@@ -73,18 +73,18 @@ def position(genes: np.ndarray, count: int, gene: int) -> int:
 @allocation_free
 def flip(genes: np.ndarray, count: int, gene: int) -> int:
     """Flip a gene of a list, in place; returns how many are 1. Genes that do not fit are dropped."""
-    place = position(genes, count, gene)
-    if place < count:
-        for i in range(place, count - 1):
+    index = position(genes, count, gene)
+    if index < count:
+        for i in range(index, count - 1):
             genes[i] = genes[i + 1]
         return count - 1
     if count == len(genes):
         return count
-    place = count
-    while place > 0 and genes[place - 1] > gene:
-        genes[place] = genes[place - 1]
-        place -= 1
-    genes[place] = gene
+    index = count
+    while index > 0 and genes[index - 1] > gene:
+        genes[index] = genes[index - 1]
+        index -= 1
+    genes[index] = gene
     return count + 1
 
 
@@ -127,13 +127,13 @@ def same(one: np.ndarray, other: np.ndarray) -> bool:
 @allocation_free
 def distinct(pool: Pool, size: int) -> int:
     """Number of distinct chromosomes among the first `size` of the pool; equal ones have equal costs."""
-    found = size
+    count = size
     for i in range(size):
         for j in range(i - 1, -1, -1):  # in a sorted pool equal ones are neighbours
             if pool.cost[i] == pool.cost[j] and same(pool.ones[i, : pool.count[i]], pool.ones[j, : pool.count[j]]):
-                found -= 1
+                count -= 1
                 break
-    return found
+    return count
 
 
 @allocation_free
@@ -164,16 +164,16 @@ def sum_of_q(pool: Pool, first: int, filled: int, genes: int) -> float:
         kind[i] = k
     values, marked = np.empty((kinds, kinds)), np.zeros(genes, dtype=np.int64)
     for k in range(kinds):
-        one = heads[k]
-        for gene in pool.ones[one, : pool.count[one]]:
+        chromosome = heads[k]
+        for gene in pool.ones[chromosome, : pool.count[chromosome]]:
             marked[gene] = 1
         for m in range(k + 1):
             other, both = heads[m], 0
             for n in range(pool.count[other]):
                 both += marked[pool.ones[other, n]]
-            only_one, only_other = pool.count[one] - both, pool.count[other] - both
+            only_one, only_other = pool.count[chromosome] - both, pool.count[other] - both
             values[k, m] = values[m, k] = q_statistic(both, genes - both - only_one - only_other, only_one, only_other)
-        for gene in pool.ones[one, : pool.count[one]]:
+        for gene in pool.ones[chromosome, : pool.count[chromosome]]:
             marked[gene] = 0
     total = 0.0
     for j in range(max(first, 1), filled):

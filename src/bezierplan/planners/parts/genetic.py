@@ -27,15 +27,15 @@ def roulette(rng: np.random.Generator, fitness: np.ndarray, draws: int) -> np.nd
 
 
 @allocation_free
-def swap_tails(one: np.ndarray, other: np.ndarray, cut: int, bits: int) -> None:
+def swap_tails(first: np.ndarray, second: np.ndarray, cut: int, bits: int) -> None:
     """Exchange, in place, the bits after the first `cut` bits of two chromosomes (song2016, Section III-E: single-point crossover)."""
     gene = cut // bits
     behind = (1 << (bits - cut % bits)) - 1
-    difference = (one[gene] ^ other[gene]) & behind
-    one[gene] ^= difference
-    other[gene] ^= difference
-    for later in range(gene + 1, len(one)):
-        one[later], other[later] = other[later], one[later]
+    difference = (first[gene] ^ second[gene]) & behind
+    first[gene] ^= difference
+    second[gene] ^= difference
+    for later in range(gene + 1, len(first)):
+        first[later], second[later] = second[later], first[later]
 
 
 @allocation_free

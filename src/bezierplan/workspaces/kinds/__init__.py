@@ -53,13 +53,13 @@ def _fits_everywhere(part: str) -> bool:
     return part == part.strip() and len(part) <= LONGEST_NAME and part.partition(".")[0].lower() not in DEVICES
 
 
-def _check_file(given: Any) -> str:
-    if not (isinstance(given, str) and given.isprintable() and 0 < len(given) <= 200):
+def _check_file(value: Any) -> str:
+    if not (isinstance(value, str) and value.isprintable() and 0 < len(value) <= 200):
         raise PydanticCustomError("expected", "{text}", {"text": "the name of a file"})
-    if _NOT_IN_NAMES & set(given) or not all(map(_fits_everywhere, given.split("/"))):
+    if _NOT_IN_NAMES & set(value) or not all(map(_fits_everywhere, value.split("/"))):
         wanted = f"a file's name without {' '.join(sorted(_NOT_IN_NAMES))}, blanks at an end, and names of devices"
-        raise wrong(f"{given!r}: expected {wanted}")
-    return given
+        raise wrong(f"{value!r}: expected {wanted}")
+    return value
 
 
 _IS_FILE = PlainValidator(_check_file)
