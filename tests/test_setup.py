@@ -16,6 +16,7 @@ TARGETS = {
     "extended",
     "test",
     "docs",
+    "image",
     "wheel",
     "lint",
     "benchmark",

@@ -116,6 +116,8 @@ def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str)
     both = theirs.merge(ours.drop(columns="value"), on=[*keys_printed, "metric", "statistic"], how="left")
     runs = select(results.runs, spec["where"])
     measured = {metric: metrics.values(runs, metric, results.problems) for metric in both["metric"].unique()}
+    # A constant that nothing lies below, such as the first rank, tells no interpretation from another.
+    bounded = {entry["metric"] for entry in spec["values"] if isinstance(entry.get("least", metrics.METRICS[entry["metric"]].least), str)}
     rows, draws, least = [], [], []
     for number, row in both.iterrows():
         if metrics.METRICS[row["metric"]].unit == "s" or not isinstance(row["numbers"], np.ndarray):
@@ -130,7 +132,7 @@ def numbers_of(results: Results, spec: dict, published: pd.DataFrame, name: str)
         enough = len(row["numbers"]) >= statistics.LEAST_RUNS
         described = {key: row[key] for key in [*keys_printed, "metric", "statistic", "value_published"]}
         inside = bool(enough and low - half <= value <= high + half)
-        below = row["statistic"] in _BOUNDED and value + half < row["least"] * (1 - _ROUNDING)
+        below = row["metric"] in bounded and row["statistic"] in _BOUNDED and value + half < row["least"] * (1 - _ROUNDING)
         rows.append(described | {"low": low - half, "high": high + half, "in_range": inside, "possible": not below})
         own = runs[np.logical_and.reduce([runs[key] == row[key] for key in keys_printed])].assign(value=measured[row["metric"]])
         draws.append(_experiments(own, row, name) if enough else np.full(EXPERIMENTS, np.nan))

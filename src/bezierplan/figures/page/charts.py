@@ -44,7 +44,9 @@ _TEXT, _SOFT, _LINE = "var(--ink)", "var(--soft)", "var(--line)"
 _STYLE = {
     "background": "transparent",
     "font": "system-ui, sans-serif",
+    # What a chart shows stands in words beside it, and number by number in the tables.
     "aria": False,
+    "mark": {"aria": False},
     "view": {"stroke": None, "continuousWidth": _WIDTH},
     "axis": {
         "labelColor": _TEXT,
@@ -248,11 +250,15 @@ def _methods(page: content.Page) -> Written | None:
         return None
     names = list(dict.fromkeys(row["study"] for row in rows))
     colours, marks = ({"domain": names, "range": [looks[n % len(looks)] for n in range(len(names))]} for looks in (_COLOURS, _MARKS))
-    x = {"field": "length", "type": "quantitative", "scale": {"type": "log", "nice": False, "padding": 12}}
+    feasible = min(row.feasible_baseline for study in page.studies.values() for row in study.worth)
+    # Axes stay as they are when methods are hidden.
+    lengths, shares = _span([1.0, *(row["length"] for row in rows)]), _span([feasible, *(row["feasible"] for row in rows)])
+    times = _span([row["cpu"] for row in rows])
+    x = {"field": "length", "type": "quantitative", "scale": {"type": "log", "domain": lengths, "nice": False, "padding": 12}}
     x |= {"axis": {"title": "path length / baseline's", "format": "~g", "tickCount": 6}}
-    y = {"field": "feasible", "type": "quantitative", "scale": {"zero": False, "padding": 12}}
+    y = {"field": "feasible", "type": "quantitative", "scale": {"domain": shares, "zero": False, "padding": 12}}
     y |= {"axis": {"title": "feasible runs", "format": "%", "tickCount": 6}}
-    size = {"field": "cpu", "type": "quantitative", "scale": {"type": "log", "range": [40, 420]}}
+    size = {"field": "cpu", "type": "quantitative", "scale": {"type": "log", "domain": times, "range": [40, 420]}}
     size |= {"legend": {"title": "CPU time / baseline's", "values": _powers(row["cpu"] for row in rows), "format": "~g"} | _BELOW}
     of_study = {"field": "study", "type": "nominal", "legend": {"title": None}}
     spec = {
@@ -273,11 +279,7 @@ def _methods(page: content.Page) -> Written | None:
                 },
             },
             {
-                "data": {
-                    "values": [
-                        {"length": 1, "feasible": min(row.feasible_baseline for study in page.studies.values() for row in study.worth)}
-                    ]
-                },
+                "data": {"values": [{"length": 1, "feasible": feasible}]},
                 "layer": [
                     {"mark": {"type": "point", "shape": _STAR, "size": 160, "filled": True, "color": _TEXT, "opacity": 1}},
                     {
@@ -299,6 +301,12 @@ def _methods(page: content.Page) -> Written | None:
 _BELOW = {"orient": "bottom", "direction": "horizontal", "symbolFillColor": _SOFT, "symbolStrokeColor": _SOFT}
 # The outline of a star with five points, in the unit of Vega's marks.
 _STAR = "M0,-1L0.2245,-0.309L0.9511,-0.309L0.3633,0.118L0.5878,0.809L0,0.382L-0.5878,0.809L-0.3633,0.118L-0.9511,-0.309L-0.2245,-0.309Z"
+
+
+def _span(values: list[float]) -> list[float]:
+    """The domain of an axis: from the least value to the largest, or around a single one."""
+    least, most = min(values), max(values)
+    return [least, most] if least < most else [0.95 * least, 1.05 * most]
 
 
 def _of_method(key: str, study: content.Study, row: content.Worth) -> dict[str, Any]:
