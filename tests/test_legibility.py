@@ -2,6 +2,7 @@
 
 import itertools
 
+import matplotlib as mpl
 import numpy as np
 import pandas as pd
 import pytest
@@ -81,6 +82,26 @@ def test_texts_do_not_overlap_and_can_be_read_in_a_narrow_column(found, own, col
         wide, high = min(a.x1, b.x1) - max(a.x0, b.x0), min(a.y1, b.y1) - max(a.y0, b.y0)
         # A drawing's own numbers, and a tick at the corner of two axes, may touch by a hair.
         assert wide <= 2 or high <= 2, (one.get_text(), other.get_text())
+
+
+@pytest.mark.parametrize(("found", "own", "columns", "width"), SHEETS)
+@pytest.mark.parametrize("dpi", [100, 150])
+def test_no_text_is_cut_and_titles_stay_within_their_panels(found, own, columns, width, dpi, tmp_path):
+    """At any number of dots per inch, although the sheet is laid out at one."""
+    figure = drawn(found, own, columns, tmp_path, width)
+    figure.set_dpi(dpi)
+    with mpl.rc_context(style.SETTINGS):
+        figure.draw_without_rendering()
+        beyond = [label for axes in figure.axes if axes.axison for label in ticks_beyond(axes)]
+        texts = [text for text in figure.findobj(Text) if text.get_text().strip() and text.get_visible() and text not in beyond]
+        for text in texts:
+            box = text.get_window_extent()
+            assert box.x0 >= -dpi / 72, text.get_text()  # by a point at most
+            assert box.x1 <= figure.bbox.x1 + dpi / 72, text.get_text()
+        for axes in figure.axes:
+            title = axes.title if axes.get_title() else axes._left_title
+            if title.get_text():
+                assert title.get_window_extent().x1 <= axes.get_window_extent().x1 + 1, title.get_text()
 
 
 def test_a_long_title_leaves_its_panel_two_lines_and_the_caption_the_rest(tmp_path):

@@ -3,6 +3,7 @@
 A kind of panel is a module of `figures.panels`, which says what each has.
 """
 
+import functools
 import itertools
 import math
 import re
@@ -17,6 +18,8 @@ import pandas as pd
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.font_manager import FontProperties
+from matplotlib.textpath import text_to_path
 
 from bezierplan.figures import style
 from bezierplan.figures.panels import Note, Panel, Sources, kind_module
@@ -84,14 +87,15 @@ def draw(panels: list[Panel], frame: pd.DataFrame, scene: Scene, columns: int, w
             axes.set_visible(False)
         if scene.narrow:
             _name_axes_once(grid)
-        room = _room(figure, grid)
+        legend = _draw_legend(figure)
+        _lay_out(figure, grid, legend, _ROUNDS)
+        room = 72 * figure.get_figwidth() * grid.flat[0].get_position(original=True).width
         letters = [f"({letter}) " for letter in string.ascii_lowercase[: len(panels)]] if len(panels) > 1 else [""]
-        named = all(_lines(letter + ", ".join(title), room) <= _MOST_LINES for letter, title in zip(letters, titles))
-        headings = [_heading(*each, room, named=named) for each in zip(letters, titles, notes)]
+        headings = [_heading(*each, room) for each in zip(letters, titles, notes)]
         for first in range(0, len(panels), columns):
             _write_headings(grid.flat[first : first + columns], headings[first : first + columns])
         figure.set_label(_caption(letters, [heading.told for heading in headings]))
-        _lay_out(figure, grid, _draw_legend(figure))
+        _lay_out(figure, grid, legend, 1)  # headings change only the heights of rows
     return figure
 
 
@@ -127,6 +131,9 @@ def _plain(text: str) -> str:
 # Lines above a panel, of its title and the few words below it.
 _MOST_LINES = 2
 
+# Rounds after which panels and the labels beside them fit each other.
+_ROUNDS = 3
+
 
 class _Heading(NamedTuple):
     """The title of a panel, the few words below it, and what the caption says of it."""
@@ -140,11 +147,11 @@ def _lines(title: str, room: float) -> int:
     return _broken(title, room, style.TITLE_TEXT).count("\n") + 1
 
 
-def _heading(letter: str, title: list[str], note: Note, room: float, *, named: bool) -> _Heading:
-    """What stands above a panel, in lines of a width in points: its title and, if a line is left, the few words. The caption has the rest.
-
-    named: whether the titles of all panels have room for their methods.
+def _heading(letter: str, title: list[str], note: Note, room: float) -> _Heading:
+    """What stands above a panel, in lines of a width in points: its title, with its method if that fits, and, if a line is left, the few
+    words. The caption has the rest.
     """
+    named = _lines(letter + ", ".join(title), room) <= _MOST_LINES
     told = [*([] if named else title[1:]), *([note.told] if note.told else [])]
     heading = _broken(letter + ", ".join(title if named else title[:1]), room, style.TITLE_TEXT)
     words = _broken(note.shown, room, style.SMALLEST_TEXT)
@@ -186,23 +193,19 @@ def _name_axes_once(grid: np.ndarray) -> None:
                 axes.set_xlabel("")
 
 
-def _room(figure: Figure, grid: np.ndarray) -> float:
-    """Room for text above each of the panels (rows, columns), up to the text beside its neighbour, in points."""
-    width, columns = 72 * figure.get_figwidth(), grid.shape[1]
-    least = 36 if width / columns >= 72 * style.NARROW_PANEL else 30  # room for the labels of a vertical axis, if they are short
-    margins = 72 * (np.array([[_margins(axes)[:2] for axes in row] for row in grid]) + style.GAP / 2)
-    left, right = margins.max(axis=0).T
-    return (width - np.maximum(left, least).sum() - right.sum()) / columns + right.min()
+@functools.cache
+def _width(text: str, size: float) -> float:
+    """Width of a line of text, in points."""
+    return text_to_path.get_text_width_height_descent(text.replace(r"\$", "$"), FontProperties(size=size), ismath=False)[0]
 
 
 def _broken(text: str, room: float, size: float) -> str:
     """Text broken after spaces, commas and slashes into lines that fit a width; width and text size in points."""
-    most = int(room / (0.57 * size))  # the average character of this font is slightly narrower than this
     lines = []
     for paragraph in text.splitlines():
         line = ""
         for word in re.findall(r"[^ ,/]*[ ,/]*", paragraph):
-            if line and len(line + word.rstrip()) > most:
+            if line and _width(line + word.rstrip(), size) > room:
                 lines.append(line.rstrip())
                 line = ""
             line += word
@@ -225,13 +228,14 @@ def _draw_legend(figure: Figure) -> float:
     return 0.0
 
 
-def _lay_out(figure: Figure, grid: np.ndarray, legend: float) -> None:
+def _lay_out(figure: Figure, grid: np.ndarray, legend: float, rounds: int) -> None:
     """Place panels (rows, columns), all as wide as the sheet allows, the tops of each row level, and fit the sheet's height to them.
 
-    Takes three rounds, because the labels beside a panel depend on its size: ticks, and names of vertical axes, which are broken to fit
-    its height. legend: room for it, in inches. Raises ValueError if labels leave no room.
+    Takes rounds, because the labels beside a panel depend on its size: ticks, and names of axes, which are broken to fit its sides. legend:
+    room for it, in inches. Raises ValueError if labels leave no room.
     """
-    for _ in range(3):
+    names = {axes: (_joined(axes.get_xlabel()), _joined(axes.get_ylabel())) for axes in grid.flat}
+    for _ in range(rounds):
         margins = np.array([[_margins(axes) for axes in row] for row in grid]) + style.GAP / 2
         left, right = margins[:, :, :2].max(axis=0).T
         bottom, top = margins[:, :, 2:].max(axis=1).T
@@ -250,7 +254,14 @@ def _lay_out(figure: Figure, grid: np.ndarray, legend: float) -> None:
             corner = x[column] / sheet_width, (y[row] - height) / sheet_height
             axes.set_position([*corner, width / sheet_width, height / sheet_height])
             if axes.name != "3d":
-                axes.set_ylabel(_broken(axes.get_ylabel(), 72 * height, style.SMALLEST_TEXT))
+                along, upwards = names[axes]
+                axes.set_xlabel(_broken(along, 72 * width, style.SMALLEST_TEXT))
+                axes.set_ylabel(_broken(upwards, 72 * height, style.SMALLEST_TEXT))
+
+
+def _joined(name: str) -> str:
+    """The name of an axis in one line, as it was before it was broken (`_broken`)."""
+    return " ".join(name.splitlines())
 
 
 def _margins(axes: Axes) -> tuple[float, float, float, float]:

@@ -23,6 +23,7 @@ TITLE_TEXT = 8
 SETTINGS = {
     "font.family": "DejaVu Sans",  # ships with matplotlib, so it is the same everywhere
     "font.size": SMALLEST_TEXT,
+    "text.hinting": "no_hinting",  # so that a text is as wide in every file, whatever its dots per inch, as where it was laid out
     "axes.titlesize": TITLE_TEXT,
     "axes.labelsize": SMALLEST_TEXT,
     "xtick.labelsize": SMALLEST_TEXT,

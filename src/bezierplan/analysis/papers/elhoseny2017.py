@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+import shapely
 
 from bezierplan.analysis import statistics
 from bezierplan.analysis.claims.material import Untestable
@@ -389,6 +390,7 @@ def chromosome(*, least_distance: float) -> pd.DataFrame:
         drawn = verdicts(rng.integers(0, side + 1, (number, 2)), grid, least_distance)
         points = [each.point for each in drawn if each.word == "accepted" and each.point not in (start, target)]
         path = curve_through(points, start, target) if len(points) == number else None
+    curve = shapely.LineString(grid.in_units(np.column_stack(samples(path, grid))))
     marks = []
     words = {"mark": "text", "role": "note"}
     gene_width, top = 0.44, 1.4
@@ -401,11 +403,13 @@ def chromosome(*, least_distance: float) -> pd.DataFrame:
         middle = side / 2 + gene_width * (gene - 12)
         marks.append(box | {"x": middle, "y": 0.0, "width": gene_width, "height": gene_width})
         marks.append(words | {"x": middle, "y": 0.0, "text": str(value)})
-        marks.append(words | {"x": x + 0.22, "y": y + top - 0.3, "text": str(gene)})
+        corners = [(x + aside, y + above) for aside, above in itertools.product((0.28, -0.28), (0.3, -0.3))]
+        a, b = max(corners, key=lambda corner: round(curve.distance(shapely.Point(corner)), 6))
+        marks.append(words | {"x": a, "y": b + top, "text": str(gene)})
         if y == 0 or gene == (side + 1) ** 2 - 1:
             marks.append(words | {"x": middle, "y": -0.45, "text": str(gene)})
-    x, y = grid.in_units(np.column_stack(samples(path, grid))).T
-    marks += [{"mark": "line", "role": "second", "group": "curve", "label": "Bezier curve", "x": a, "y": b + top} for a, b in zip(x, y)]
+    line = {"mark": "line", "role": "second", "group": "curve", "label": "Bezier curve"}
+    marks += [line | {"x": a, "y": b + top} for a, b in curve.coords]
     for role, (a, b) in (("start", start), ("target", target)):
         marks.append({"mark": "dots", "role": role, "group": role, "label": role, "x": a, "y": b + top})
     return pd.DataFrame(marks)

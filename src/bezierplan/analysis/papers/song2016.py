@@ -4,6 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+import shapely
 
 from bezierplan.analysis import identified
 from bezierplan.analysis.results import Results
@@ -68,12 +69,19 @@ def identified_paths(
         name = f"{' '.join(map(str, path))}: length {identification.length * workspace.cell:.6f}"
         points = [{"x": x, "y": y} for x, y in map(workspace.centre, path)]
         rows += [{"mark": "line", "role": role, "group": f"path {number}", "label": name} | point for point in points]
+    lines = shapely.MultiLineString([[workspace.centre(cell) for cell in path] for path in identification.paths])
     rows += [
-        {"mark": "text", "role": "note", "x": x, "y": y + 0.55 * workspace.cell, "text": str(cell)}
+        {"mark": "text", "role": "note", "text": str(cell)} | dict(zip("xy", _beside(workspace.centre(cell), lines, 0.85 * workspace.cell)))
         for path in identification.paths[:1]
-        for cell, (x, y) in zip(path[1:-1], map(workspace.centre, path[1:-1]), strict=True)
+        for cell in path[1:-1]
     ]
     for role, cell in (("start", start), ("target", target)):
         x, y = workspace.centre(cell)
         rows.append({"mark": "dots", "role": role, "label": role, "x": x, "y": y})
     return pd.DataFrame(rows)
+
+
+def _beside(point: tuple[float, float], lines: shapely.Geometry, away: float) -> tuple[float, float]:
+    """Of the places around a point, a distance away, the one that is farthest from lines; the first from the top of equal ones."""
+    around = [(point[0] + away * np.sin(angle), point[1] + away * np.cos(angle)) for angle in np.linspace(0, 2 * np.pi, 8, endpoint=False)]
+    return max(around, key=lambda place: round(lines.distance(shapely.Point(place)), 6))

@@ -74,7 +74,7 @@ def ends(workspace: Workspace, *, start: list[float], target: list[float]) -> pd
 def movement(*, particles: list[list[float]], best: float, inertia: float, c1: float, c2: float) -> pd.DataFrame:
     """Figure 2: marks of particles that move in one dimension, the three parts of each velocity (eq. 8) from tail to head.
 
-    particles: of each its place x, velocity v, best place p, r1 and r2. best: the swarm's best place. inertia, c1, c2: as in eq. 8.
+    particles: of each its position x, velocity v, best position p, r1 and r2. best: that of the swarm. inertia, c1, c2: as in eq. 8.
     Further columns: part (of the velocity, its name) and value (its signed length).
     """
     rows = []
@@ -94,7 +94,7 @@ def movement(*, particles: list[list[float]], best: float, inertia: float, c1: f
             words = {"mark": "text", "role": "note", "y": line + 0.9 * height, "text": f"{name} {formula}"}
             rows.append(words | {"x": moved + aside * 4.3})
         for role, place, words in (("first", x, "x"), ("third", p, "p"), ("start", moved, "new x"), ("target", best, "G")):
-            label = {"first": "place", "third": "its best place", "start": "next place", "target": "the swarm's best place"}[role]
+            label = {"first": "position", "third": "best position", "start": "next position", "target": "best position of the swarm"}[role]
             rows.append({"mark": "dots", "role": role, "group": f"{words} {number}", "label": label, "x": place, "y": line})
             if words != "new x":
                 rows.append({"mark": "text", "role": "note", "x": place, "y": line - 0.75, "text": words})
@@ -105,10 +105,10 @@ def flow_chart() -> pd.DataFrame:
     """Figure 4: marks of a flow chart of the method (Section 4, Algorithm 1), boxes from top to bottom and arrows between them."""
     middle, left, right, width, height, step = 0.0, -62.0, 62.0, 190.0, 22.0, 36.0
     steps = [
-        ("muted", "particles at random places, velocities 0"),
+        ("muted", "particles at random positions, velocities 0"),
         ("none", "particle: control points of a curve (eq. 1)"),
         ("none", "fitness: length and collisions (eqs. 19 to 22)"),
-        ("none", "best place p of each, best place G of all"),
+        ("none", "best position p of each, best G of all"),
         ("accent", "last iteration, or G as ten iterations ago?"),
         ("none", "next number ζ of the map (eqs. 9 to 16)"),
     ]

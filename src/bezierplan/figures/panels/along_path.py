@@ -29,6 +29,8 @@ _SAMPLES = CURVATURE_SAMPLES
 _HIGHEST_PEAK = 10
 _CUT_SCALE = 4
 
+_JOINT = {"color": style.BLUE, "linestyle": (0, (3, 1.5)), "linewidth": 0.9}
+
 
 class Options(RunsPanel):
     """Keys of a panel."""
@@ -41,7 +43,8 @@ class Options(RunsPanel):
 
 
 def data(results: Results, options: Options) -> pd.DataFrame:
-    """One row per sample of a path, uniform in its parameter; columns: those of `paths.picked`, quantity, limit, t (0 to 1), value.
+    """One row per sample of a path, uniform in its parameter; columns: those of `paths.picked`, quantity, limit, pieces (that the path
+    is made of), t (0 to 1), value.
 
     The value of curvature has its sign, with left turns positive, in 1/unit, and is empty where the speed is zero. Without a path, one row
     without t and value.
@@ -56,8 +59,9 @@ def data(results: Results, options: Options) -> pd.DataFrame:
     names |= {"quantity": options.quantity, "limit": math.nan if options.limit is None else options.limit}
     path = None if run is None else path_of(run)
     if path is None:
-        return pd.DataFrame([names | {"t": math.nan, "value": math.nan}])
+        return pd.DataFrame([names | {"pieces": 0, "t": math.nan, "value": math.nan}])
     values, _ = curves.curvature(path, _SAMPLES)
+    names["pieces"] = len(curves.bezier_pieces(path))
     frame = pd.DataFrame({"t": np.linspace(0, 1, _SAMPLES), "value": values}).assign(**names)
     return frame[[*names, "t", "value"]]
 
@@ -78,6 +82,8 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     if frame["value"].isna().all():
         return Note("", run_note(frame, "no path" if frame["t"].isna().all() else "the curve is a single point"))
     axes.plot(frame["t"], frame["value"], label="path", **style.RUN_SHOWN)
+    for joint in range(1, int(row["pieces"])):
+        axes.axvline(joint / row["pieces"], label="joint of two pieces", zorder=2, **_JOINT)
     return _mark_highest(axes, frame, unit)
 
 

@@ -121,7 +121,7 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
     # So far from the last place that their labels do not touch.
     last = never / (never / low) ** _CLEAR
     steps = (1.0,) if high > 100 * low else (1.0, 3.0)
-    ticks = [tick for tick in LogLocator(subs=steps, numticks=4).tick_values(low, high) if low / 2 <= tick <= last]
+    ticks = _thinned([tick for tick in LogLocator(subs=steps, numticks=4).tick_values(low, high) if low / 2 <= tick <= last], never / low)
     thousand = 1000 if options.cost == "cpu_s" and high < _SHORT else 1
     if thousand > 1:
         axes.set_xlabel(f"{_NAMES['cpu_s'].removesuffix('(s)')}(ms)")
@@ -139,6 +139,15 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         return Note("", f"median over {first['problems']:g} problems; never: at least half of them are not solved in any run")
     fewest, most = frame["runs"].min(), frame["runs"].max()
     return Note("", f"{fewest:g}{'' if fewest == most else f' to {most:g}'} runs per method; never: no run gets there")
+
+
+def _thinned(ticks: list[float], span: float) -> list[float]:
+    """Those of increasing ticks whose labels do not touch on an axis that spans a factor: within a decade a locator gives many."""
+    kept: list[float] = []
+    for tick in ticks:
+        if not kept or tick >= kept[-1] * span**_CLEAR:
+            kept.append(tick)
+    return kept
 
 
 def _power(value: float) -> str:

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 # Contour lines below a track, from the lowest to the highest.
 _LEVELS = 14
 
+# Room beyond what leaves the workspace, as a share of its side.
+_MARGIN = 0.03
+
 _NAMES = ("first run", "second run", "third run", "fourth run", "fifth run")
 _FIRST = {"color": style.BLUE, "linestyle": "", "marker": "o", "markersize": 7, "markerfacecolor": "none", "markeredgewidth": 1.3}
 
@@ -138,11 +141,19 @@ def draw(axes: Axes, frame: pd.DataFrame, scene: Any, options: Options) -> Note:
         _draw_way(axes, own[own["part"] == "way"], look | {"label": name})
         _draw_paths(axes, own[own["part"] == "path"], look | {"label": name})
         notes.append(f"{name}: repeat {run.rpartition('/')[2]}, length {own['length'].iloc[0]:.2f} {workspace.unit}")
+    _show_all(axes, frame[frame["part"].isin(["way", "path"])])
     row = frame.iloc[0]
     if not len(runs):
         return Note("no feasible run")
     notes.append(f"{row['groups']:g} classes among {row['candidates']:g} feasible runs")
     return Note("", "; ".join(notes))
+
+
+def _show_all(axes: Axes, drawn: pd.DataFrame) -> None:
+    """Widen the panel, with a small margin, to what leaves the workspace or ends at its edge, where a mark would be cut."""
+    for (low, high), places, show in ((axes.get_xlim(), drawn["x"], axes.set_xlim), (axes.get_ylim(), drawn["y"], axes.set_ylim)):
+        room = _MARGIN * (high - low)
+        show(places.min() - room if places.min() < low + room else low, places.max() + room if places.max() > high - room else high)
 
 
 def _draw_way(axes: Axes, way: pd.DataFrame, look: dict) -> None:
