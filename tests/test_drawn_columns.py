@@ -114,8 +114,11 @@ def test_a_dot_stands_at_its_statistic():
 
 def test_a_quantity_along_a_path_stands_over_the_parameter(monkeypatch):
     monkeypatch.setattr(along_path, "run_note", lambda *_: "")
-    frame = pd.DataFrame({"t": [0.0, 0.5, 1.0], "value": [0.25, 0.75, 0.5], "limit": 0.6, "problem": "across", "quantity": "curvature"})
+    frame = pd.DataFrame(
+        {"t": [0.0, 0.5, 1.0], "value": [0.25, 0.75, 0.5], "limit": 0.6, "problem": "across", "quantity": "curvature"}
+    ).assign(pieces=2)
     axes = drawn(along_path, frame, pick={"repeat": 3}, quantity="curvature")
     assert labelled(axes, "path") == [[0, 0.5, 1], [0.25, 0.75, 0.5]]
     assert labelled(axes, "largest magnitude") == [[0.5], [0.75]]
+    assert labelled(axes, "joint of two pieces")[0] == [0.5, 0.5]
     assert labelled(axes, "published limit: 0.6 1/m, for turns to either side")[1] == pytest.approx([0.6, 0.6])
