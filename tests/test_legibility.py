@@ -96,8 +96,8 @@ def test_no_text_is_cut_and_titles_stay_within_their_panels(found, own, columns,
         texts = [text for text in figure.findobj(Text) if text.get_text().strip() and text.get_visible() and text not in beyond]
         for text in texts:
             box = text.get_window_extent()
-            assert box.x0 >= -dpi / 72, text.get_text()  # by a point at most
-            assert box.x1 <= figure.bbox.x1 + dpi / 72, text.get_text()
+            assert box.x0 >= 0, text.get_text()
+            assert box.x1 <= figure.bbox.x1, text.get_text()
         for axes in figure.axes:
             title = axes.title if axes.get_title() else axes._left_title
             if title.get_text():

@@ -95,7 +95,7 @@ def draw(panels: list[Panel], frame: pd.DataFrame, scene: Scene, columns: int, w
         for first in range(0, len(panels), columns):
             _write_headings(grid.flat[first : first + columns], headings[first : first + columns])
         figure.set_label(_caption(letters, [heading.told for heading in headings]))
-        _lay_out(figure, grid, legend, 1)  # headings change only the heights of rows
+        _lay_out(figure, grid, legend, 2)  # headings change only the heights of rows
     return figure
 
 
@@ -231,12 +231,15 @@ def _draw_legend(figure: Figure) -> float:
 def _lay_out(figure: Figure, grid: np.ndarray, legend: float, rounds: int) -> None:
     """Place panels (rows, columns), all as wide as the sheet allows, the tops of each row level, and fit the sheet's height to them.
 
-    Takes rounds, because the labels beside a panel depend on its size: ticks, and names of axes, which are broken to fit its sides. legend:
-    room for it, in inches. Raises ValueError if labels leave no room.
+    Takes rounds, because the labels beside a panel depend on its size: ticks, and names of axes, which are broken to fit its sides.
+    Ticks may change to and fro with the size that they leave, so each round has room for those of the one before as well. legend: room for
+    it, in inches. Raises ValueError if labels leave no room.
     """
     names = {axes: (_joined(axes.get_xlabel()), _joined(axes.get_ylabel())) for axes in grid.flat}
+    before = np.zeros((*grid.shape, 4))
     for _ in range(rounds):
-        margins = np.array([[_margins(axes) for axes in row] for row in grid]) + style.GAP / 2
+        measured = np.array([[_margins(axes) for axes in row] for row in grid])
+        margins, before = np.maximum(measured, before) + style.GAP / 2, measured
         left, right = margins[:, :, :2].max(axis=0).T
         bottom, top = margins[:, :, 2:].max(axis=1).T
         sheet_width = figure.get_figwidth()

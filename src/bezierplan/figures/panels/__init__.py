@@ -19,6 +19,7 @@ from __future__ import annotations
 import functools
 import importlib
 import json
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -106,7 +107,7 @@ class Sources:
         return self._tables[call]
 
 
-class Panel(Model):
+class Panel(Model, ABC):
     """Keys common to all kinds of panel, and what a kind needs in addition to its panels.
 
     published_drawn: whether published numbers are drawn. rerun: whether runs are repeated to draw what no table keeps. plans: whether it
@@ -130,9 +131,9 @@ class Panel(Model):
 
     _place: str = PrivateAttr("")
 
+    @abstractmethod
     def source(self, sources: Sources) -> Any:
         """What it draws from, as `data` of its kind takes it."""
-        raise NotImplementedError
 
     @property
     def place(self) -> str:
