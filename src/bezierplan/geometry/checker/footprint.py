@@ -114,15 +114,10 @@ def first_entry(moves, headings, outer, inner, reach, edges, centres, radii):
     outer, inner: (n, 2) corners of the footprint that certifies collisions and of the smaller one that is certified free. Depth first, left
     half first.
     """
-    stack, begin, width = np.empty((STACK, moves.shape[1], 2)), np.empty(STACK), np.empty(STACK)
-    turn, considered = np.empty((STACK, 2)), np.empty(STACK, dtype=np.int64)
-    places, hull = np.empty((2 * len(inner), 2)), np.empty((4 * len(inner) + 2, 2))
+    stack, begin, width, turn, considered, places, hull = _room(moves, inner)
     obstacles = np.arange(len(edges) + len(radii))
     for move in range(len(moves)):
-        copy_points(moves[move], stack[0])
-        begin[0], width[0], considered[0] = 0.0, 1.0, len(obstacles)
-        turn[0, 0], turn[0, 1] = headings[move, 0], headings[move, 1]
-        top = 0
+        top = _put_whole(moves[move], headings[move], len(obstacles), stack, begin, width, turn, considered)
         while top >= 0:
             first, last, deviation = _motion(stack[top], turn[top], reach)
             near = considered[top]
@@ -151,16 +146,11 @@ def first_entry(moves, headings, outer, inner, reach, edges, centres, radii):
 @compiled
 def footprint_clearance(moves, headings, corners, reach, tolerance, edges, centres, radii):
     """Least distance of a footprint that collides nowhere from edges (n, 4) and discs, to a tolerance, by branch and bound."""
-    stack, begin, width = np.empty((STACK, moves.shape[1], 2)), np.empty(STACK), np.empty(STACK)
-    turn, considered = np.empty((STACK, 2)), np.empty(STACK, dtype=np.int64)
-    places, hull = np.empty((2 * len(corners), 2)), np.empty((4 * len(corners) + 2, 2))
+    stack, begin, width, turn, considered, places, hull = _room(moves, corners)
     obstacles = np.arange(len(edges) + len(radii))
     least = np.inf
     for move in range(len(moves)):
-        copy_points(moves[move], stack[0])
-        begin[0], width[0], considered[0] = 0.0, 1.0, len(obstacles)
-        turn[0, 0], turn[0, 1] = headings[move, 0], headings[move, 1]
-        top = 0
+        top = _put_whole(moves[move], headings[move], len(obstacles), stack, begin, width, turn, considered)
         while top >= 0:
             first, last, deviation = _motion(stack[top], turn[top], reach)
             near = considered[top]
@@ -182,6 +172,25 @@ def footprint_clearance(moves, headings, corners, reach, tolerance, edges, centr
             considered[top] = considered[top + 1] = near
             top += 1
     return least
+
+
+@compiled
+def _room(moves, corners):
+    """Arrays of a search: of each part on its stack the points, where it begins in its move, its share of it, its headings at both ends and
+    how many obstacles come near it; and scratch for the places of a footprint's corners (n, 2) and their hull.
+    """
+    parts, begin, width = np.empty((STACK, moves.shape[1], 2)), np.empty(STACK), np.empty(STACK)
+    turn, considered = np.empty((STACK, 2)), np.empty(STACK, dtype=np.int64)
+    return parts, begin, width, turn, considered, np.empty((2 * len(corners), 2)), np.empty((4 * len(corners) + 2, 2))
+
+
+@allocation_free
+def _put_whole(points, headings, obstacles, stack, begin, width, turn, considered):
+    """Put a whole move at the bottom of the stack; returns its place there."""
+    copy_points(points, stack[0])
+    begin[0], width[0], considered[0] = 0.0, 1.0, obstacles
+    turn[0, 0], turn[0, 1] = headings[0], headings[1]
+    return 0
 
 
 @allocation_free
