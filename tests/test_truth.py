@@ -1,9 +1,11 @@
 """The workflow itself refuses planners that lie, end, stall or change their world, by run and planner, in one line; no table shows them."""
 
 import os
+import select
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pyarrow as pa
@@ -151,12 +153,12 @@ def written(home, planners):
     (home / "artefacts.yaml").write_text(ARTEFACTS)
 
 
-def snakemake(folder, *words, limit=60.0):
+def snakemake(folder, *words, limit=60.0, stderr=subprocess.PIPE):
     """Make something of the study `liars` in a folder. limit: seconds that the import of a planner may take."""
     call = f"from bezierplan.running import interface; from snakemake.cli import main; interface.LIMIT = {limit}; main()"
     common = ["-s", str(ROOT / "Snakefile"), "--workflow-profile", "none", "--cores", "2"]
     command = [sys.executable, "-c", call, *common, *words, "--config", f"studies=[{folder / 'liars'}]"]
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False, timeout=300)
+    return subprocess.run(command, cwd=folder, stdout=subprocess.PIPE, stderr=stderr, text=True, check=False, timeout=300)
 
 
 @pytest.fixture(scope="module")
@@ -198,6 +200,21 @@ def test_no_table_shows_them_and_the_honest_one_ran(ended):
     assert [file.parent.name for file in folder.glob("results/**/runs/drives/*/0.parquet")] == ["honest_drives"]
     assert {file.name for file in folder.glob(f"{TABLES}/*")} == {"honest.comparison.csv", "honest.csv"}
     assert "Traceback" not in done.stderr
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="only Linux has pipes that keep writes apart")
+def test_messages_of_the_workflow_are_written_with_their_ends(tmp_path):
+    """What a job says between a message and its end would stand on the message's line."""
+    written(tmp_path / "liars", {"honest": ("", "answer"), "exits": (DEEDS["exits"][0], "answer")})
+    reading, writing = os.pipe2(os.O_DIRECT)
+    with ThreadPoolExecutor(1) as pool:
+        ended = pool.submit(snakemake, tmp_path, f"{TABLES}/all.csv", stderr=writing)
+        ended.add_done_callback(lambda _: os.close(writing))
+        writes = list(iter(lambda: os.read(reading, select.PIPE_BUF), b""))
+    os.close(reading)
+    assert ended.result().returncode == 1
+    assert any(b"ended itself with exit status 0" in each for each in writes)
+    assert [each for each in writes if not each.endswith(b"\n") and len(each) < select.PIPE_BUF] == []
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux gives a process the children of its children")

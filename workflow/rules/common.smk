@@ -15,6 +15,10 @@ os.environ.update(PYTHONPATH=SOURCE, OMP_NUM_THREADS="1", OPENBLAS_NUM_THREADS="
 INTERPRETER = sys.executable
 # Snakemake puts the path of its interpreter into shell commands unquoted; here the folder may have any name.
 sys.executable = shlex.quote(sys.executable)
+# Snakemake writes a message and its end apart, and flushes then. What a job says between the two would stand on the message's line, so both are
+# to be one write.
+if hasattr(sys.stderr, "reconfigure"):
+    sys.stderr.reconfigure(line_buffering=False, write_through=False)
 
 from snakemake.iocontainers import Params
 
